@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,8 +26,8 @@ class Frame:
 
     rows: each actor's first row in the palette. matrix: world to clip space `[4, 4]`. bounds: a box round
     those who are no ghosts. meshes: which is drawn of each actor. boxes: the corners of those round all
-    actors' pieces `[N, 8, 3]`. casters: what throws each actor's shadow, by how far off it may be. light:
-    world to shadow map, 0..1, or None.
+    actors' pieces `[N, 8, 3]`. casters: what throws each actor's shadow. light: world to shadow map,
+    0..1, or None.
     """
 
     scene: Scene
@@ -40,7 +40,7 @@ class Frame:
     bounds: tuple[Array, Array]
     meshes: list[Mesh]
     boxes: Array
-    casters: Mapping[float, list[Mesh]]
+    casters: list[Mesh]
     light: Array | None = None
 
     @property

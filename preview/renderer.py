@@ -96,8 +96,8 @@ class Renderer:
             return a.figure.finest(off * a.figure.height / max(1.0, tall(a, camera, height)))
 
         meshes = [mesh(a) for a in actors]
-        casters = shadow_casters(actors) if cast else {}
-        rows = self._drawing.store.prepare(actors, sum(casters.values(), meshes))
+        casters = shadow_casters(actors) if cast else []
+        rows = self._drawing.store.prepare(actors, meshes + casters)
         matrix = camera.projection(width / height) @ camera.view()
         bounds = Scene(tuple(solid)).bounds()
         round_pieces = boxes(actors, self.store.palettes if actors else ())

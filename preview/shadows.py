@@ -17,12 +17,15 @@ from preview.scene import Actor
 
 Array = NDArray[Any]
 
-# Texels, on a graphics card and in software: of all and near by; of all for the ground alone.
+# Texels, on a graphics card and in software: of all, and near by; of all in small pictures, and for the
+# ground.
 SHADOW_SIZE = (1024, 1024), (416, 208)
-NEAR = 3.0  # pixels of the picture that a texel of the whole may be wide before what is in it has its own map
+# Pixels of the picture that a texel of all may be wide: of the small map; before what is in the picture has a
+# map of its own.
+SMALL, NEAR = 2.0, 3.0
 # Texels from the middle of the two places of the map that are looked at, likewise.
 TAPS = (1.6, 0.9), (0.8, 0.45)
-CAST_OFF, SOFT_OFF = 0.004, 0.008  # of the height, that what throws a shadow may be off; on the ground alone
+CAST_OFF = 0.004  # of the height, that what throws a shadow may be off
 STEPS = 8  # sizes of the map near by for each doubling: else its texels would creep over a body that moves
 SOFT_SIZE = 128, 56  # texels of the ground's shadow, along the light and across
 SHADOW_LIMIT = 8  # instances; a crowd has only the soft spots under it
@@ -81,18 +84,19 @@ class Shadows:
         map, 0..1. Near by, what is in the picture has a map of its own.
         """
         axes, centre, radius = _lamp(frame)
-        window = _window(frame, axes, self._whole.size / (2 * radius))
-        if window is None:
-            self._used = self._whole
-            return self._of_all(frame, self._whole, CAST_OFF)
+        pixels, low, high = _window(frame, axes)
+        if pixels * 2 * radius < NEAR * self._whole.size:
+            small = pixels * 2 * radius < SMALL * self._low.size
+            self._used = self._low if small else self._whole
+            return self._of_all(frame, self._used)
         self._used = self._near
-        middle, half = (window[0] + window[1]) / 2, (window[1] - window[0]) / 2
+        middle, half = (low + high) / 2, (high - low) / 2
         matrix = np.eye(4)
         matrix[:3, :3] = axes / [[half[0]], [half[1]], [radius]]
         matrix[:3, 3] = -np.array([*(middle / half), axes[2] @ centre / radius])
-        return self._drawn(frame, self._near, matrix, CAST_OFF)
+        return self._drawn(frame, self._near, matrix)
 
-    def _of_all(self, frame: Frame, into: _Map, off: float) -> Array:
+    def _of_all(self, frame: Frame, into: _Map) -> Array:
         before = into.seen
         if before is not None and before[1] == frame.theme.toward and _alike(before[0], frame.actors):
             return before[2]
@@ -100,13 +104,13 @@ class Shadows:
         matrix = np.eye(4)
         matrix[:3, :3] = axes / radius
         matrix[:3, 3] = -axes @ centre / radius
-        into.seen = frame.actors, frame.theme.toward, self._drawn(frame, into, matrix, off)
+        into.seen = frame.actors, frame.theme.toward, self._drawn(frame, into, matrix)
         return into.seen[2]
 
-    def _drawn(self, frame: Frame, into: _Map, matrix: Array, off: float) -> Array:
+    def _drawn(self, frame: Frame, into: _Map, matrix: Array) -> Array:
         self._drawing.state(into.target, (0, 0, into.size, into.size), moderngl.DEPTH_TEST, colors=False)
         into.target.clear(depth=1.0)
-        depths(self._drawing, frame, frame.which(solid=True), matrix, frame.casters[off])
+        depths(self._drawing, frame, frame.which(solid=True), matrix, frame.casters)
         half = np.eye(4) * 0.5
         half[:3, 3], half[3, 3] = 0.5, 1
         return np.asarray(half @ matrix)
@@ -137,8 +141,8 @@ class Shadows:
         if before is not None and before[1] == toward and _alike(before[0], frame.actors):
             return
         self._softened = frame.actors, toward
-        into = self._low if self._used is self._near else self._whole
-        light = self._of_all(frame, into, SOFT_OFF if into is self._low else CAST_OFF)
+        into = self._whole if self._used is self._whole else self._low
+        light = self._of_all(frame, into)
         patch, turn, fade = strip
         self._drawing.state(self._soft_fbo, (0, 0, *SOFT_SIZE), moderngl.NOTHING)
         program = self._drawing.program("soft", shaders.COVER, shaders.SOFT)
@@ -175,9 +179,9 @@ def _strip(frame: Frame) -> Strip | None:
     return patch, (float(along[0]), float(along[1])), fade
 
 
-def shadow_casters(actors: Sequence[Actor]) -> dict[float, list[Mesh]]:
-    """Return what may throw each actor's shadow, by how far off that is, of its height."""
-    return {off: [a.figure.finest(off * a.figure.height) for a in actors] for off in (CAST_OFF, SOFT_OFF)}
+def shadow_casters(actors: Sequence[Actor]) -> list[Mesh]:
+    """Return what throws each actor's shadow."""
+    return [a.figure.finest(CAST_OFF * a.figure.height) for a in actors]
 
 
 def depths(
@@ -202,9 +206,9 @@ def _lamp(frame: Frame) -> tuple[Array, Array, float]:
     return axes, (low + high) / 2, max(0.05, float(np.linalg.norm(high - low)) / 2)
 
 
-def _window(frame: Frame, axes: Array, texels: float) -> tuple[Array, Array] | None:
-    """Return the part of the lamp's picture `[2], [2]`, metres, that shades what is seen, where that is so
-    near that texels would show. texels: of the map of all, a metre.
+def _window(frame: Frame, axes: Array) -> tuple[float, Array, Array]:
+    """Return how many pixels a metre has where what is seen is nearest, and the part of the lamp's picture
+    `[2], [2]`, metres, that shades what is seen. No pixels where nothing is.
     """
     camera, (width, height) = frame.camera, frame.size
     seen = camera.project(frame.boxes, width / height)
@@ -213,12 +217,10 @@ def _window(frame: Frame, axes: Array, texels: float) -> tuple[Array, Array] | N
     inside = (low.min(1) < 1).all(1) & (high.max(1) > 0).all(1)
     inside |= behind.any(1) & ~behind.all(1)
     if not inside.any():
-        return None
+        return 0.0, np.zeros(2), np.ones(2)
     corners = frame.boxes[inside].reshape(-1, 3)
     away = np.maximum((camera.eye - corners) @ camera.axes[2], camera.near)
     tall = height / (2 * np.tan(camera.fov / 2))  # pixels of a metre, a metre away
-    if tall / float(away.min()) < NEAR * texels:
-        return None
     # No more of the boxes than is in the picture, from the nearest to the farthest of them.
     right, up, back = camera.axes
     sides = [(x * width * right + y * height * up) / (2 * tall) for x in (-1, 1) for y in (-1, 1)]
@@ -228,7 +230,7 @@ def _window(frame: Frame, axes: Array, texels: float) -> tuple[Array, Array] | N
     half = 2 ** (np.ceil(np.log2(np.maximum((high - low) / 2, 1e-3) * 1.04) * STEPS) / STEPS)
     texel = half / 128
     middle = np.round((low + high) / 2 / texel) * texel
-    return middle - half, middle + half
+    return tall / float(away.min()), middle - half, middle + half
 
 
 def _alike(before: Sequence[Actor], now: Sequence[Actor]) -> bool:

@@ -14,7 +14,7 @@ import pytest
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from preview.camera import whole_figure
-from preview.drawing_apart import drawn
+from preview.drawing_apart import WORTH_LEVELS, drawn
 from preview.figure import SkinnedFigure, StickFigure
 from preview.offscreen import Offscreen
 from preview.scene import DARK, Actor, Scene
@@ -104,3 +104,12 @@ def test_who_stops_early_leaves_no_process(offscreen):
 
 def test_no_scenes_are_no_pictures(offscreen):
     assert list(drawn(iter(()), 0, SIZE, DARK, processes=1)) == []
+
+
+def test_of_many_pictures_figures_have_levels_of_detail_and_of_few_they_have_none(mannequin):
+    for count, made in ((WORTH_LEVELS - 1, False), (WORTH_LEVELS, True)):
+        figure = SkinnedFigure(mannequin)
+        pictures = drawn(waving(figure), count, SIZE, DARK, processes=0)
+        next(pictures)
+        pictures.close()
+        assert bool(figure.levels) == made

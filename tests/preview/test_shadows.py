@@ -71,7 +71,7 @@ def frame_of(scene: Scene, camera: Camera, offscreen: Offscreen) -> Frame:
     matrix = camera.projection(1.0) @ camera.view()
     parts = boxes(actors, offscreen.renderer.store.palettes)
     meshes = [a.figure.mesh for a in actors]
-    return Frame(scene, actors, [0], camera, SIZE, NOON, matrix, scene.bounds(), meshes, parts, {})
+    return Frame(scene, actors, [0], camera, SIZE, NOON, matrix, scene.bounds(), meshes, parts, [])
 
 
 def test_near_by_an_edge_has_no_saw_teeth(offscreen, monkeypatch):
@@ -84,17 +84,26 @@ def test_near_by_an_edge_has_no_saw_teeth(offscreen, monkeypatch):
     assert steps(picture[edge]) < 0.5 * steps(toothed[edge])
 
 
-def test_what_is_seen_near_by_has_a_map_of_its_own_and_what_is_far_has_not(offscreen):
+def test_the_map_near_by_is_of_what_is_seen_alone(offscreen):
     axes = np.stack(np.eye(3)[[0, 2, 1]] * [[1], [1], [-1]])
-    scene, texels = shelf(), 200.0
-    close, far = (frame_of(scene, c, offscreen) for c in (near(), replace(near(), distance=8.0)))
-    assert shadows._window(far, axes, texels) is None
-    window = shadows._window(close, axes, texels)
-    assert window is not None
-    low, high = window
-    assert (high - low < 2.6).all() and (low < [-0.13, -0.20]).all() and (high > [-0.13, -0.20]).all()
-    away = frame_of(scene, replace(near(), target=(9.0, 0.9, 9.0)), offscreen)
-    assert shadows._window(away, axes, texels) is None, "nothing of it is in the picture"
+    close, far = (frame_of(shelf(), c, offscreen) for c in (near(), replace(near(), distance=8.0)))
+    pixels, low, high = shadows._window(close, axes)
+    assert pixels > 10 * shadows._window(far, axes)[0] > 0
+    assert (high - low < 0.6).all() and (low < [-0.13, -0.20]).all() and (high > [-0.13, -0.20]).all()
+    away = frame_of(shelf(), replace(near(), target=(9.0, 0.9, 9.0)), offscreen)
+    assert shadows._window(away, axes)[0] == 0, "nothing of it is in the picture"
+
+
+@pytest.mark.parametrize("distance", [0.6, 1.5, 2.2, 5.0])
+def test_whichever_map_is_used_shadows_lie_where_they_did(offscreen, monkeypatch, distance):
+    camera = replace(near(), distance=distance)
+    seen = offscreen.render(shelf(), camera, NOON, SIZE).astype(int)
+    assert (seen.min(-1) < 220).mean() > 0.001
+    monkeypatch.setattr(shadows, "SMALL", 0.0)
+    for limit in (1e9, 0.0):
+        monkeypatch.setattr(shadows, "NEAR", limit)
+        other = offscreen.render(shelf(), camera, NOON, SIZE).astype(int)
+        assert (np.abs(seen - other).max(-1) > 24).mean() < 0.03
 
 
 def test_a_window_keeps_its_size_while_a_body_sways_a_little(offscreen):
@@ -102,9 +111,8 @@ def test_a_window_keeps_its_size_while_a_body_sways_a_little(offscreen):
     sizes = set()
     for x in np.linspace(0, 0.004, 5):
         frame = frame_of(shelf(), replace(near(), target=(-0.13 + x, 0.9, -0.2)), offscreen)
-        window = shadows._window(frame, axes, 200.0)
-        assert window is not None
-        sizes.add(tuple((window[1] - window[0]).round(9)))
+        _, low, high = shadows._window(frame, axes)
+        sizes.add(tuple((high - low).round(9)))
     assert len(sizes) == 1
 
 
@@ -133,4 +141,4 @@ def test_who_stands_behind_the_eye_or_round_it_is_no_trouble(offscreen, mannequi
         picture = offscreen.render(Scene((ahead, behind)), camera, NOON, SIZE)
         assert picture.shape == (*SIZE, 4)
     away = frame_of(Scene((behind,)), Camera((0.0, 1.4, 0.0), 0.0, 0.0, 0.5), offscreen)
-    assert shadows._window(away, np.stack(np.eye(3)), 200.0) is None
+    assert shadows._window(away, np.stack(np.eye(3)))[0] == 0
