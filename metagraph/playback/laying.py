@@ -31,7 +31,7 @@ REST = np.dtype(
 _TIMES = ("start", "end", "entry", "blend_in", "blend_out", "extent", "tempo", "held", "hold", "rate")
 CUE = np.dtype([(n, "f8") for n in _TIMES] + [("clip", "i8"), ("mask", "i8")])
 
-LANES = 16  # joints in a block
+LANES = 16  # joints in a block; numba does not see it change: save crowd_kernels.py anew, too
 ROWS = 1024  # of a table that begins
 
 # Of a layer, for several plans: rests `[R]` and when they begin to fade in, cues `[C]` and when they start,
