@@ -149,7 +149,7 @@ class ExportDialog(QDialog):
                 groups[target.group] = QTreeWidgetItem(out, [tr_told(target.group)])
                 groups[target.group].setFlags(Qt.ItemFlag.ItemIsEnabled)
                 groups[target.group].setForeground(0, self.palette().placeholderText())
-            item = QTreeWidgetItem(groups[target.group], [target.title])
+            item = QTreeWidgetItem(groups[target.group], [tr_told(target.title)])
             item.setData(0, NAME, target.name)
         out.expandAll()
         out.setItemsExpandable(False)
@@ -244,7 +244,7 @@ class ExportDialog(QDialog):
         self.folder.setText(self.chosen.folders.get(target.name) or self._usual(target.name))
         whole = size(project)
         played = (target.name == registry.DEFAULT) or target.group == registry.target(registry.DEFAULT).group
-        self.title.setText(target.title)
+        self.title.setText(tr_told(target.title))
         joints = len(project.skeleton) if project.skeleton else 0
         self.words.setText(
             tr(
@@ -266,13 +266,14 @@ class ExportDialog(QDialog):
         )
         nothing = tr("<p>Nothing else is lost.</p>") if self.differences else tr("<p>Nothing is lost.</p>")
         lost = (
-            f"<p><b>What it loses</b></p><ul style='margin-left:-20px'>{''.join(rows)}</ul>"
+            f"<p><b>{tr('What it loses')}</b></p><ul style='margin-left:-20px'>{''.join(rows)}</ul>"
             if rows
             else nothing
         )
         told = "".join(f"<li>{escape(tr_told(words))}</li>" for words in self.differences)
         differs = (
-            f"<p><b>How it differs from what was drawn</b></p><ul style='margin-left:-20px'>{told}</ul>"
+            f"<p><b>{tr('How it differs from what was drawn')}</b></p>"
+            f"<ul style='margin-left:-20px'>{told}</ul>"
             if told
             else ""
         )

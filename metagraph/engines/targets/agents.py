@@ -192,7 +192,7 @@ _ALONE = told("written by its documentation; the system was not at hand to run i
 TARGETS = (
     ExportTarget(
         "bml",
-        "BML blocks",
+        told("BML blocks"),
         told("a block for each kept performance and each line, and the vocabulary they may use"),
         write_blocks,
         (
@@ -209,7 +209,7 @@ TARGETS = (
     ),
     ExportTarget(
         "smartbody",
-        "SmartBody gesture map",
+        told("SmartBody gesture map"),
         told("a Python script that maps lexemes to animations, and a BVH for each"),
         write_smartbody,
         (

@@ -29,7 +29,7 @@ def write(order: ExportOrder) -> Made:
 TARGETS = (
     ExportTarget(
         "blender",
-        "Blender add-on",
+        told("Blender add-on"),
         told(
             "JSON and GLB, and the add-on that reads them, labels actions, sends them back "
             "and follows a session"

@@ -102,7 +102,7 @@ TARGETS = (
     ),
     ExportTarget(
         "godot",
-        "Godot 4 add-on",
+        told("Godot 4 add-on"),
         told("JSON and GLB, and in addons/metagraph/ the runtime in GDScript"),
         _with("godot", "."),
         (BML,),
@@ -110,7 +110,7 @@ TARGETS = (
     ),
     ExportTarget(
         "unity",
-        "Unity package",
+        told("Unity package"),
         told("JSON and GLB, and in Metagraph/ the runtime in C#"),
         _with("unity", "Metagraph"),
         (BML,),
@@ -129,7 +129,7 @@ TARGETS = (
     ),
     ExportTarget(
         "unreal",
-        "Unreal 5 plugin",
+        told("Unreal 5 plugin"),
         told("JSON and GLB, and in Plugins/Metagraph/ a plugin with the runtime in C++"),
         _plugin,
         (BML,),

@@ -217,7 +217,7 @@ def _grounded(pose: Pose, skeleton: Skeleton, roles: Mapping[str, int]) -> Pose:
 TARGETS = (
     ExportTarget(
         "vrm",
-        "VRM 1.0 avatar",
+        told("VRM 1.0 avatar"),
         told("a VRM: the character in a T, its bones, expressions and licence, clips as animations"),
         _write,
         (

@@ -70,7 +70,7 @@ def write(order: ExportOrder) -> Made:
 TARGETS = (
     ExportTarget(
         "web",
-        "Web page",
+        told("Web page"),
         told(
             "a folder for any static server: a page, the character as an element for any other, JSON and GLB"
         ),
