@@ -75,7 +75,7 @@ def main() -> None:
         f"{'figure':10} {'people':>6} {'size':>10} {'draw median':>12} {'quickest':>9} {'cpu':>7} "
         f"{'with read':>10}  ms"
     )
-    for size in ((960, 540), (1280, 720)):
+    for size in ((960, 540), (550, 778), (1280, 720)):
         with Offscreen(*size) as offscreen:
             for name, figure in figures.items():
                 for count in (1, 10, 100):
