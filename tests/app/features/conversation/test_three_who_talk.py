@@ -71,7 +71,7 @@ def test_each_has_a_lane_a_name_and_a_plan_of_its_own(drive: Any) -> None:
     places = lanes(view.width(), view.height(), 3)
     assert view.minimumHeight() <= view.height() and places[2].whole.bottom() <= view.height()
     drive.wait(lambda: "Ann, Ben and Cleo" in panel.title.words)
-    assert not faults(panel)
+    drive.wait(lambda: not faults(panel))  # once its parts have found their places
     for side in (2, 1, 0):
         drive.click((view, QPoint(30, round(places[side].wave.top()) + 6)))
         assert drive.session.onstage.side == side
