@@ -170,7 +170,9 @@ class Renderer:
                     u_shade=SHADE,
                 )
                 if frame.light is not None:
-                    set_uniforms(program, u_light=frame.light, u_spread=self._shadows.spread)
+                    shadows = self._shadows
+                    set_uniforms(program, u_light=frame.light, u_spread=shadows.spread)
+                    set_uniforms(program, u_off=shadows.off(frame.light))
                 if rods is not None:
                     starts, ends = rods.placed(self.store.palettes[i][0])
                     set_uniforms(program, u_rod_starts=starts, u_rod_ends=ends)

@@ -83,6 +83,7 @@ _SHADOW = """
 uniform sampler2DShadow u_shadow;
 uniform mat4 u_light;
 uniform vec2 u_spread;  // of the map
+uniform float u_off;  // metres, before the surface
 float tap(vec3 p) { return textureLod(u_shadow, p, 0.0); }
 // Two taps, each the mean of four texels: enough for an edge a few pixels wide.
 float lit(vec3 world, float bias) {
@@ -312,7 +313,7 @@ void main() {
     float away = 1.0 - clamp(dot(n, v), 0.0, 1.0);
     float light = clamp(facing * 0.86 + 0.14, 0.0, 1.0);  // the terminator is soft, as on skin
 #ifdef SHADOWED
-    light *= mix(1.0, lit(v_world + n * 0.010, 0.0025), u_shade);
+    light *= mix(1.0, lit(v_world + n * u_off, 0.0025), u_shade);
 #endif
     float up = n.y * 0.5 + 0.5;
     vec3 fill = mix(u_below, u_above, up) * (1.0 - 0.25 * away);

@@ -25,6 +25,7 @@ SHADOW_SIZE = (1024, 1024), (416, 208)
 SMALL, NEAR = 2.0, 3.0
 # Texels from the middle of the two places of the map that are looked at, likewise.
 TAPS = (1.6, 0.9), (0.8, 0.45)
+OFF_LEAST, OFF_TEXELS = 0.010, 1.6  # metres, texels: how far before a surface its shadow is looked up
 CAST_OFF = 0.004  # of the height, that what throws a shadow may be off
 STEPS = 8  # sizes of the map near by for each doubling: else its texels would creep over a body that moves
 SOFT_SIZE = 128, 56  # texels of the ground's shadow, along the light and across
@@ -78,6 +79,13 @@ class Shadows:
     def spread(self) -> tuple[float, float]:
         """How far apart its texels are looked at, of its size."""
         return self._taps[0] / self._used.size, self._taps[1] / self._used.size
+
+    def off(self, light: Array) -> float:
+        """Return how far before a surface its shadow is looked up, metres: what a texel of the map covers of
+        a slope must not shade it. light: as `cast` returned it.
+        """
+        texel = 1 / (float(np.linalg.norm(light[:2, :3], axis=1).min()) * self._used.size)
+        return max(OFF_LEAST, OFF_TEXELS * texel)
 
     def cast(self, frame: Frame) -> Array:
         """Draw depth as the lamp sees it, if it sees another; return the matrix from the world to the shadow

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from metagraph.motion.character_mesh import Material, Surface
+from metagraph.motion.character_mesh import Character, Material, Surface
 from preview import shadows
 from preview.camera import Camera
 from preview.figure import SkinnedFigure
@@ -142,3 +142,27 @@ def test_who_stands_behind_the_eye_or_round_it_is_no_trouble(offscreen, mannequi
         assert picture.shape == (*SIZE, 4)
     away = frame_of(Scene((behind,)), Camera((0.0, 1.4, 0.0), 0.0, 0.0, 0.5), offscreen)
     assert shadows._window(away, np.stack(np.eye(3)))[0] == 0
+
+
+def test_in_small_pictures_a_body_does_not_shade_itself_in_stripes(
+    mannequin: Character, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A texel of the small map covers more of a slope than what a surface is kept away by at least."""
+    figure = SkinnedFigure(mannequin)
+    posed = mannequin.skeleton.globals(mannequin.skeleton.rest)
+    scene = Scene((Actor(figure, *(values[None] for values in posed)),))
+    camera = Camera().frame(scene.bounds(), 1.0)
+
+    def unevenness(offscreen: Offscreen) -> float:
+        lit = offscreen.render(scene, camera)[..., :3].astype(float)
+        bare = offscreen.render(replace(scene, shadow=False), camera)[..., :3].astype(float)
+        d = (lit - bare).mean(-1)[:200]  # without the ground
+        bent = 4 * d[1:-1, 1:-1] - d[2:, 1:-1] - d[:-2, 1:-1] - d[1:-1, 2:] - d[1:-1, :-2]
+        return float(np.abs(bent).mean())
+
+    with Offscreen(332, 332) as offscreen:
+        if not offscreen.renderer.software:
+            pytest.skip("a graphics card's map is fine enough at any size")
+        kept = unevenness(offscreen)
+        monkeypatch.setattr(shadows, "OFF_TEXELS", 0.0)
+        assert kept < 0.6 * unevenness(offscreen)
