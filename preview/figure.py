@@ -93,6 +93,16 @@ class Figure:
         below, above = self._slack
         return np.minimum(box[0] + below, box[1]), np.maximum(box[1] - above, box[0])
 
+    def posed_bounds(self, rotations: Array, positions: Array) -> tuple[Array, Array]:
+        """Return the same where rotations `[..., J, 4]` are known, too, as they turn the mesh: what a
+        hand holds reaches where no ball about the hand's joint tells.
+        """
+        matrix, corners = self.boxes
+        moved = self.palette(rotations, positions)[..., matrix, :, :].astype(float)
+        points = (corners @ moved[..., :3].swapaxes(-1, -2) + moved[..., None, :, 3]).reshape(-1, 3)
+        points = points[np.isfinite(points).all(1)]
+        return (points.min(0), points.max(0)) if len(points) else self.bounds(positions)
+
     def _balls(self, positions: Array) -> tuple[Array, Array] | None:
         """Return the box round balls about the joints, None when no position is a number."""
         joints, radii = self._reach

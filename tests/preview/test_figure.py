@@ -148,6 +148,39 @@ def test_bounds_hold_all_poses_and_ignore_what_is_not_a_number():
     assert high[0] > 5 and low[0] < 0 and np.isfinite([low, high]).all()
 
 
+def test_posed_bounds_hold_the_mesh_however_it_is_turned_and_little_more():
+    """A rod in the left hand, as long as the character is tall, straight out ahead at rest."""
+    skeleton = mannequin_skeleton()
+    hand = skeleton.index("LeftHand")
+    _, rest = skeleton.globals(skeleton.rest)
+    tip = rest[hand] + [0, 0, 1.7]
+    count = len(skeleton)
+    rod = {
+        "positions": np.stack([rest[hand] + [0, 0.02, 0], rest[hand], tip]),
+        "normals": np.tile([0.0, 1, 0], (3, 1)),
+        "uvs": np.zeros((3, 2)),
+        "joints": np.tile([hand, 0, 0, 0], (3, 1)),
+        "weights": np.tile([1.0, 0, 0, 0], (3, 1)),
+        "triangles": np.array([[0, 1, 2]]),
+    }
+    figure = SkinnedFigure(character(skeleton, **rod))
+    for axis in np.eye(3):
+        rotations = skeleton.rest_rotations.copy()
+        rotations[hand] = rotation.from_axis_angle(axis, np.pi / 2)
+        rotations[0] = rotation.from_axis_angle(np.roll(axis, 1), np.pi / 2)
+        posed = skeleton.globals(Pose(rotations, skeleton.rest_translations))
+        palette = figure.palette(*posed)
+        vertex = figure.mesh.vertices
+        points = np.array(
+            [moved(palette, v["bones"][np.argmax(v["weights"])], v["position"]) for v in vertex]
+        )
+        low, high = figure.posed_bounds(*posed)
+        assert (low <= points.min(0)).all() and (high >= points.max(0)).all()
+        assert (high - low <= np.ptp(points, axis=0) + 0.2 * figure.height).all()
+    nowhere = np.full((count, 3), np.nan)
+    assert np.isfinite(figure.posed_bounds(skeleton.rest_rotations, nowhere)).all()
+
+
 def test_the_head_is_found_above_its_joint():
     skeleton = mannequin_skeleton()
     rotations, positions = skeleton.globals(skeleton.rest)
