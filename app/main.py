@@ -31,8 +31,10 @@ def prepare() -> QApplication:
         return found
     from app import translation
     from app.memory import frugal
+    from preview.early_driver import load_soon
 
     frugal()
+    load_soon()
     # Planning and checking run on threads; the window's own must get its turn well within a frame.
     sys.setswitchinterval(0.001)
     surface = QSurfaceFormat()
