@@ -185,8 +185,7 @@ class Store:
         wanted = np.asarray(weights, np.float32) if fits else np.zeros(len(mesh.morphs), np.float32)
         loaded = self._meshes[mesh]
         if wanted.tobytes() != (loaded.morphs or bytes(wanted.nbytes)):  # on change only
-            active = np.flatnonzero(np.abs(wanted) > 1e-5)
-            moved = mesh.vertices["position"] + np.tensordot(wanted[active], mesh.morphs[active], 1)
+            moved = mesh.morphs.positions(mesh.vertices["position"], wanted)
             loaded.positions.write(np.ascontiguousarray(moved[loaded.order], "<f4").tobytes())
             loaded.morphs = wanted.tobytes()
 

@@ -47,7 +47,7 @@ class Fewer:
             Batch(int(end - count), int(count), b.image, b.double_sided)
             for b, end, count in zip(mesh.batches, ends, self.counts, strict=True)
         ]
-        morphs = None if mesh.morphs is None else mesh.morphs[:, self.used]
+        morphs = None if mesh.morphs is None else mesh.morphs.of(self.used)
         return Mesh(mesh.vertices[self.used], self.triangles, tuple(batches), mesh.matrices, morphs)
 
 
