@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from importlib import import_module
@@ -12,23 +13,28 @@ from PySide6.QtCore import QCoreApplication, QLibraryInfo, QSettings, Qt, QTrans
 from PySide6.QtGui import QSurfaceFormat
 from PySide6.QtWidgets import QApplication
 
-from app.memory import frugal
-from app.quick_imports import without_search
+from app.quick_imports import without_search, without_typing_extensions
+from metagraph.uncollected import uncollected
 
 without_search()
+without_typing_extensions()
 
 if TYPE_CHECKING:
     from app.shell.window import Window
 
 
+@uncollected()
 def prepare() -> QApplication:
     """Return the application, its OpenGL format set; made once."""
     found = QApplication.instance()
     if isinstance(found, QApplication):
         return found
     from app import translation
+    from app.memory import frugal
+    from preview.early_driver import load_soon
 
     frugal()
+    load_soon()
     # Planning and checking run on threads; the window's own must get its turn well within a frame.
     sys.setswitchinterval(0.001)
     surface = QSurfaceFormat()
@@ -51,6 +57,7 @@ def prepare() -> QApplication:
     return app
 
 
+@uncollected()
 def make_window() -> Window:
     """Return a window with all features, not shown yet."""
     from app.features import FEATURES
@@ -64,6 +71,7 @@ def open_window(path: Path | None, sample: bool = False, clip: str | None = None
     from app.project.files import SAMPLE
 
     window = make_window()
+    gc.freeze()  # what was imported and made stays: nobody looks for circles in it again
     window.show()
     files = window.shell.files
     if clip is not None:

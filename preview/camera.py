@@ -8,11 +8,13 @@ float64.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from metagraph.records import dataclass
 
 Array = NDArray[Any]
 

@@ -16,7 +16,7 @@ from metagraph.motion.character_mesh import Character, Material, followers
 from metagraph.motion.skeleton import Skeleton
 from preview import joints as rules
 from preview.levels import Level, levels_of
-from preview.mesh import VERTEX, Batch, Mesh, ball, capsule, egg, pieces
+from preview.mesh import VERTEX, Batch, Mesh, Morphs, ball, capsule, egg, pieces
 from preview.occlusion import Rods, main_matrices, rods
 
 Array = NDArray[Any]
@@ -371,11 +371,11 @@ def _character_mesh(character: Character) -> Mesh:
         batches.append(Batch(start, first - start, image, double_sided))
     if not batches:
         return Mesh(np.zeros(0, VERTEX), np.zeros((0, 3), np.uint32), (), len(character.skeleton))
-    morphs = (
-        None
-        if character.morph_positions is None
-        else np.asarray(character.morph_positions, np.float32)[:, np.concatenate(origins)]
-    )
+    morphs = None
+    if character.morph_positions is not None:
+        offsets, origin = character.morph_positions, np.concatenate(origins)
+        moved = np.flatnonzero((offsets != 0).any((0, 2))[origin])
+        morphs = Morphs(moved, np.take(offsets, origin[moved], 1).astype(np.float32, copy=False))
     return Mesh(
         np.concatenate(vertices),
         np.concatenate(triangles).astype(np.uint32),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import lru_cache
 from typing import Any
 
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from metagraph.budgets import PICTURE_PIXELS
 from metagraph.pictures import picture_size
+from metagraph.records import dataclass
 from preview.mesh import VERTEX, Mesh, arranged
 from preview.occlusion import Rods
 from preview.scene import Actor
@@ -184,8 +185,7 @@ class Store:
         wanted = np.asarray(weights, np.float32) if fits else np.zeros(len(mesh.morphs), np.float32)
         loaded = self._meshes[mesh]
         if wanted.tobytes() != (loaded.morphs or bytes(wanted.nbytes)):  # on change only
-            active = np.flatnonzero(np.abs(wanted) > 1e-5)
-            moved = mesh.vertices["position"] + np.tensordot(wanted[active], mesh.morphs[active], 1)
+            moved = mesh.morphs.positions(mesh.vertices["position"], wanted)
             loaded.positions.write(np.ascontiguousarray(moved[loaded.order], "<f4").tobytes())
             loaded.morphs = wanted.tobytes()
 

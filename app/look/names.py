@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from app.look.plural import parts, short
 from metagraph.graph.model import KINDS, Action, Kind, Layer, Limb, MetaGraph, Project
+from metagraph.records import dataclass
 
 _TAKE = re.compile(r"[\s.#(-]*\d+\)?$")  # the number of a take, at a name's end
 _SIDES: Mapping[str, tuple[Limb, str]] = {

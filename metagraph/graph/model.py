@@ -6,7 +6,7 @@ Ids are made once from the project's counter and never change; names are free te
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any
@@ -24,6 +24,7 @@ from metagraph.motion.contact_spans import ContactSpan
 from metagraph.motion.joint_map import JointMap
 from metagraph.motion.retime import Retime
 from metagraph.motion.skeleton import Skeleton
+from metagraph.records import dataclass
 
 __all__ = [
     "KINDS",

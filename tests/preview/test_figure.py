@@ -206,9 +206,15 @@ def test_weights_that_do_not_add_up_are_mended_and_materials_of_one_texture_are_
 
 def test_morphs_follow_vertices_into_the_mesh():
     skeleton = chain("a", "b", "c")
-    made = character(skeleton, morphs=("smile",), morph_positions=np.arange(9.0).reshape(1, 3, 3))
-    assert SkinnedFigure(made).mesh.morphs is not None
-    assert np.allclose(SkinnedFigure(made).mesh.morphs, made.morph_positions)
+    offsets = np.arange(9.0).reshape(1, 3, 3)
+    offsets[:, 1] = 0
+    mesh = SkinnedFigure(character(skeleton, morphs=("smile",), morph_positions=offsets)).mesh
+    assert mesh.morphs is not None and len(mesh.morphs) == 1
+    assert list(mesh.morphs.moved) == [0, 2], "what stays is not held"
+    assert np.array_equal(mesh.morphs.offsets, offsets[:, [0, 2]])
+    rest = mesh.vertices["position"]
+    assert np.allclose(mesh.morphs.positions(rest, np.array([0.5])), rest + 0.5 * offsets[0])
+    assert np.array_equal(mesh.morphs.positions(rest, np.zeros(1)), rest)
 
 
 def test_shapes_are_closed_and_face_outwards():
