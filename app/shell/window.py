@@ -151,7 +151,7 @@ class Window(QMainWindow):
 
     def _wire(self) -> None:
         d, s, shell = self.shell.document, self.shell.stage.session, self.shell
-        d.state_changed.connect(self.refresh)
+        d.state_changed.connect(self._follow)
         d.loaded.connect(shell.notice.clear)
         shell.watcher.file_touched.connect(shell.files.look_at_file)
         shell.files.noticed.connect(shell.notice.tell)
@@ -169,7 +169,7 @@ class Window(QMainWindow):
             shell.compatibility.changed,
             self.workspaces.changed,
         ):
-            signal.connect(self.refresh)
+            signal.connect(self._follow)
         s.look.changed.connect(self.restyle)
         for words in (
             d.failed, shell.learned.failed, shell.stage.refused, shell.files.told, shell.importing.told,
@@ -226,8 +226,16 @@ class Window(QMainWindow):
 
     def refresh(self) -> None:
         """Show the state of document and session in title, header and menus."""
-        document = self.shell.document
+        self.shell.actions.refresh()
+        self._show_title()
+
+    def _follow(self) -> None:
+        """Show it, the commands once for all that changes in one go."""
         self.shell.actions.refresh_soon()
+        self._show_title()
+
+    def _show_title(self) -> None:
+        document = self.shell.document
         read_only = tr(" (read-only)") if document.read_only else ""
         self.setWindowTitle(f"{document.project.name}{'[*]'}{read_only} - Metagraph")
         if self.isWindowModified() != document.dirty:  # Qt tells all of the window each time
