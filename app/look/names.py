@@ -5,12 +5,14 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
 from typing import Any
 
 from app.look.plural import parts, short
 from metagraph.graph.model import KINDS, Action, Kind, Layer, Limb, MetaGraph, Project
 from metagraph.records import dataclass
 
+MANY = 1 << 14  # names that are remembered, with what is made of them: after each edit all are asked for
 _TAKE = re.compile(r"[\s.#(-]*\d+\)?$")  # the number of a take, at a name's end
 _SIDES: Mapping[str, tuple[Limb, str]] = {
     **dict.fromkeys(("left", "l", "lf", "lft"), ("left", "L")),
@@ -30,9 +32,14 @@ def plain(name: str, stance: str = "", limb: Limb | None = None) -> str:
     return " ".join(w for w in words if w) or name
 
 
+@lru_cache(maxsize=MANY)
+def _without_take(name: str) -> str:
+    return _TAKE.sub("", name).strip() or name
+
+
 def apart(names: Sequence[str]) -> list[str]:
     """Return names that stand together without the numbers of their takes, where they differ without."""
-    bare = [_TAKE.sub("", name).strip() or name for name in names]
+    bare = [_without_take(name) for name in names]
     count = Counter(bare)
     return [short_ if count[short_] == 1 else name for name, short_ in zip(names, bare, strict=True)]
 
@@ -53,10 +60,13 @@ def _shared(project: Project, action: Action) -> int:
     return min(alike, min(map(len, names)) - 1) if len(names) > 1 else 0
 
 
-def _without(name: str, stance: str, shared: int) -> str:
-    """Return a name without its stance's in front, or else without the words that all on the stance share."""
+@lru_cache(maxsize=MANY)
+def _row_name(name: str, stance: str, shared: int, limb: Limb | None) -> str:
+    """Return a name as it is read without its stance's in front, or else without the words that all on the
+    stance share.
+    """
     out = short(name, stance)
-    return name[parts(name)[shared][1] :] if out == name and shared > 0 else out
+    return plain(name[parts(name)[shared][1] :] if out == name and shared > 0 else out, "", limb)
 
 
 def row_names(project: Project, actions: Iterable[Action]) -> dict[str, str]:
@@ -64,12 +74,14 @@ def row_names(project: Project, actions: Iterable[Action]) -> dict[str, str]:
     some = tuple(actions)
     told: list[str] = []
     shared = _shared(project, some[0]) if some else 0
+    called = {s.id: s.name for graph in project.graphs.values() for s in graph.stances.values()}
     for action in some:
-        stance, end = project.stance(action.stance), project.stance(action.end_stance)
-        limb = action.limb if action.layer == "arms" else None
-        name = _without(action.name, stance.name, shared) if stance is not None else action.name
-        name = plain(name, "", limb)
+        limb, stance = action.limb if action.layer == "arms" else None, called.get(action.stance)
+        name = (
+            plain(action.name, "", limb) if stance is None else _row_name(action.name, stance, shared, limb)
+        )
         if action.kind == "transition":
+            end = project.stance(action.end_stance)
             name = end.name if end is not None else f"?  {name}"
         told.append(name)
     if any(a.kind == "transition" for a in some):  # several ways to one stance go by their own names

@@ -77,8 +77,8 @@ class Document(QObject):
     """changed: (before, after) projects. loaded: comes first when `after` is another project, not an edited
     one.
 
-    state_changed: path, dirty mark or undo texts may differ. saved: it was written. failed: words for the
-    user.
+    state_changed: comes after `changed`, too: path, dirty mark or undo texts may differ. saved: it was
+    written. failed: words for the user.
 
     common: the project as its file was when it was read or saved last, None where that is not known; digest:
     of that file, SHA-256. lock: of the file, while this window has it. read_only: another window has it, so
@@ -150,6 +150,7 @@ class Document(QObject):
             before, self.project = self.project, after
             self.common = after if self.common is before else self.common
             self.changed.emit(before, after)
+            self.state_changed.emit()
 
     def _set(self, project: Project, text: str, how: How) -> None:
         if self._restored is not None:  # a step of before a crash

@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QMenu, QMenuBar, QWidget
 from app import faults
 from app.shell.mnemonics import distinct
 from app.translation import tr, tr_noop
+from app.widgets.soon import Soon
 from metagraph.records import dataclass
 
 Standard = QKeySequence.StandardKey
@@ -79,7 +80,8 @@ def _run(command: Command) -> None:
 
 
 class Actions:
-    """The window's QActions by command id. `refresh` enables and checks them as things are now.
+    """The window's QActions by command id. `refresh` enables and checks them as things are now;
+    `refresh_soon` does so once for all changes that come in one go, or when somebody asks for one of them.
 
     allowed: which commands may be used at all; None for every one. mode: what is edited now.
     """
@@ -89,9 +91,10 @@ class Actions:
         self._by_menu = [tuple(group) for _, group in groupby(self.commands, lambda command: command.menu)]
         self.allowed: Callable[[Command], bool] | None = None
         self._mode = mode
-        self.by_id: dict[str, QAction] = {}
+        self._soon = Soon(self.refresh, parent)
+        self._made: dict[str, QAction] = {}
         for command in self.commands:
-            if command.id in self.by_id:
+            if command.id in self._made:
                 raise ValueError(f"two commands are called {command.id!r}")
             action = QAction(command.words, parent)
             action.setObjectName(command.id)
@@ -111,17 +114,23 @@ class Actions:
                 action.setMenu(menu)
             action.triggered.connect(lambda _=False, c=command: _run(c))
             parent.addAction(action)
-            self.by_id[command.id] = action
+            self._made[command.id] = action
+
+    @property
+    def by_id(self) -> dict[str, QAction]:
+        """All of them, as things are now."""
+        self.settle()
+        return self._made
 
     def __getitem__(self, ident: str) -> QAction:
         return self.by_id[ident]
 
     def __contains__(self, ident: str) -> bool:
-        return ident in self.by_id
+        return ident in self._made
 
     def of_menu(self, name: str) -> list[QAction]:
         """Return the actions that go into a context menu, in the menus' order."""
-        return [self.by_id[c.id] for c in self.commands if name in c.menus]
+        return [self._made[c.id] for c in self.commands if name in c.menus]
 
     def fill(self, bar: QMenuBar) -> dict[str, QMenu]:
         """Make the menus."""
@@ -135,16 +144,25 @@ class Actions:
             elif command.group != group:
                 menus[command.menu].addSeparator()
             group = command.group
-            menus[command.menu].addAction(self.by_id[command.id])
+            menus[command.menu].addAction(self._made[command.id])
         for menu in menus.values():
             menu.aboutToShow.connect(self.refresh)  # panels have buttons for some of it, too
         return menus
 
+    def settle(self) -> None:
+        """Show every command as it is now, where that is still to be done."""
+        self._soon.now()
+
+    def refresh_soon(self) -> None:
+        """Show every command as it is once what changes it is over."""
+        self._soon.ask()
+
     def refresh(self) -> None:
         """Show every command as it is now."""
+        self._soon.done()
         mode = self._mode()
         for command in self.commands:
-            action = self.by_id[command.id]
+            action = self._made[command.id]
             allowed = (self.allowed is None or self.allowed(command)) and command.when in ("any", mode)
             action.setEnabled(allowed and (command.enabled is None or command.enabled()))
             if command.checked is not None:
@@ -153,7 +171,7 @@ class Actions:
                 action.setVisible(command.visible())
         for commands in self._by_menu:
             for command, text in zip(commands, distinct(tuple(c.words for c in commands)), strict=True):
-                self.by_id[command.id].setText(text)
+                self._made[command.id].setText(text)
 
 
 def _in_order(commands: tuple[Command, ...]) -> tuple[Command, ...]:

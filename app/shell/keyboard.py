@@ -38,8 +38,9 @@ class Keyboard(QObject):
         window.installEventFilter(self)
 
     def _moved(self, old: QWidget | None, new: QWidget | None) -> None:
-        if self._watched is not None and isValid(self._watched):
-            self._watched.removeEventFilter(self)
+        left = self._watched
+        if left is not None and left is not self.window and isValid(left):  # the window is watched all along
+            left.removeEventFilter(self)
         self._watched = None
         if new is None:
             return
@@ -60,6 +61,8 @@ class Keyboard(QObject):
         return at is not None
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if watched is self.window and event.type() == QEvent.Type.ShortcutOverride:
+            self.actions.settle()  # a key may come in one go with what makes its command one that can be used
         if watched is self._watched and event.type() == QEvent.Type.ShortcutOverride:
             return isinstance(event, QKeyEvent) and self._ours(event)
         if watched is self.window and isinstance(event, QKeyEvent) and event.type() == QEvent.Type.KeyPress:

@@ -35,7 +35,6 @@ from app.stage.compatibility_state import Compatibility
 from app.stage.problem_watch import ProblemWatch
 from app.stage.stage import Stage
 from app.translation import tr
-from metagraph.graph.model import Project
 
 LATE = 4000  # milliseconds after which the late panels are made whatever else is going on
 
@@ -151,8 +150,7 @@ class Window(QMainWindow):
 
     def _wire(self) -> None:
         d, s, shell = self.shell.document, self.shell.stage.session, self.shell
-        d.changed.connect(self._edited)
-        d.state_changed.connect(self.refresh)
+        d.state_changed.connect(self._follow)
         d.loaded.connect(shell.notice.clear)
         shell.watcher.file_touched.connect(shell.files.look_at_file)
         shell.files.noticed.connect(shell.notice.tell)
@@ -170,7 +168,7 @@ class Window(QMainWindow):
             shell.compatibility.changed,
             self.workspaces.changed,
         ):
-            signal.connect(self.refresh)
+            signal.connect(self._follow)
         s.look.changed.connect(self.restyle)
         for words in (
             d.failed, shell.learned.failed, shell.stage.refused, shell.files.told, shell.importing.told,
@@ -227,20 +225,21 @@ class Window(QMainWindow):
 
     def refresh(self) -> None:
         """Show the state of document and session in title, header and menus."""
-        document = self.shell.document
         self.shell.actions.refresh()
+        self._show_title()
+
+    def _follow(self) -> None:
+        """Show it, the commands once for all that changes in one go."""
+        self.shell.actions.refresh_soon()
+        self._show_title()
+
+    def _show_title(self) -> None:
+        document = self.shell.document
         read_only = tr(" (read-only)") if document.read_only else ""
         self.setWindowTitle(f"{document.project.name}{'[*]'}{read_only} - Metagraph")
-        self.setWindowModified(document.dirty)
+        if self.isWindowModified() != document.dirty:  # Qt tells all of the window each time
+            self.setWindowModified(document.dirty)
         self.header.refresh()
-
-    def _edited(self, before: Project, after: Project) -> None:
-        if (
-            before.graphs is not after.graphs
-            or before.name != after.name
-            or before.character != after.character
-        ):
-            self.refresh()
 
     # --- the window itself
 

@@ -103,8 +103,13 @@ class Seconds(DoubleSpinBox):
         self.editingFinished.connect(lambda: self.lineEdit().setModified(False))
 
     def show_value(self, value: Any) -> None:
+        """Show what the project says, `Mixed` for many values, in the place of whatever is being typed."""
+        shown = self.minimum() if value is Mixed else float(value)
+        same = self.value() == round(shown, self.decimals())
+        if same and not self.lineEdit().isModified():
+            return  # even the same would be painted again
         self.blockSignals(True)
-        self.setValue(self.minimum() if value is Mixed else float(value))
+        self.setValue(shown)
         self.blockSignals(False)
 
     def stepBy(self, steps: int) -> None:

@@ -14,8 +14,11 @@ import os
 import threading
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from itertools import compress
+from operator import is_not
 from pathlib import Path
 from typing import Any, Literal
+from weakref import ref
 
 import msgspec
 
@@ -49,7 +52,23 @@ How = Literal["done", "merged", "undone", "redone"]
 
 
 def changes(before: Project, after: Project) -> Data:
-    """Return what differs, as plain data: small for a small edit, however large the project."""
+    """Return what differs, as plain data: small for a small edit, however large the project. It is asked for
+    more than once of each edit, and is not to be changed.
+    """
+    known = _latest[0]
+    if known is not None and known[0]() is before and known[1]() is after:
+        return known[2]
+    found = _differing(before, after)
+    _latest[0] = ref(before), ref(after), found
+    return found
+
+
+# Of the edit that was asked about last: whether it can be saved, then what is written of it. In one piece, as
+# other threads ask, too.
+_latest: list[tuple[ref[Project], ref[Project], Data] | None] = [None]
+
+
+def _differing(before: Project, after: Project) -> Data:
     out: Data = {}
     for key in ("name", "character", "next_id", "base", "settings", "roles", "parts"):
         if getattr(before, key) is not getattr(after, key) and getattr(before, key) != getattr(after, key):
@@ -129,11 +148,20 @@ def _keyed(
     """
     if before is after:
         return
-    part: Data = {i: data(v) for i, v in after.items() if before.get(i) is not v and before.get(i) != v}
+    order, was = list(after), list(before)
+    both = min(len(order), len(was))
+    if order[:both] == was[:both]:  # as with nearly all edits; ten thousand are compared at once
+        differ = compress(after.items(), map(is_not, before.values(), after.values()))
+        part: Data = {i: data(v) for i, v in differ if before[i] != v}
+        part.update((i, data(after[i])) for i in order[both:])
+        part.update(dict.fromkeys(was[both:]))
+        if part:
+            out[key] = part
+        return
+    part = {i: data(v) for i, v in after.items() if before.get(i) is not v and before.get(i) != v}
     part.update(dict.fromkeys(i for i in before if i not in after))
     if part:
         out[key] = part
-    order = list(after)
     kept = [i for i in before if i in after]
     if [i for i in order if i in before] != kept:
         out[f"{key}_order"] = order

@@ -5,6 +5,7 @@ Ids are made once from the project's counter and never change; names are free te
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import field, replace
 from functools import cached_property
@@ -165,21 +166,25 @@ class MetaGraph:
         arriving = (a for a in self.actions.values() if a.kind == "transition" and a.end_stance is not None)
         return _grouped(arriving, lambda a: a.end_stance)
 
+    @cached_property
+    def touched(self) -> Mapping[str, int]:
+        """Joint -> how many contacts of actions are with it."""
+        return Counter(span.to for action in self.actions.values() for span in action.contacts)
+
     def but(self, **changes: Any) -> MetaGraph:
         """Return the graph with fields other than its actions replaced, keeping what was derived from the
         actions.
         """
         out = replace(self, **changes)
-        out.__dict__.update(
-            {name: self.__dict__[name] for name in ("index", "uses", "into") if name in self.__dict__}
-        )
+        derived = ("index", "uses", "into", "touched")
+        out.__dict__.update({name: self.__dict__[name] for name in derived if name in self.__dict__})
         return out
 
     def with_actions(self, changes: Mapping[str, Action | None]) -> MetaGraph:
         """Return the graph with actions added, replaced (in place) or, for None, removed.
 
-        Index and uses are patched rather than rebuilt, so that an edit costs the same in a graph of ten
-        thousand.
+        Index, uses and touched are patched rather than rebuilt, so that an edit costs the same in a graph of
+        ten thousand.
         """
         actions = dict(self.actions)
         for ident, action in changes.items():
@@ -191,6 +196,8 @@ class MetaGraph:
         out.__dict__["index"] = _patched(self.index, self.actions, actions, changes, _node)
         if "uses" in self.__dict__:
             out.__dict__["uses"] = _patched(self.uses, self.actions, actions, changes, _clip)
+        if "touched" in self.__dict__:
+            out.__dict__["touched"] = _touched(self.touched, self.actions, changes)
         return out
 
 
@@ -200,6 +207,18 @@ def _node(action: Action) -> tuple[str, Kind]:
 
 def _clip(action: Action) -> str:
     return action.clip
+
+
+def _touched(
+    counts: Mapping[str, int], before: Mapping[str, Action], changes: Mapping[str, Action | None]
+) -> Mapping[str, int]:
+    """Return how many contacts are with each joint after changes."""
+    out = Counter(counts)
+    for ident, new in changes.items():
+        old = before.get(ident)
+        out.subtract(span.to for span in (old.contacts if old is not None else ()))
+        out.update(span.to for span in (new.contacts if new is not None else ()))
+    return +out
 
 
 def _grouped(actions: Iterable[Action], key: Callable[[Action], Any]) -> Mapping[Any, tuple[Action, ...]]:
@@ -458,7 +477,7 @@ class Project:
     @cached_property
     def touched(self) -> frozenset[str]:
         """The names of the joints that contacts of actions are with."""
-        return frozenset(span.to for action in self.actions() for span in action.contacts)
+        return frozenset(joint for layer in LAYERS for joint in self.graphs[layer].touched)
 
     def state(self, ident: str | None) -> State | None:
         """Return the state of a manual machine of that id, whatever its layer."""

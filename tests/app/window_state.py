@@ -33,6 +33,7 @@ PLAIN = (bool, int, float, str, bytes, Path, Enum, type(None))
 PASSING = frozenset(
     """common frames owner painted pictures seconds sounds _beat _bodies _by_keys _came _clips _counted _curves
     _dialogs _era _guests _journal _known _last _layout _marks _matrices _missing _named _paths _places
+    _drawn _waiting _colors _owns
     _held _listed _moved
     _plan_seconds _played _read _rest _rows _skinned _sticks _still _voices _watched layout_of""".split()  # noqa: SIM905 - thirty quotes more to read
 )
@@ -42,6 +43,7 @@ def state_of(window: Any) -> dict[str, str]:
     """Return by where it stands in the window everything that a test could have changed, in words."""
     out: dict[str, str] = {}
     seen: set[int] = set()
+    window.shell.actions.settle()
     for place, part in _parts(window, "window"):
         seen.add(id(part))
         if isinstance(part, QWidget):

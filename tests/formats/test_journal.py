@@ -71,6 +71,15 @@ def test_the_same_project_has_no_changes() -> None:
     assert changes(project, replace(project, clips=dict(project.clips))) == {}
 
 
+def test_what_differs_is_the_same_however_often_and_between_whatever_it_is_asked() -> None:
+    first = large(3)
+    second = edits.add_stance(first, "body", "standing")
+    assert changes(first, second) == changes(first, second) != {}
+    back = changes(second, first)
+    assert back["layers"]["body"]["stances"] == {next(iter(second.graphs["body"].stances)): None}
+    assert changes(first, first) == {}
+
+
 @pytest.mark.parametrize(
     "edit",
     [

@@ -11,6 +11,9 @@ from hypothesis import strategies as st
 
 from metagraph.graph import edits
 from metagraph.graph.model import KINDS, LAYERS, PARTS, REACH, Action, ClipEntry, MetaGraph, Project, Timing
+from metagraph.motion.contact_spans import ContactKey, ContactSpan
+
+KEY = ContactKey(0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 
 
 def fresh(graph: MetaGraph) -> MetaGraph:
@@ -24,6 +27,7 @@ def assert_derived_as_if_anew(project: Project) -> None:
         assert dict(graph.index) == dict(fresh(graph).index)
         assert dict(graph.uses) == dict(fresh(graph).uses)
         assert dict(graph.into) == dict(fresh(graph).into)
+        assert dict(graph.touched) == dict(fresh(graph).touched)
         assert all(bucket for bucket in graph.index.values()), "no empty buckets"
 
 
@@ -102,6 +106,7 @@ def steps(draw: st.DrawFn) -> list[tuple[Any, ...]]:
         ),
         st.tuples(st.just("remove"), st.lists(pick, max_size=4)),
         st.tuples(st.just("update"), st.lists(pick, max_size=4), st.floats(0.1, 5)),
+        st.tuples(st.just("touch"), st.lists(pick, max_size=4), st.lists(st.sampled_from("abc"), max_size=3)),
         st.tuples(st.just("reclip"), pick, pick),
         st.tuples(st.just("stance"), st.sampled_from(LAYERS), pick),
         st.tuples(st.just("drop stance"), pick),
@@ -134,6 +139,9 @@ def apply(project: Project, step: tuple[Any, ...]) -> Project:
         return edits.remove_actions(project, [some(actions, n) for n in rest[0]])
     if word == "update":
         return edits.update_actions(project, [some(actions, n) for n in rest[0]], likelihood=rest[1])
+    if word == "touch":
+        spans = tuple(ContactSpan("left", "palm", to, 0.0, 1.0, (KEY,)) for to in rest[1])
+        return edits.update_actions(project, [some(actions, n) for n in rest[0]], contacts=spans)
     if word == "reclip":
         return edits.update_actions(project, [some(actions, rest[0])], clip=some(clips, rest[1]))
     if word == "stance":
@@ -151,7 +159,7 @@ def test_after_any_edits_the_index_is_what_building_it_anew_gives_and_old_projec
     project = PROJECT
     history = [project]
     for layer in LAYERS:
-        _ = project.graphs[layer].index, project.graphs[layer].uses
+        _ = project.graphs[layer].index, project.graphs[layer].uses, project.graphs[layer].touched
     for step in steps:
         try:
             after = apply(project, step)

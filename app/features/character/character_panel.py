@@ -64,6 +64,7 @@ class PreviewPanel(QWidget):
         self._framed: tuple[object, ...] = ()  # whom the camera was last framed on
         self.composed = Scene()  # what was drawn last
         self._last: tuple[Figure, np.ndarray, np.ndarray] | None = None
+        self._marks: dict[int, tuple[float, float, float]] = {}  # of joints, as drawn last
         self.view = make_view(self._scene, self)
         self.view.frame_wanted.connect(self.frame_all)
         self.view.setToolTip(MOUSE)
@@ -229,6 +230,7 @@ class PreviewPanel(QWidget):
                 self._last = (figure, rotations, positions)
             morphs = figure.morph_weights(one.morphs(seconds)) if figure.morphs else None
             marks = mask_marks(self.performance, self.session) if one is shown else {}
+            self._marks = marks if one is shown else self._marks
             actors.append(Actor(figure, rotations, positions, morphs, marks, self.bones))
             if one is shown:
                 actors += self.overlays.made(figure, seconds)
@@ -393,7 +395,9 @@ class PreviewPanel(QWidget):
             self.base.say(tr("Base pose: {name}, frame {frame}", name=plain(entry.name), frame=base.frame))
         if after.skeleton is None:
             self._tell_mesh()
-        self.view.update()
+        # What plays follows when it is planned anew; the marks of a mask are the project's own.
+        if before.skeleton is not after.skeleton or mask_marks(self.performance, self.session) != self._marks:
+            self.view.update()
 
 
 def _why(instead: str) -> str:

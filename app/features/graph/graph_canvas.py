@@ -41,7 +41,8 @@ from app.features.graph.graph_layout import (
 from app.features.graph.graph_look import NOWHERE, GraphLook
 from app.features.graph.graph_menus import ends_menu, menu_of
 from app.features.graph.graph_painter import paint
-from app.features.graph.graph_pictures import Beat, pictures_of
+from app.features.graph.graph_parts import Parts, parts_of, stale
+from app.features.graph.graph_pictures import Beat, Pictures, pictures_of
 from app.features.graph.graph_words import sentence, tip
 from app.look.theme import theme
 from app.project.document import Document
@@ -52,6 +53,7 @@ from app.translation import tr
 from app.widgets.gesture import Hand
 from app.widgets.memo import Once
 from app.widgets.mime import load_of
+from app.widgets.soon import Soon
 from metagraph.graph.model import Kind, Project
 
 KEYS = tr(
@@ -93,6 +95,8 @@ class Canvas(QWidget):
         self._layout: Layout | None = None
         self._counted: Once[str] = Once()  # the sentence about the graphs
         self._played: frozenset[str] = frozenset()  # as last drawn
+        self._drawn: Parts = {}  # as last painted
+        self._soon = Soon(self._refresh, self)
         self.setMouseTracking(True)
         self.setAcceptDrops(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
@@ -110,7 +114,7 @@ class Canvas(QWidget):
         session.selection.changed.connect(self._selected)
         session.look.changed.connect(self.update)
         thumbnails.ready.connect(lambda _: self.update())
-        performance.changed.connect(self.update)
+        performance.changed.connect(self._soon.ask)
 
     # --- layout and painting
 
@@ -129,6 +133,16 @@ class Canvas(QWidget):
         self._layout = None
         self.update()
 
+    def _refresh(self) -> None:
+        """Let what is drawn otherwise than it was painted be painted again."""
+        if not self.isVisible():
+            return  # when it is shown, all of it is painted
+        region = stale(self._drawn, parts_of(self.layout_now(), self._look(Pictures())))
+        if region is None:
+            self.update()
+        elif not region.isEmpty():
+            self.update(region)
+
     def resizeEvent(self, event: object) -> None:
         self.setMinimumHeight(int(least_height(self.width())))
         self._stale()
@@ -136,37 +150,36 @@ class Canvas(QWidget):
 
     def paintEvent(self, event: QPaintEvent) -> None:
         begun = time.perf_counter()
-        project, layout = self.document.project, self.layout_now()
-        graph = project.graphs[self.session.place.layer]
-        pictures = pictures_of(self.thumbnails, layout, graph, self._beat.count)
+        layout, graph = self.layout_now(), self.document.project.graphs[self.session.place.layer]
+        look = self._look(pictures_of(self.thumbnails, layout, graph, self._beat.count))
         painter = QPainter(self)
-        paint(
-            painter,
-            layout,
-            GraphLook(
-                theme=theme(self.session.look.name),
-                project=project,
-                selected=self.session.selection.actions,
-                fresh=self.fresh,
-                hover=self.hover.hit,
-                focus=self.focus if self.hasFocus() else None,
-                playing=self._playing(),
-                misfits=self.misfits,
-                picture=pictures.hero,
-                chip_pictures=pictures.chips,
-                row_pictures=pictures.rows,
-                other=self.session.place.other(),
-                drop=self._drop,
-                drop_hit=self._drop_hit,
-                drop_at=self._drop_at,
-                arrow=self._arrow,
-                sentence=self._sentence(),
-            ),
-            self.font(),
-            event.region(),
-        )
+        paint(painter, layout, look, self.font(), event.region())
         painter.end()
+        # Whatever else is drawn otherwise has asked to be painted, too.
+        self._drawn = parts_of(layout, look)
         self._beat.drawn(time.perf_counter() - begun)
+
+    def _look(self, pictures: Pictures) -> GraphLook:
+        """Return what is drawn besides the layout."""
+        return GraphLook(
+            theme=theme(self.session.look.name),
+            project=self.document.project,
+            selected=self.session.selection.actions,
+            fresh=self.fresh,
+            hover=self.hover.hit,
+            focus=self.focus if self.hasFocus() else None,
+            playing=self._playing(),
+            misfits=self.misfits,
+            picture=pictures.hero,
+            chip_pictures=pictures.chips,
+            row_pictures=pictures.rows,
+            other=self.session.place.other(),
+            drop=self._drop,
+            drop_hit=self._drop_hit,
+            drop_at=self._drop_at,
+            arrow=self._arrow,
+            sentence=self._sentence(),
+        )
 
     def _sentence(self) -> str:
         """What a drop outside the nodes would do, else how large the machine is."""
@@ -203,16 +216,21 @@ class Canvas(QWidget):
     def set_misfits(self, misfits: dict[str, str]) -> None:
         """Mark actions whose ends do not fit; action id -> words."""
         self.misfits = misfits
-        self.update()
+        self._soon.ask()
 
     def _selected(self) -> None:
         """Bring what was selected elsewhere in sight, too."""
         if len(self.session.selection.actions) == 1:
             self._scroll_to(self.session.selection.actions[0])
-        self.update()
+        self._soon.ask()
 
     def _edited(self, before: Project, after: Project) -> None:
-        self._stale() if before.graphs is not after.graphs else self.update()
+        if before.graphs is not after.graphs:
+            self._layout = None
+        if before.clips is not after.clips:  # pictures may be others
+            self.update()
+        else:
+            self._soon.ask()
 
     def _moved_on(self) -> None:
         self.first_rows.clear()

@@ -19,7 +19,7 @@ def paint(
     """
 
     def wanted(rect: QRectF) -> bool:
-        return stale is None or stale.intersects(rect.toAlignedRect().adjusted(-2, -2, 2, 2))
+        return stale is None or stale.intersects(rect.toAlignedRect().adjusted(-4, -4, 4, 4))
 
     painter.setRenderHints(QPainter.RenderHint.Antialiasing | QPainter.RenderHint.SmoothPixmapTransform)
     painter.fillRect(QRectF(QPointF(0, 0), layout.size), QColor(look.theme.ground))
@@ -32,7 +32,7 @@ def paint(
         draw_card(painter, layout, look, font)
     for node in layout.nodes.values():
         if wanted(node.rect):
-            draw_node(painter, node, layout, look, font)
+            draw_node(painter, node, layout, look, font, wanted)
     if not layout.foot.isEmpty():
         painter.setFont(font)
         painter.setPen(QColor(look.theme.dim))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
 
@@ -20,7 +22,15 @@ TEACH = {
 }
 
 
-def draw_node(painter: QPainter, node: Node, layout: Layout, look: GraphLook, font: QFont) -> None:
+def draw_node(
+    painter: QPainter,
+    node: Node,
+    layout: Layout,
+    look: GraphLook,
+    font: QFont,
+    wanted: Callable[[QRectF], bool] = lambda _: True,
+) -> None:
+    """Draw a node. wanted: whether a part of the canvas is to be drawn at all."""
     t = look.theme
     target = (
         look.drop is not None
@@ -47,7 +57,8 @@ def draw_node(painter: QPainter, node: Node, layout: Layout, look: GraphLook, fo
         _other(painter, node, look, font)
     beside = tuple(row.words for other in layout.nodes.values() for row in other.rows)
     for row in node.rows:
-        _row(painter, row, node.kind, look, font, beside)
+        if wanted(row.rect):
+            _row(painter, row, node.kind, look, font, beside)
     if node.most > 0:
         track = QRectF(node.rect.right() - 6, node.body.top(), 3, node.body.height())
         share = len(node.rows) / max(1, node.count)

@@ -35,6 +35,7 @@ from app.translation import tr
 from app.widgets.choice_row import LimbRow
 from app.widgets.form_fields import MIXED, Chooser, Field, Mixed, Seconds, common
 from app.widgets.making import make_widget
+from app.widgets.restyling import set_sheet
 from metagraph.graph import manual_edits
 from metagraph.graph.manual import Link, State
 from metagraph.graph.model import LIMBS, Project
@@ -246,7 +247,7 @@ class Inspector(QScrollArea):
     def _trouble(self, label: QLabel, idents: list[str]) -> None:
         words = [self.canvas.troubles[i] for i in idents if i in self.canvas.troubles]
         label.setText(words[0] if words else "")
-        label.setStyleSheet(f"color: {theme(self.session.look.name).warning}")
+        set_sheet(label, f"color: {theme(self.session.look.name).warning}")
 
     def _show_machine(self) -> None:
         manual = self.canvas.scene().manual

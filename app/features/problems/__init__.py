@@ -12,6 +12,7 @@ from app.shell.context import Contribution, HeaderItem, Panel, Shell
 from app.stage.compatibility_state import Compatibility
 from app.stage.problem_watch import ProblemWatch
 from app.translation import tr
+from app.widgets.restyling import set_sheet
 
 
 def contribute(shell: Shell) -> Contribution:
@@ -68,4 +69,4 @@ class ProblemButton(QToolButton):
             many(len(grave), "problem") if grave else many(hints, "hint") if hints else tr("No problems")
         )
         self.setIcon(icons.icon("warning", color))
-        self.setStyleSheet(f"color: {color}")
+        set_sheet(self, f"color: {color}")

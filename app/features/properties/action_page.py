@@ -28,6 +28,7 @@ from app.widgets.choice_row import LimbRow
 from app.widgets.form_fields import MIXED, Chooser, Field, Mixed, Seconds, common
 from app.widgets.halves import Halves
 from app.widgets.making import make_widget
+from app.widgets.restyling import set_sheet
 from app.widgets.vocabulary import titled
 from metagraph.graph import edits
 from metagraph.graph.model import LIMBS, Action
@@ -137,7 +138,7 @@ class ActionPage(Halves):
         self.name.show_text(actions[0].name if one else many(len(actions), "action"), of)
         title = f"{KIND_MARKS[kind]} {tr(KIND_TITLES[kind])}" if kind is not Mixed else tr("Mixed kinds")
         self.kind.setText(f"{title} · {titled(layer) if layer is not Mixed else tr('layers')}")
-        self.kind.setStyleSheet(f"color: {t.kinds[kind]}" if kind is not Mixed else "")
+        set_sheet(self.kind, f"color: {t.kinds[kind]}" if kind is not Mixed else "")
         self.plot.setVisible(one)
         self.plot.set_curves(not self.low)
         self.timing.setVisible(one and self.low and not self.timing_elsewhere())
@@ -159,9 +160,9 @@ class ActionPage(Halves):
         self.leave.blockSignals(True)
         self.leave.setTristate(leaves is Mixed)
         state = Qt.CheckState
-        self.leave.setCheckState(
-            state.PartiallyChecked if leaves is Mixed else state.Checked if leaves else state.Unchecked
-        )
+        checked = state.PartiallyChecked if leaves is Mixed else state.Checked if leaves else state.Unchecked
+        if self.leave.checkState() != checked:
+            self.leave.setCheckState(checked)
         self.leave.blockSignals(False)
         self.earliest.setEnabled(exits is not None)
         self.earliest.show_value(0.0 if exits is None else exits)
@@ -188,7 +189,7 @@ class ActionPage(Halves):
         chosen = self.session.selection.actions
         wrong = self.misfits.get(chosen[0], "") if len(chosen) == 1 else ""
         self.trouble.setText(wrong)
-        self.trouble.setStyleSheet(f"color: {theme(self.session.look.name).warning}")
+        set_sheet(self.trouble, f"color: {theme(self.session.look.name).warning}")
         self.trouble.setVisible(bool(wrong))
 
     def _fill_stances(self, actions: Sequence[Action], kind: Any) -> None:

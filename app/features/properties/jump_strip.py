@@ -79,6 +79,9 @@ class JumpStrip(pg.PlotWidget):
         """Show an action's curves, or nothing."""
         self.seen, self.subject = seen, (project, action)
         if seen is None:
+            if self._drawn is None:
+                return
+            self._drawn = None
             for item in (self.bad, self.good):
                 item.setData([], [])
             self.marks.setData([], [])
@@ -86,7 +89,11 @@ class JumpStrip(pg.PlotWidget):
             for edge in self.edges:
                 edge.hide()
             return
-        curve = np.minimum(seen.curve(), TOP)
+        curve, p, span = np.minimum(seen.curve(), TOP), seen.proposed, project.span(action)
+        drawn = (seen.loops, p.start, p.end, *span, curve.tobytes(), seen.times.tobytes())
+        if drawn == self._drawn:
+            return  # as after most edits; it would all be painted again
+        self._drawn = drawn
         above = curve > 1
         self.good.setData(seen.times, np.where(above, np.nan, curve))
         wide = above.copy()  # the dotted part touches the plain one
@@ -95,12 +102,11 @@ class JumpStrip(pg.PlotWidget):
         self.bad.setData(seen.times, np.where(wide, curve, np.nan))
         spans = seen.spans()
         self.bars.setOpts(x0=[a for a, _ in spans], x1=[b for _, b in spans])
-        p = seen.proposed
         spots: list[dict[str, Any]] = [{"pos": (p.end, BAR * 2), "symbol": "t3"}]
         if not seen.loops:
             spots.append({"pos": (p.start, BAR * 2), "symbol": "t2"})
         self.marks.setData(spots)
-        for edge, value in zip(self.edges, project.span(action), strict=True):
+        for edge, value in zip(self.edges, span, strict=True):
             edge.setVisible(True)
             edge.setValue(value)
         shows = seen.times[above]  # its words stand beneath what it is about, clear of the ends
@@ -109,6 +115,7 @@ class JumpStrip(pg.PlotWidget):
         self._put_words()
 
     _look: tuple[str, QColor] | None = None
+    _drawn: tuple[object, ...] | None = None  # all that the curves and marks are of
     _shows = 0.0  # seconds, the middle of what its words are about
 
     def _put_words(self) -> None:

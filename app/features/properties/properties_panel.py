@@ -16,7 +16,7 @@ from app.project.document import Document
 from app.stage.session import Session
 from app.translation import tr_error
 from metagraph.graph import edits
-from metagraph.graph.model import Project
+from metagraph.graph.model import Action, Project
 
 LOW = 240  # pixels of height below which the curves of a timing leave no room for anything else
 
@@ -38,13 +38,10 @@ class PropertiesPanel(QScrollArea):
             self.pages.addWidget(page)
         self.setWidget(self.pages)
         document.changed.connect(self._edited)
-        for signal in (
-            session.selection.changed,
-            session.place.layer_changed,
-            session.look.changed,
-            session.place.stance_changed,
-        ):
+        for signal in (session.selection.changed, session.look.changed):
             signal.connect(self.show_selection)
+        for signal in (session.place.layer_changed, session.place.stance_changed):
+            signal.connect(self._moved_on)
         self.show_selection()
 
     # --- its size
@@ -77,7 +74,16 @@ class PropertiesPanel(QScrollArea):
 
     # --- showing
 
+    def _moved_on(self) -> None:
+        """Another layer or stance is looked at: that shows where nothing is selected."""
+        chosen = self.session.selection
+        if not chosen.selected_actions() and not chosen.clips:
+            self.show_selection()
+
     def _edited(self, before: Project, after: Project) -> None:
+        chosen = self.session.selection.selected_actions()
+        if chosen and all(_untouched(before, after, action) for action in chosen):
+            return
         if (
             before.graphs is not after.graphs
             or before.clips is not after.clips
@@ -116,3 +122,23 @@ class PropertiesPanel(QScrollArea):
             self.show_selection()
             return False
         return True
+
+
+def _untouched(before: Project, after: Project, action: Action) -> bool:
+    """Whether an edit left an action as it was, and all else that its page tells of it: its clip, the names
+    of stances and the loops it begins and ends in.
+    """
+    parts = ("clips", "skeleton", "base", "roles", "parts", "settings")
+    if any(getattr(before, part) is not getattr(after, part) for part in parts):
+        return False
+    was, now = before.graphs[action.layer], after.graphs[action.layer]
+    return was is now or (
+        was.actions.get(action.id) is action
+        and was.stances is now.stances
+        and was.weights is now.weights
+        and all(
+            was.of(stance, "stance") is now.of(stance, "stance")
+            for stance in (action.stance, action.end_stance)
+            if stance is not None
+        )
+    )

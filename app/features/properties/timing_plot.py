@@ -25,6 +25,7 @@ from app.project.document import Document
 from app.stage.compatibility_state import Compatibility, proposed_fields
 from app.stage.session import Session
 from app.translation import tr
+from app.widgets.restyling import set_sheet
 from metagraph.graph.model import Action, Project
 from metagraph.motion.clip import Clip
 from metagraph.playback.speed_curves import speed_of
@@ -75,7 +76,7 @@ class TimingPlot(QWidget):
         self.plot.addItem(self.hold)
         self.bands = [pg.TextItem(word, anchor=(0.5, 0.0)) for word in BANDS]
         for band in self.bands:
-            band.span = 0.0, 0.0
+            band.span = None
             self.plot.addItem(band, ignoreBounds=True)
         self.lines: dict[str, pg.InfiniteLine] = {}
         for name in HANDLES:
@@ -153,7 +154,7 @@ class TimingPlot(QWidget):
         far = far_ends(project, action)
         self.verdict.setText(verdict(costs, far))
         fine = max(costs.values()) <= 1 and not far
-        self.verdict.setStyleSheet(f"color: {t.dim if fine else t.warning}")
+        set_sheet(self.verdict, f"color: {t.dim if fine else t.warning}")
         self.use.setToolTip(tr("{times}: it {reason}", times=times_words(seen), reason=seen.proposed.reason))
 
     def _proposed(self) -> dict[str, Any]:
@@ -203,68 +204,81 @@ class TimingPlot(QWidget):
             self.plot.setXRange(-0.02 * entry.duration, max(entry.duration, 0.1) * 1.02, padding=0)
             self.plot.setYRange(0, max(0.2, float(speeds.max()) * 1.15 if len(speeds) else 1.0), padding=0)
             self.plot.setToolTip(tr("{words}, m/s. Drag the lines; a click moves the playhead.", words=words))
-            self.strip.show_seen(project, action, None)
-            self.verdict.setText("")
-        self.curve.setPen(pg.mkPen(color, width=2))
+            if project.action(action.id) is None:
+                self.strip.show_seen(project, action, None)
+                self.verdict.setText("")
+        if self._colors != (t.name, action.kind):
+            self.curve.setPen(pg.mkPen(color, width=2))
         self.strip.restyle(t, t.fill(action.kind))
         self._place(project, action, t, color)
         self._show_seen()
 
     def _place(self, project: Project, action: Action, t: Theme, color: QColor) -> None:
+        """Put lines and shades where the action's times are. What stays as it is is not touched: whatever is
+        lets all of the plot be painted again.
+        """
         self._setting = True
         at = times_of(project, action)
+        self._color(action, t, color)
         for name, line in self.lines.items():
             value = at[name]
             loop = action.kind == "stance"
             line.setVisible(value is not None and not (loop and name in ("out", "exit", "stroke")))
             if value is not None:
                 line.setValue(value)
-            strong = name in ("start", "end")
-            style = Qt.PenStyle.SolidLine if strong else Qt.PenStyle.DashLine
-            line.setPen(pg.mkPen(t.text if strong else color, width=2 if strong else 1.4, style=style))
-            line.setHoverPen(pg.mkPen(t.text, width=3))
-            if name in PHASES:
-                own = {
-                    "ready": action.timing.ready,
-                    "hold": action.timing.stroke_end,
-                    "relax": action.timing.relax,
-                }[name]
-                line.setPen(pg.mkPen(t.dim if own is None else t.text, width=1.2, style=Qt.PenStyle.DotLine))
-            else:
-                line.label.setColor(t.dim)
-        self._bands(t, at)
+        self._bands(at)
         self._line_up()
-        fill = QColor(color)
-        fill.setAlpha(46)
         for blend, (a, b) in zip(self.blends, ((at["start"], at["in"]), (at["out"], at["end"])), strict=True):
             blend.setRegion((a, b))
-            blend.setBrush(fill)
-            for line in blend.lines:
-                line.setPen(pg.mkPen(None))
         self.blends[1].setVisible(action.kind != "stance")
         self._setting = False
 
-    def _bands(self, t: Theme, at: dict[str, float | None]) -> None:
-        """Name the phases along the top, and shade the hold."""
+    _colors: tuple[str, str] = ("", "")  # theme and kind they are of
+    _owns: tuple[object, ...] = ()  # and which phases are the action's own
+
+    def _color(self, action: Action, t: Theme, color: QColor) -> None:
+        """Give lines and shades their colours, where others are wanted than they have."""
+        timing = action.timing
+        own = dict(zip(PHASES, (timing.ready, timing.stroke_end, timing.relax), strict=True))
+        owns = (t.name, *(value is None for value in own.values()))
+        if owns != self._owns:
+            self._owns = owns
+            for name, value in own.items():
+                pen = pg.mkPen(t.dim if value is None else t.text, width=1.2, style=Qt.PenStyle.DotLine)
+                self.lines[name].setPen(pen)
+        if (t.name, action.kind) == self._colors:
+            return
+        self._colors = t.name, action.kind
+        for name, line in self.lines.items():
+            line.setHoverPen(pg.mkPen(t.text, width=3))
+            if name in PHASES:
+                continue
+            strong = name in ("start", "end")
+            style = Qt.PenStyle.SolidLine if strong else Qt.PenStyle.DashLine
+            line.setPen(pg.mkPen(t.text if strong else color, width=2 if strong else 1.4, style=style))
+            line.label.setColor(t.dim)
+        for band in self.bands:
+            band.setColor(t.dim)
+        for shade, of, alpha in ((self.hold, t.text, 22), *((blend, color, 46) for blend in self.blends)):
+            fill = QColor(of)
+            fill.setAlpha(alpha)
+            shade.setBrush(fill)
+            for line in shade.lines:
+                line.setPen(pg.mkPen(None))
+
+    def _bands(self, at: dict[str, float | None]) -> None:
+        """Take over where the phases are named along the top, and shade the hold."""
         whole = at["ready"] is not None
         self.hold.setVisible(whole)
         edges = [at[x] for x in ("start", "ready", "hold", "relax", "end")]
         for band, a, b in zip(self.bands, edges, edges[1:], strict=False):
-            band.setVisible(whole)
-            if whole and a is not None and b is not None:
-                band.setColor(t.dim)
-                band.span = a, b
+            band.span = (a, b) if whole and a is not None and b is not None else None
         if whole:
-            fill = QColor(t.text)
-            fill.setAlpha(22)
-            self.hold.setBrush(fill)
             self.hold.setRegion((edges[2], edges[3]))
-            for line in self.hold.lines:
-                line.setPen(pg.mkPen(None))
 
     def _line_up_soon(self) -> None:
         if self.action is not None and self.action.clip in self.document.project.clips:
-            self._bands(theme(self.session.look.name), times_of(self.document.project, self.action))
+            self._bands(times_of(self.document.project, self.action))
             self._line_up()
 
     def _line_up(self) -> None:
@@ -279,7 +293,8 @@ class TimingPlot(QWidget):
         taken: dict[int, list[tuple[float, float]]] = {}
         worded = tall >= WORDED
         for band, word in zip(self.bands, BANDS, strict=True):
-            if not band.isVisible():
+            if band.span is None:
+                band.setVisible(False)
                 continue
             a, b = band.span
             middle, half = ((a + b) / 2 - low) * each, measure.horizontalAdvance(word) / 2 + 3
@@ -303,7 +318,9 @@ class TimingPlot(QWidget):
             line.label.setVisible(row is not None)
             if row is not None:
                 taken.setdefault(row, []).append((left, right))
-                line.label.setPosition(1 - (FIRST + row * LABEL) / tall)
+                place = 1 - (FIRST + row * LABEL) / tall
+                if line.label.orthoPos != place:
+                    line.label.setPosition(place)
 
     def _dragged(self, name: str, seconds: float) -> None:
         if self._setting or self.action is None:

@@ -90,9 +90,13 @@ class ActionRows(QWidget):
         self.cooldown.show_value(common([a.cooldown for a in actions]))
         spacing = common([a.spacing for a in actions])
         self.spacing.blockSignals(True)
-        self.spacing.setMinimum(-2 if spacing is Mixed else AS_THE_GRAPH)
+        least = -2 if spacing is Mixed else AS_THE_GRAPH
+        if self.spacing.minimum() != least:  # which lays the form out anew
+            self.spacing.setMinimum(least)
         self.spacing.setSpecialValueText(MIXED if spacing is Mixed else tr("as usual"))
-        self.spacing.setValue(-2 if spacing is Mixed else AS_THE_GRAPH if spacing is None else spacing)
+        shown = least if spacing is Mixed or spacing is None else spacing
+        if self.spacing.value() != shown or self.spacing.lineEdit().isModified():
+            self.spacing.setValue(shown)
         self.spacing.blockSignals(False)
 
     def _phase(self, field: str, seconds: float) -> None:

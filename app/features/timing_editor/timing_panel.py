@@ -30,6 +30,7 @@ from app.widgets.form_fields import Chooser, Seconds, common
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
 from app.widgets.one_stop import OneStop
+from app.widgets.restyling import set_sheet
 from app.widgets.sentence import Sentence
 from metagraph.graph.edits import EditError
 from metagraph.motion.retime import SPEEDS
@@ -128,8 +129,8 @@ class TimingPanel(QWidget):
             self.name.setText("")
             self.verdict.say("")
             self.name.setToolTip("")
-            self.name.setStyleSheet("")
-            self.verdict.setStyleSheet("")
+            set_sheet(self.name, "")
+            set_sheet(self.verdict, "")
             self.use.setVisible(False)
             for button in (self.onion, self.compare, self.loop):
                 button.setChecked(False)
@@ -138,11 +139,11 @@ class TimingPanel(QWidget):
         cut = name if len(name) <= LONGEST else f"{name[: LONGEST // 2]}…{name[-LONGEST // 2 + 1 :]}"
         self.name.setText(f"{KIND_MARKS[first.action.kind]} {cut}")
         self.name.setToolTip(told_names(name, first.action.name) if len(shown) == 1 else name)
-        self.name.setStyleSheet(f"color: {t.kinds[first.action.kind]}")
+        set_sheet(self.name, f"color: {t.kinds[first.action.kind]}")
         worse = next((f for f in shown.values() if not f.fine), first)
         words = worse.verdict if len(shown) == 1 or worse.fine else f"{worse.name}: {worse.verdict}"
         self.verdict.say(words, strong=not worse.fine)
-        self.verdict.setStyleSheet("" if worse.fine else f"color: {t.warning}")
+        set_sheet(self.verdict, "" if worse.fine else f"color: {t.warning}")
         self.use.setVisible(first.seen is not None)
         self.onion.setChecked(self.subject.shows.onion)
         self.compare.setChecked(self.subject.before is not None)

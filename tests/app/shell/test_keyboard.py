@@ -7,6 +7,8 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QDialog, QLineEdit, QVBoxLayout
 
+from metagraph.graph import edits
+
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 CTRL = Qt.KeyboardModifier.ControlModifier
 
@@ -53,6 +55,16 @@ def test_what_a_field_does_with_its_own_text_stays_the_fields(toys):
     assert field.selectedText() == "a 1 b"
     QTest.keyClick(field, Qt.Key.Key_Z, CTRL)
     assert field.text() != "a 1 b"
+
+
+def test_a_key_that_comes_in_one_go_with_an_edit_can_take_it_back(toys):
+    drive = toys
+    before = drive.document.project
+    drive.window.setFocus()
+    drive.canvas.setFocus()  # the window is listened to still
+    drive.document.edit("Add a stance", lambda p: edits.add_stance(p, "arms", "new"))
+    QTest.keyClick(drive.window, Qt.Key.Key_Z, CTRL)
+    assert drive.document.project is before
 
 
 @pytest.mark.parametrize("modal", [False, True])

@@ -36,6 +36,14 @@ def test_mixed_is_shown_in_words_and_stepping_sets_all(seconds):
     assert told == [0.0]
 
 
+def test_showing_the_same_number_again_takes_back_what_is_being_typed(seconds):
+    seconds.show_value(0.25)
+    seconds.lineEdit().setText("0.9")
+    seconds.lineEdit().setModified(True)
+    seconds.show_value(0.25)
+    assert seconds.text() == "0.25 s"
+
+
 def test_stepping_down_stops_at_nothing_rather_than_at_mixed(seconds):
     seconds.show_value(0.03)
     seconds.stepBy(-1)
