@@ -5,7 +5,6 @@ software.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 import moderngl
@@ -86,6 +85,7 @@ class Renderer:
         width, height = max(1, int(size[0])), max(1, int(size[1]))
         actors = [a for a in scene.actors if drawable(a)]
         self._resize(width, height)
+        self._drawing.begin()
         solid = [a for a in actors if a.opacity >= 1]
         cast = scene.shadow and 0 < sum(a.count for a in solid) <= SHADOW_LIMIT
         crowd = sum(a.count for a in actors) > SHADOW_LIMIT
@@ -98,14 +98,14 @@ class Renderer:
         meshes = [mesh(a) for a in actors]
         casters = shadow_casters(actors) if cast else []
         rows = self._drawing.store.prepare(actors, meshes + casters)
-        matrix = camera.projection(width / height) @ camera.view()
+        matrix = camera.matrix(width / height)
         bounds = Scene(tuple(solid)).bounds()
         round_pieces = boxes(actors, self.store.palettes if actors else ())
         frame = Frame(
             scene, actors, rows, camera, (width, height), theme, matrix, bounds, meshes, round_pieces, casters
         )
         if cast:
-            frame = replace(frame, light=self._shadows.cast(frame))
+            frame.light = self._shadows.cast(frame)
 
         # The ground and the sky need no smoothing and go to the target; figures are drawn apart and laid over
         # them.
