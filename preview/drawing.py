@@ -20,9 +20,9 @@ class Drawing:
     asked for.
     """
 
-    def __init__(self, ctx: moderngl.Context) -> None:
+    def __init__(self, ctx: moderngl.Context, software: bool = False) -> None:
         self.ctx = ctx
-        self.store = Store(ctx)
+        self.store = Store(ctx, software)
         self._programs: dict[str, moderngl.Program] = {}
         self._plain: dict[str, moderngl.VertexArray] = {}
         self._buffers: dict[str, moderngl.Buffer] = {}
@@ -72,7 +72,7 @@ class Drawing:
         flags = moderngl.DEPTH_TEST | (
             moderngl.BLEND if actor.opacity < 1 and kind != "depth" else moderngl.NOTHING
         )
-        for batch in mesh.batches:
+        for batch in mesh.batches if kind == "depth" else loaded.batches:
             if kind != "depth" and (batch.image is not None) != (kind == "textured"):
                 continue
             if not batch.count:

@@ -50,7 +50,7 @@ class Renderer:
         self.software = is_software(ctx)
         self.samples = min((0 if self.software else 4) if samples is None else samples, int(ctx.max_samples))
         self._beside = beside
-        self._drawing: Drawing = Drawing(ctx) if beside is None else beside._drawing
+        self._drawing: Drawing = Drawing(ctx, self.software) if beside is None else beside._drawing
         self._shadows: Shadows = Shadows(self._drawing, self.software) if beside is None else beside._shadows
         self.store = self._drawing.store
         self.occlusion = not self.software  # a tenth of a picture's time where the processor draws
@@ -136,7 +136,8 @@ class Renderer:
             cast = frame.light is not None and actor.opacity >= 1
             rods = actor.figure.rods if self.occlusion and cast and actor.count == 1 else None
             for kind in ("plain", "textured"):
-                if not any((b.image is not None) == (kind == "textured") for b in frame.meshes[i].batches):
+                batches = self._drawing.store[frame.meshes[i]].batches
+                if not any((b.image is not None) == (kind == "textured") for b in batches):
                     continue
                 sunk = frame.floor and float(np.min(actor.positions[..., 1])) < 0
                 flags = (
