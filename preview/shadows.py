@@ -26,7 +26,9 @@ SHADOW_SIZE = (1024, 1024), (416, 208)
 SMALL, NEAR = 2.0, 3.0
 # Texels from the middle of the two places of the map that are looked at, likewise.
 TAPS = (1.6, 0.9), (0.8, 0.45)
-OFF_LEAST, OFF_TEXELS = 0.010, 1.6  # metres, texels: how far before a surface its shadow is looked up
+# Metres, on a graphics card and in software; texels: how far before a surface its shadow is looked up. In
+# software both that and what throws it may be off more.
+OFF_LEAST, OFF_TEXELS = (0.010, 0.013), 1.6
 CAST_OFF = 0.004  # of the height, that what throws a shadow may be off
 STEPS = 8  # sizes of the map near by for each doubling: else its texels would creep over a body that moves
 SOFT_SIZE = 128, 56  # texels of the ground's shadow, along the light and across
@@ -59,6 +61,7 @@ class Shadows:
 
     def __init__(self, drawing: Drawing, software: bool) -> None:
         self._drawing, self._taps, ctx = drawing, TAPS[software], drawing.ctx
+        self._off_least = OFF_LEAST[software]
         size, small = SHADOW_SIZE[software]
         self._whole, self._near, self._low = _Map(ctx, size), _Map(ctx, size), _Map(ctx, small)
         self._used = self._whole
@@ -87,7 +90,7 @@ class Shadows:
         a slope must not shade it. light: as `cast` returned it.
         """
         texel = 1 / (float(np.linalg.norm(light[:2, :3], axis=1).min()) * self._used.size)
-        return max(OFF_LEAST, OFF_TEXELS * texel)
+        return max(self._off_least, OFF_TEXELS * texel)
 
     def cast(self, frame: Frame) -> Array:
         """Draw depth as the lamp sees it, if it sees another; return the matrix from the world to the shadow
@@ -139,7 +142,8 @@ class Shadows:
             set_uniforms(program, u_dark=frame.theme.shadow, u_soft=4)
             self._drawing.bare("cast", program).render(moderngl.TRIANGLE_STRIP, 4)
         program = self._drawing.program("spots", shaders.SPOT_VERTEX, shaders.SPOT)
-        set_uniforms(program, u_matrix=frame.matrix, u_dark=frame.theme.shadow)
+        dark = frame.theme.shadow
+        set_uniforms(program, u_matrix=frame.matrix, u_dark=dark, u_most=max(1e-3, 1 - min(dark)))
         self._drawing.squares("spots", program, np.concatenate([_spots(a) for a in solid]), "4f/i", "in_spot")
         target.scissor = None
 
