@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 from metagraph.budgets import PICTURE_PIXELS
 from metagraph.pictures import picture_size
 from metagraph.records import dataclass
-from preview.mesh import VERTEX, Mesh, arranged
+from preview.mesh import VERTEX, Batch, Mesh, arranged
 from preview.occlusion import Rods
+from preview.paint import painted
 from preview.scene import Actor
 
 Array = NDArray[Any]
@@ -37,9 +38,12 @@ _LAYOUTS = {
 
 @dataclass
 class LoadedMesh:
-    """One mesh's buffers, and a vertex array for each program that draws it. order: the vertices' `[U]`."""
+    """One mesh's buffers, and a vertex array for each program that draws it. order: the vertices' `[U]`.
+    batches: as they are drawn where colours count.
+    """
 
     order: Array
+    batches: tuple[Batch, ...]
     vertices: moderngl.Buffer
     positions: moderngl.Buffer
     indices: moderngl.Buffer
@@ -75,10 +79,12 @@ class LoadedMesh:
 
 
 class Store:
-    """Loads what a frame needs and lets go of what has not been drawn for long."""
+    """Loads what a frame needs and lets go of what has not been drawn for long. software: whether the
+    processor draws, to which textures are dear.
+    """
 
-    def __init__(self, ctx: moderngl.Context) -> None:
-        self._ctx = ctx
+    def __init__(self, ctx: moderngl.Context, software: bool = False) -> None:
+        self._ctx, self._software = ctx, software
         self._meshes: dict[Mesh, LoadedMesh] = {}
         self._images: dict[bytes, moderngl.Texture] = {}  # which a mesh and its levels of detail share
         self.palette = ctx.texture((3, 1), 4, dtype="f4")
@@ -164,14 +170,18 @@ class Store:
         loaded = self._meshes.get(mesh)
         if loaded is None:
             buffer = self._ctx.buffer
-            order, triangles = arranged(mesh)
-            vertices = mesh.vertices[order]
+            drawn, origins = (
+                painted(mesh, decoded) if self._software else (mesh, np.arange(len(mesh.vertices)))
+            )
+            order, triangles = arranged(drawn)
+            vertices = drawn.vertices[order]
             loaded = self._meshes[mesh] = LoadedMesh(
-                order,
+                origins[order],
+                drawn.batches,
                 buffer(vertices.tobytes()),
                 buffer(vertices["position"].tobytes()),
                 buffer(np.ascontiguousarray(triangles, "<u4").tobytes()),
-                {b.image: self._image(b.image) for b in mesh.batches if b.image is not None},
+                {b.image: self._image(b.image) for b in drawn.batches if b.image is not None},
             )
         loaded.idle = 0
 

@@ -5,7 +5,6 @@ software.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 import moderngl
@@ -51,7 +50,7 @@ class Renderer:
         self.software = is_software(ctx)
         self.samples = min((0 if self.software else 4) if samples is None else samples, int(ctx.max_samples))
         self._beside = beside
-        self._drawing: Drawing = Drawing(ctx) if beside is None else beside._drawing
+        self._drawing: Drawing = Drawing(ctx, self.software) if beside is None else beside._drawing
         self._shadows: Shadows = Shadows(self._drawing, self.software) if beside is None else beside._shadows
         self.store = self._drawing.store
         self.occlusion = not self.software  # a tenth of a picture's time where the processor draws
@@ -86,6 +85,7 @@ class Renderer:
         width, height = max(1, int(size[0])), max(1, int(size[1]))
         actors = [a for a in scene.actors if drawable(a)]
         self._resize(width, height)
+        self._drawing.begin()
         solid = [a for a in actors if a.opacity >= 1]
         cast = scene.shadow and 0 < sum(a.count for a in solid) <= SHADOW_LIMIT
         crowd = sum(a.count for a in actors) > SHADOW_LIMIT
@@ -98,14 +98,14 @@ class Renderer:
         meshes = [mesh(a) for a in actors]
         casters = shadow_casters(actors) if cast else []
         rows = self._drawing.store.prepare(actors, meshes + casters)
-        matrix = camera.projection(width / height) @ camera.view()
+        matrix = camera.matrix(width / height)
         bounds = Scene(tuple(solid)).bounds()
         round_pieces = boxes(actors, self.store.palettes if actors else ())
         frame = Frame(
             scene, actors, rows, camera, (width, height), theme, matrix, bounds, meshes, round_pieces, casters
         )
         if cast:
-            frame = replace(frame, light=self._shadows.cast(frame))
+            frame.light = self._shadows.cast(frame)
 
         # The ground and the sky need no smoothing and go to the target; figures are drawn apart and laid over
         # them.
@@ -136,7 +136,8 @@ class Renderer:
             cast = frame.light is not None and actor.opacity >= 1
             rods = actor.figure.rods if self.occlusion and cast and actor.count == 1 else None
             for kind in ("plain", "textured"):
-                if not any((b.image is not None) == (kind == "textured") for b in frame.meshes[i].batches):
+                batches = self._drawing.store[frame.meshes[i]].batches
+                if not any((b.image is not None) == (kind == "textured") for b in batches):
                     continue
                 sunk = frame.floor and float(np.min(actor.positions[..., 1])) < 0
                 flags = (

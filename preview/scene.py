@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -101,10 +102,21 @@ class Theme:
     ink: Color  # the skeleton drawn over a mesh
     toward: Color = (-0.42, 0.80, 0.62)  # where the lamp is, of any length; above the ground
 
-    @property
+    @cached_property
     def to_light(self) -> Array:
-        """The direction of the lamp, a unit vector `[3]`."""
-        return np.asarray(np.array(self.toward) / np.linalg.norm(self.toward))
+        """The direction of the lamp, a unit vector `[3]`, not to be written to."""
+        out = np.asarray(np.array(self.toward) / np.linalg.norm(self.toward))
+        out.flags.writeable = False
+        return out
+
+    @cached_property
+    def lamp(self) -> Array:
+        """The lamp's right, up and forward as rows `[3, 3]`, not to be written to."""
+        side = np.cross([0.0, 1, 0], self.to_light)
+        side /= np.linalg.norm(side)
+        out = np.stack([side, np.cross(self.to_light, side), -self.to_light])
+        out.flags.writeable = False
+        return out
 
 
 DARK = Theme(

@@ -156,12 +156,15 @@ void main() {
 # Soft spots where the body comes near the ground: one square each.
 SPOT_VERTEX = """#version 330 core
 uniform mat4 u_matrix;
+uniform float u_most;  // that a spot of strength 1 takes
 in vec4 in_spot;  // x, z, radius, strength
 out vec2 v_at;
 out float v_strength;
 void main() {
-    v_at = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
     v_strength = in_spot.w;
+    // Farther out a spot takes less than a step of 512 from the ground.
+    float seen = sqrt(1.0 - min(1.0, sqrt(1.0 / (512.0 * u_most * v_strength))));
+    v_at = (vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0) * seen;
     gl_Position = u_matrix * vec4(in_spot.x + v_at.x * in_spot.z, 0.0, in_spot.y + v_at.y * in_spot.z, 1.0);
 }
 """
