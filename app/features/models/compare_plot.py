@@ -22,6 +22,7 @@ from metagraph.playback.compare import SURE, Comparison, quantiles
 from metagraph.playback.learn import State
 
 WIDTH = 0.34  # of a bar; two stand side by side
+TOP = 6.0  # pixels, so that a number at the upper end is whole
 APART = 4.0  # pixels between the words under bars, at least
 
 
@@ -91,6 +92,7 @@ class ComparePlot(QWidget):
         plot.getAxis("left").setWidth(34)
         plot.plotItem.vb.sigResized.connect(self._name_bars)
         plot.setMinimumHeight(96)
+        plot.plotItem.layout.setContentsMargins(0, TOP, 0, 0)
         plot.setYRange(0, 1.08, padding=0.05)  # the uppermost number is whole, too
         plot.scene().sigMouseMoved.connect(lambda at, p=plot: self._hover(p, at))
         return plot
