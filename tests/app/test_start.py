@@ -14,7 +14,9 @@ LATER = ("yaml", "numpy.ma", "soundfile", "app.project.recovering", "metagraph.f
 HEAVY = ("numba", "scipy", "trimesh", "torch", "pyqtgraph", "av", "PIL", "ufbx", "jsonschema")
 START = f"""
 import sys
+from app import main
 from app.main import open_window, prepare
+main.UNSEEN = 30_000  # however busy the machine is
 app = prepare()
 window = open_window(None, sample=True)
 heavy = {HEAVY!r}
