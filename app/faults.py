@@ -12,7 +12,6 @@ import atexit
 import contextlib
 import faulthandler
 import os
-import platform
 import re
 import sys
 import threading
@@ -116,7 +115,8 @@ def report() -> str:
 
 
 def _versions() -> Iterable[str]:
-    from importlib.metadata import PackageNotFoundError, version  # takes a while to import, for a start
+    import platform  # like the next: it takes a while to import, for a start
+    from importlib.metadata import PackageNotFoundError, version
 
     yield f"Metagraph {__version__}"
     system = f"{platform.system()} {platform.release()}, {platform.machine()}"

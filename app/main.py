@@ -5,11 +5,12 @@ from __future__ import annotations
 import gc
 import os
 import sys
+from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QCoreApplication, QLibraryInfo, QSettings, Qt, QTranslator
+from PySide6.QtCore import QCoreApplication, QLibraryInfo, QSettings, Qt, QTimer, QTranslator
 from PySide6.QtGui import QSurfaceFormat
 from PySide6.QtWidgets import QApplication
 
@@ -21,6 +22,8 @@ without_typing_extensions()
 
 if TYPE_CHECKING:
     from app.shell.window import Window
+
+UNSEEN = 500  # milliseconds after which a project is opened though no picture was painted: it may be hidden
 
 
 @uncollected()
@@ -76,13 +79,32 @@ def open_window(path: Path | None, sample: bool = False, clip: str | None = None
     files = window.shell.files
     if clip is not None:
         files.opened.connect(lambda: _select(window, clip), Qt.ConnectionType.SingleShotConnection)
-    if path is not None:
-        files.open(path)
-        files.unsaved.tell()
-    else:
-        files.recover_untitled(lambda: files.open(SAMPLE, template=True) if sample else None)
-    window.load_late_panels_soon()
+
+    def begin() -> None:
+        if path is not None:
+            files.open(path)
+            files.unsaved.tell()
+        else:
+            files.recover_untitled(lambda: files.open(SAMPLE, template=True) if sample else None)
+        window.load_late_panels_soon()
+
+    _once_painted(window, begin)
     return window
+
+
+def _once_painted(window: Window, begin: Callable[[], None]) -> None:
+    """Call once, when the first picture is there: what else would run beside it takes turns with it."""
+    painted = window.shell.stage.painted
+    waiting = [begin]
+
+    def go() -> None:
+        if waiting:
+            waiting.pop()()
+
+    painted.connect(go, Qt.ConnectionType.SingleShotConnection)
+    unseen = QTimer(window, singleShot=True, interval=UNSEEN)
+    unseen.timeout.connect(go)
+    unseen.start()
 
 
 def _select(window: Window, clip: str) -> None:

@@ -9,6 +9,7 @@ msgspec takes two names from typing_extensions where it is installed, which Pyth
 
 from __future__ import annotations
 
+import linecache
 import sys
 
 
@@ -22,6 +23,7 @@ def without_search() -> None:
         return
     if hasattr(feature, "_mod_uses_pyside"):
         feature._mod_uses_pyside = lambda module: False
+        linecache.clearcache()  # the sources that were read until now, a megabyte
 
 
 def without_typing_extensions() -> None:

@@ -187,7 +187,7 @@ class SkinnedFigure(Figure):
         self._inverse_rotations = rotation.conjugate(rest_r)[follow].astype(np.float32)
         self._rest_positions = rest_p[follow].astype(np.float32)
         super().__init__(skeleton, _character_mesh(character), sources)
-        self.character, self.morphs, self.meshes = character, character.morphs, character.meshes
+        self.morphs, self.meshes = character.morphs, character.meshes
 
     def palette(self, rotations: Array, positions: Array) -> Array:
         sources = np.maximum(self.sources, 0)

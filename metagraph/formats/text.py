@@ -12,7 +12,6 @@ from collections.abc import Iterator
 from typing import Any
 
 import msgspec
-import yaml
 
 HEADER = "# A Metagraph project. One line a clip, stance or action; times in seconds.\n"
 DEPTH = 16  # a project needs 6
@@ -139,11 +138,11 @@ _FLOAT = re.compile(r"[-+]?(?:\.\d+|\d+(?:\.\d*)?)(?:[eE][-+]?\d+)?\Z", re.ASCII
 _INFINITE = re.compile(r"[-+]?\.(?:inf|Inf|INF)\Z|\.(?:nan|NaN|NAN)\Z")
 
 
-_NODES = frozenset((yaml.ScalarEvent, yaml.MappingStartEvent, yaml.SequenceStartEvent, yaml.AliasEvent))
-
-
 def parse(text: str) -> tuple[Any, Lines]:
     """Return the data of a text and the line of every field. Raises TextError."""
+    import yaml  # a window opens before there is anything to read
+
+    nodes = frozenset((yaml.ScalarEvent, yaml.MappingStartEvent, yaml.SequenceStartEvent, yaml.AliasEvent))
     lines: Lines = {}
     stack: list[list[Any]] = []  # [container, its field, key that waits for its value]
     result: Any = None
@@ -152,7 +151,7 @@ def parse(text: str) -> tuple[Any, Lines]:
         kind = type(event)
         if kind is yaml.MappingEndEvent or kind is yaml.SequenceEndEvent:
             value = stack.pop()[0]
-        elif kind in _NODES:
+        elif kind in nodes:
             line = event.start_mark.line + 1
             if kind is yaml.AliasEvent or event.anchor is not None:
                 raise TextError(line, "anchors and aliases are not used in project files")
@@ -190,6 +189,8 @@ def parse(text: str) -> tuple[Any, Lines]:
 
 
 def _events(text: str) -> Iterator[Any]:
+    import yaml
+
     loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     try:
         yield from yaml.parse(text, Loader=loader)

@@ -58,20 +58,16 @@ app.exec()
 
 def cold(rounds: int = 5) -> None:
     found = []
-    with tempfile.TemporaryDirectory() as bytecode:
-        environment = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
-        environment["PYTHONPYCACHEPREFIX"] = bytecode  # as at a user's, whatever is set here
-        for _ in range(rounds + 1):
-            out = subprocess.run(
-                [sys.executable, "-c", COLD, str(time.time())],
-                cwd=ROOT,
-                env=environment,
-                capture_output=True,
-                text=True,
-                check=True,
-                timeout=60,
-            )
-            found.append([float(x) for x in out.stdout.split()[-5:]])
+    for _ in range(rounds + 1):
+        out = subprocess.run(
+            [sys.executable, "-c", COLD, str(time.time())],
+            cwd=ROOT,
+            capture_output=True,
+            text=True,
+            check=True,
+            timeout=60,
+        )
+        found.append([float(x) for x in out.stdout.split()[-5:]])
     # The first one compiled the modules.
     window, window_own, character, character_own, modules = zip(*found[1:], strict=True)
     for what, wall, own in (("window", window, window_own), ("character", character, character_own)):

@@ -225,9 +225,10 @@ def test_shapes_are_closed_and_face_outwards():
         assert np.allclose(face.sum(0), 0, atol=1e-9)
 
 
-def skinned(figure: SkinnedFigure, rotations: np.ndarray, positions: np.ndarray) -> np.ndarray:
-    """The vertices `[V, 3]` of a figure in a pose."""
-    body = figure.character
+def skinned(
+    figure: SkinnedFigure, body: Character, rotations: np.ndarray, positions: np.ndarray
+) -> np.ndarray:
+    """The vertices `[V, 3]` of a figure's character in a pose."""
     matrices = figure.palette(rotations, positions)[body.joints].astype(float)
     corners = np.concatenate([body.positions, np.ones((len(body.positions), 1))], 1)
     return np.einsum("vj,vjab,vb->va", body.weights, matrices, corners)
@@ -236,14 +237,14 @@ def skinned(figure: SkinnedFigure, rotations: np.ndarray, positions: np.ndarray)
 def test_what_is_exported_of_a_mesh_on_another_skeleton_is_what_is_drawn() -> None:
     body, skeleton = read_character(MANNEQUIN), stick_skeleton()
     assert body.skeleton != skeleton
-    drawn, exported = SkinnedFigure(body, skeleton), SkinnedFigure(bound(body, skeleton), skeleton)
+    drawn, exported = ((SkinnedFigure(x, skeleton), x) for x in (body, bound(body, skeleton)))
     rest = skeleton.globals(skeleton.rest)
-    assert np.abs(skinned(drawn, *rest) - skinned(exported, *rest)).max() < 1e-5
+    assert np.abs(skinned(*drawn, *rest) - skinned(*exported, *rest)).max() < 1e-5
     turns = rotation.multiply(skeleton.rest_rotations, rotation.exp(np.full((len(skeleton), 3), 0.15)))
     posed = skeleton.globals(Pose(turns, skeleton.rest_translations))
-    apart = np.linalg.norm(skinned(drawn, *posed) - skinned(exported, *posed), axis=1)
+    apart = np.linalg.norm(skinned(*drawn, *posed) - skinned(*exported, *posed), axis=1)
     assert apart.mean() < 1e-3 and apart.max() < 0.02, "they mix several joints in another order"
-    assert np.linalg.norm(skinned(drawn, *posed) - skinned(drawn, *rest), axis=1).max() > 0.1
+    assert np.linalg.norm(skinned(*drawn, *posed) - skinned(*drawn, *rest), axis=1).max() > 0.1
 
 
 def test_a_bound_mesh_names_no_joint_twice_for_a_vertex() -> None:
@@ -259,7 +260,7 @@ def test_a_host_whose_mesh_came_with_another_skeleton_is_exported_as_it_is_drawn
     body = read_character(home / "characters" / "adult_female" / "cristine" / "cristine.gltf")
     idle = read_gltf_clips(home / "animations" / "adult_female" / "stand_idle.glb")[0]
     assert body.skeleton.names == idle.skeleton.names and body.skeleton != idle.skeleton
-    drawn, exported = (SkinnedFigure(x, idle.skeleton) for x in (body, bound(body, idle.skeleton)))
+    drawn, exported = ((SkinnedFigure(x, idle.skeleton), x) for x in (body, bound(body, idle.skeleton)))
     pose = idle.skeleton.globals(idle.pose_at(1.0))
-    apart = np.linalg.norm(skinned(drawn, *pose) - skinned(exported, *pose), axis=1)
+    apart = np.linalg.norm(skinned(*drawn, *pose) - skinned(*exported, *pose), axis=1)
     assert len(apart) > 10_000 and apart.max() < 1e-3
