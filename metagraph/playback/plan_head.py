@@ -2,11 +2,12 @@
 
 Planning on from the rest alone, with what the head leaves behind (`Past`), gives the very same plan, in a
 time that grows with what is new and with what is remembered (`RECENT`, the settings' memory), not with the
-plan.
+plan. What it leaves as it was is shared, not copied (`strand`).
 """
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Collection
 from dataclasses import replace
 from weakref import ref
@@ -14,6 +15,7 @@ from weakref import ref
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.playback.plan import LayerPlan, Past, Plan
 from metagraph.playback.remembering import remember
+from metagraph.playback.strand import joined
 from metagraph.records import dataclass
 
 RECENT = 30.0  # seconds before now that planning on looks at, beside the settings' memory
@@ -50,6 +52,7 @@ class PlanHead:
             cues=of.cues[head.cues :],
             rests=of.rests[head.rests :],
             past=head.past,
+            written=of.written[bisect_left(of.written, self.end, key=lambda m: m.start) :],
         )
 
     def whole(self, of: LayerPlan, rest: LayerPlan) -> LayerPlan:
@@ -57,11 +60,17 @@ class PlanHead:
         head = self.layers[of.layer]
         return replace(
             rest,
-            metas=of.metas[: head.metas] + rest.metas,
-            cues=of.cues[: head.cues] + rest.cues,
-            rests=of.rests[: head.rests] + rest.rests,
+            metas=joined(of.metas, head.metas, rest.metas),
+            cues=joined(of.cues, head.cues, rest.cues),
+            rests=joined(of.rests, head.rests, rest.rests),
             past=of.past,
         )
+
+
+def shared(of: LayerPlan) -> LayerPlan:
+    """Return a layer as it is, laid down so that what is planned on from it can share what it leaves."""
+    metas, cues, rests = joined((), 0, of.metas), joined((), 0, of.cues), joined((), 0, of.rests)
+    return replace(of, metas=metas, cues=cues, rests=rests)
 
 
 def head_of(project: Project, plan: Plan, now: float, again: Collection[str]) -> PlanHead | None:

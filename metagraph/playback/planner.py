@@ -11,11 +11,13 @@ from collections.abc import Collection, Iterable, Mapping
 from metagraph.graph.model import LAYERS, Layer, Markov, Project
 from metagraph.playback import markov
 from metagraph.playback.layer_planning import draft
+from metagraph.playback.life.near_life import with_past
 from metagraph.playback.life.schedule import schedule
 from metagraph.playback.life.wanted import moods_of
 from metagraph.playback.mood import Moods, mood_at, stirs
 from metagraph.playback.plan import LayerPlan, MetaAction, MetaRequest, Plan, Report
-from metagraph.playback.plan_head import head_of, keep_head
+from metagraph.playback.plan_head import head_of, keep_head, shared
+from metagraph.playback.strand import joined
 
 
 def make_plan(
@@ -75,15 +77,14 @@ def extend(
         )  # fmt: skip
         metas = [m for m in drafted.placed if not m.written or _performed(chain, plan, layer, m, moods)]
         made = drafted.performed(metas, end)
-        layers[layer] = made if head is None else head.whole(old, made)
+        layers[layer] = shared(made) if head is None else head.whole(old, made)
         reports += drafted.reports
     kept = tuple(r for r in plan.requests if r.id not in again) if again else plan.requests
-    before = () if head is None else plan.reports[: head.reports]
-    life = schedule(project.life, plan.track, project.voices, plan.seed, end, plan.life, now)
-    out = Plan(
-        plan.seed, end, layers, before + tuple(sorted(reports, key=lambda r: r.at)), kept + fresh,
-        plan.track, life,
-    )  # fmt: skip
+    near = plan.life if head is None else plan.life.since(head.end)
+    grown = schedule(project.life, plan.track, project.voices, plan.seed, end, near, now)
+    every = joined(plan.reports, 0 if head is None else head.reports, sorted(reports, key=lambda r: r.at))
+    life = with_past(plan.life, near, grown)
+    out = Plan(plan.seed, end, layers, every, kept + fresh, plan.track, life)
     if head is not None:
         keep_head(out, head)
     return out

@@ -19,6 +19,7 @@ from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.playback.extend_performance import hear, since
 from metagraph.playback.hearing import owners
 from metagraph.playback.life.lane import Lane
+from metagraph.playback.life.near_life import LANES
 from metagraph.playback.life.track import Item, track_of
 from metagraph.playback.plan import Cue, LayerPlan, MetaAction, MetaRequest, Plan, Report, Rest
 from metagraph.playback.plan_head import RECENT
@@ -30,7 +31,6 @@ REPLAYED = (
     10.0  # seconds planned at a time where nobody waits for an answer, beyond what a live session plans
 )
 CUT = 15.0  # seconds between two cuts
-LANES = ("modes", "moods", "breaths", "aversions", "saccades", "blinks", "swells", "emphases")
 
 
 class RunningPlan:

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.graph import edits
+from metagraph.graph.life import Life
 from metagraph.graph.model import Project
-from metagraph.playback import plan_head, planner
+from metagraph.playback import plan_head, planner, strand
 from metagraph.playback.plan import MetaRequest, Plan
 from metagraph.playback.planner import extend, make_plan
+from metagraph.playback.player import pose_at
+from metagraph.playback.strand import Strand
 
 PROJECT = Project()
 
@@ -128,3 +133,31 @@ def test_a_stance_that_is_gone_is_found(toy: Any) -> None:
         plan = make_plan(project, 300, [MetaRequest("go", "arms", "transition", start, stance=up)], 1)
         without = edits.remove_stance(project, up)
         assert extend(without, plan, 290.0, (), 320.0) == from_all(without, plan, 290.0, (), 320.0)
+
+
+def test_what_a_long_plan_leaves_as_it_was_is_shared_and_the_same(monkeypatch: Any) -> None:
+    project = replace(PROJECT, life=Life(on=True))
+    asks, times = [MetaRequest("now", "arms", "gesture", 396.0)], np.linspace(0.0, 410.0, 50)
+
+    def in_three(of: Any) -> tuple[Plan, Plan, Plan]:
+        plan = make_plan(project, 300.0, seed=3)
+        more = of(project, plan, 295.0, (), 400.0)
+        return plan, more, of(project, more, 395.0, asks, 420.0)
+
+    plain = in_three(from_all)
+    poses = pose_at(plain[-1], project, times)
+    monkeypatch.setattr(strand, "CHUNK", 8)
+    monkeypatch.setattr(strand, "LONG", 16)
+    made = in_three(extend)
+    assert made == plain and plain == made
+    assert np.array_equal(pose_at(made[-1], project, times).rotations, poses.rotations)
+    for one, other in pairwise(made):
+        for a, b in (
+            (one.layers["arms"].cues, other.layers["arms"].cues),
+            (one.layers["arms"].rests, other.layers["arms"].rests),
+            (one.layers["arms"].metas, other.layers["arms"].metas),
+            (one.life.blinks.times, other.life.blinks.times),
+            (one.life.blinks.rows, other.life.blinks.rows),
+        ):
+            assert isinstance(a, Strand) and isinstance(b, Strand)
+            assert a._chunks[0] is b._chunks[0]

@@ -201,8 +201,10 @@ class TimingPlot(QWidget):
         if fresh:
             speeds, words = speed_of(project, action)
             self.curve.setData(np.arange(len(speeds)) / entry.fps, speeds)
-            self.plot.setXRange(-0.02 * entry.duration, max(entry.duration, 0.1) * 1.02, padding=0)
-            self.plot.setYRange(0, max(0.2, float(speeds.max()) * 1.15 if len(speeds) else 1.0), padding=0)
+            # In one go: each change of a range lets all lines and words find their places anew.
+            across = -0.02 * entry.duration, max(entry.duration, 0.1) * 1.02
+            top = max(0.2, float(speeds.max()) * 1.15 if len(speeds) else 1.0)
+            self.plot.plotItem.vb.setRange(xRange=across, yRange=(0, top), padding=0)
             self.plot.setToolTip(tr("{words}, m/s. Drag the lines; a click moves the playhead.", words=words))
             if project.action(action.id) is None:
                 self.strip.show_seen(project, action, None)
