@@ -26,6 +26,7 @@ SHADE = 0.8  # how dark the figure's shadow on itself is
 # software; in a crowd, which has no shadows on itself either; in software of a ghost or in a view beside
 # another, looked at less closely.
 OFF, OFF_CROWD, OFF_BESIDE = (0.5, 1.0), 1.4, 1.6
+WHOLE = 0.5  # of a picture, from which on clearing all of it costs less: clearing a part is drawing it
 _SOFTWARE = ("llvmpipe", "softpipe", "swiftshader", "software", "basic render")
 
 
@@ -115,10 +116,7 @@ class Renderer:
         parts = covered(frame)
         if len(parts):
             self._drawing.state(self._main, (0, 0, width, height), moderngl.DEPTH_TEST)
-            # Smoothing looks a little beyond.
-            low, past = parts[:, :2].min(0) - MARGIN, parts[:, 2:].max(0) + MARGIN
-            low, past = np.maximum(low, 0), np.minimum(past, (width, height))
-            self._main.clear(depth=1.0, viewport=(*low.tolist(), *(past - low).tolist()))
+            self._clear(parts)
             self._bodies(frame, frame.which(solid=True))
             self._ghosts(frame)
             self._compose(frame, target, parts)
@@ -196,6 +194,16 @@ class Renderer:
         self.ctx.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
         self._bodies(frame, which)
         self.ctx.polygon_offset = 0.0, 0.0
+
+    def _clear(self, parts: Array) -> None:
+        """Make place for figures, in all of the picture or round their parts, whichever costs less."""
+        low, past = parts[:, :2].min(0) - MARGIN, parts[:, 2:].max(0) + MARGIN  # smoothing looks beyond
+        low, past = np.maximum(low, 0), np.minimum(past, self._size)
+        part = (*low.tolist(), *(past - low).tolist())
+        if part[2] * part[3] > WHOLE * self._size[0] * self._size[1]:
+            self._main.clear(depth=1.0)
+        else:
+            self._main.clear(depth=1.0, viewport=part)
 
     def _overlay(self, frame: Frame) -> None:
         """The skeletons of actors that want it, over everything."""

@@ -262,7 +262,7 @@ void main() {
     v_world = m * vec4(in_position, 1.0);
     v_normal = mat3(m) * in_normal;
     v_uv = in_uv;
-    v_color = vec4(pow(in_color.rgb, vec3(2.2)), in_color.a);
+    v_color = vec4(pow(in_color.rgb, vec3(1.1)), in_color.a);  // the root of linear light: so colours fade evenly
 #ifdef MARKED
     v_mark = vec4(0.0);
     for (int i = 0; i < 4; ++i) {
@@ -303,7 +303,7 @@ void main() {
 #endif
     vec3 n = normalize(v_normal) * (gl_FrontFacing ? 1.0 : -1.0);
     vec3 v = normalize(u_eye - v_world);
-    vec3 base = v_color.rgb;
+    vec3 base = v_color.rgb * v_color.rgb;
 #ifdef TEXTURED
     vec3 texel = texture(u_image, v_uv).rgb;
     base *= texel * texel * (0.7 * texel + 0.3);  // close to the power of 2.2, without it
