@@ -18,7 +18,7 @@ Array = NDArray[Any]
 
 TILE = 16  # pixels, of the squares that figures are laid over a picture by
 MOST = 64  # rectangles; of a crowd all round it is smoothed, which costs less than so many
-MARGIN = 4  # pixels that smoothing looks and writes beyond an edge, and a bit
+MARGIN = 2  # pixels that smoothing looks and writes beyond an edge, and a bit
 
 
 @dataclass(eq=False)
