@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from functools import cached_property
 from typing import Any
@@ -18,7 +19,7 @@ Array = NDArray[Any]
 
 TILE = 16  # pixels, of the squares that figures are laid over a picture by
 MOST = 64  # rectangles; of a crowd all round it is smoothed, which costs less than so many
-MARGIN = 4  # pixels that smoothing looks and writes beyond an edge, and a bit
+MARGIN = 2  # pixels that smoothing looks and writes beyond an edge, and a bit
 
 
 @dataclass(eq=False)
@@ -52,14 +53,15 @@ class Frame:
         return scene.ground and plain and float(self.camera.eye[1]) > 0
 
     @cached_property
-    def seen(self) -> Array:
-        """Where the corners of `boxes` are seen `[N, 8, 2]`, see `Camera.project`."""
-        return self.camera.project(self.boxes, self.size[0] / self.size[1])
-
-    @cached_property
-    def ends(self) -> tuple[Array, Array]:
-        """The least and the most of what is seen of each box `[N, 2], [N, 2]`; NaN where the eye is in it."""
-        return self.seen.min(1), self.seen.max(1)
+    def ends(self) -> Array:
+        """The least x and y and the most that are seen of each box `[4, N]`, see `Camera.project`; NaN where
+        some of it is behind the eye.
+        """
+        camera = self.camera
+        x, y, z = camera.axes @ (self.boxes.reshape(-1, 3) - camera.eye).T
+        depth = np.where(z < -1e-9, z, np.nan) * (-2 * math.tan(camera.fov / 2))
+        x, y = (x / (depth * (self.size[0] / self.size[1]))).reshape(-1, 8), (y / depth).reshape(-1, 8)
+        return np.stack([0.5 + x.min(1), 0.5 - y.max(1), 0.5 + x.max(1), 0.5 - y.min(1)])
 
     def which(self, solid: bool) -> list[int]:
         """Return the places of those who are no ghosts, or of the ghosts."""
@@ -91,17 +93,18 @@ def covered(frame: Frame) -> Array:
     if not frame.actors:
         return np.zeros((0, 4), int)
     width, height = frame.size
-    ends = np.concatenate(frame.ends, 1)  # left, top, right, bottom
-    if not np.isfinite(ends).all():  # somebody is behind the eye, or round it
+    if not np.isfinite(frame.ends).all():  # somebody is behind the eye, or round it
         return np.array([[0, 0, width, height]])
     wide, high = (width + TILE - 1) // TILE, (height + TILE - 1) // TILE
-    tiles = np.clip(ends, -1, 2) * (width / TILE, -height / TILE, width / TILE, -height / TILE)
-    tiles += np.array([0, height, 0, height]) / TILE  # from below
+    left, top, right, bottom = frame.ends.clip(-1, 2)  # in shares of the picture, from above
     margin = MARGIN / TILE
-    left, low = np.floor(tiles[:, (0, 3)] - margin).clip(0).astype(int).T
-    right, past = np.ceil(tiles[:, 2:0:-1] + margin).clip(None, (wide, high)).astype(int).T
+    left = np.floor(left * (width / TILE) - margin).clip(0).astype(int)
+    low = np.floor((1 - bottom) * (height / TILE) - margin).clip(0).astype(int)
+    right = np.ceil(right * (width / TILE) + margin).clip(None, wide).astype(int)
+    past = np.ceil((1 - top) * (height / TILE) + margin).clip(None, high).astype(int)
     inside = (right > left) & (past > low)
-    left, low, right, past = (x[inside] for x in (left, low, right, past))
+    if not inside.all():
+        left, low, right, past = (x[inside] for x in (left, low, right, past))
     # Corners of rectangles, summed up along both axes, count those that lie over each tile.
     line = wide + 1
     corners = np.concatenate([low * line + left, past * line + right, low * line + right, past * line + left])

@@ -76,13 +76,13 @@ def _same(vertices: Array, colors: Array, corners: Array, image: Array) -> Array
     at its vertices as with the image.
     """
     out = np.ones(len(corners), bool)
-    # Of each triangle's corners: where in the image, own colour, colour instead.
-    told = np.concatenate([vertices["uv"], _own(vertices), _LINEAR[colors]], 1)
+    # Of each triangle's corners: where in the image, and the roots of its own colour and of that instead.
+    # Roots are what the shader lets fade from corner to corner.
+    told = np.concatenate([vertices["uv"], np.sqrt(_own(vertices)), np.sqrt(_LINEAR[colors])], 1)
     a, b, c = (told.take(corner, 0) for corner in corners.T)
     for inside in ((a + b + c) / 3, (a + b) / 2, (b + c) / 2, (c + a) / 2):  # its middle, those of its sides
-        at, light, instead = inside[:, :2], inside[:, 2:5], inside[:, 5:]
-        # What is written to the screen is about the root of what is lit.
-        off = np.abs(np.sqrt(_linear(_sampled(image, at)) * light) - np.sqrt(instead))
+        at, own, instead = inside[:, :2], inside[:, 2:5], inside[:, 5:]
+        off = np.abs(np.sqrt(_linear(_sampled(image, at))) * own - instead)
         out &= off.max(1, initial=0.0) <= OFF
     return out
 

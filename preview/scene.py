@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import field
 from functools import cached_property
@@ -37,7 +38,7 @@ class Actor:
     @property
     def count(self) -> int:
         """How many instances."""
-        return int(np.prod(self.rotations.shape[:-2], dtype=int))
+        return math.prod(self.rotations.shape[:-2])
 
 
 @dataclass(frozen=True, eq=False)

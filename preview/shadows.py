@@ -162,7 +162,7 @@ class Shadows:
         depth.compare_func = ""
         depth.use(1)
         set_uniforms(program, u_depth=1, u_light=light, u_patch=patch, u_turn=turn, u_fade=fade)
-        set_uniforms(program, u_scale=float(np.linalg.norm(light[0, :3])))
+        set_uniforms(program, u_scale=math.hypot(*light[0, :3]))
         self._drawing.bare("soft", program).render(moderngl.TRIANGLES, 3)
         depth.compare_func = "<="
 
@@ -225,20 +225,22 @@ def _window(frame: Frame, axes: Array) -> tuple[float, Array, Array]:
     `[2], [2]`, metres, that shades what is seen. No pixels where nothing is.
     """
     camera, (width, height) = frame.camera, frame.size
-    low, high = frame.ends
-    if np.isnan(low).any():
-        behind = np.asarray(np.isnan(frame.seen).any(2))  # the eye
-        low, high = (np.where(behind[..., None], fill, frame.seen) for fill in (np.inf, -np.inf))
+    ends = frame.ends
+    if np.isnan(ends).any():
+        seen = camera.project(frame.boxes, width / height)
+        behind = np.asarray(np.isnan(seen).any(2))  # the eye
+        low, high = (np.where(behind[..., None], fill, seen) for fill in (np.inf, -np.inf))
         inside = (low.min(1) < 1).all(1) & (high.max(1) > 0).all(1)
         inside |= behind.any(1) & ~behind.all(1)
     else:
-        inside = (low < 1).all(1) & (high > 0).all(1)
+        inside = (ends[:2] < 1).all(0) & (ends[2:] > 0).all(0)
     if not inside.any():
         return 0.0, np.zeros(2), np.ones(2)
     back = camera.axes[2]
     # Along the lamp's right and up, and away from the eye.
-    placed = frame.boxes[inside].reshape(-1, 3) @ np.stack([axes[0], axes[1], -back], 1)
-    least, most = placed.min(0), placed.max(0)
+    corners = (frame.boxes if inside.all() else frame.boxes[inside]).reshape(-1, 3)
+    placed = np.stack([axes[0], axes[1], -back]) @ corners.T
+    least, most = placed.min(1), placed.max(1)
     near, far = (max(float(camera.eye @ back + x), camera.near) for x in (least[2], most[2]))
     tall = height / (2 * math.tan(camera.fov / 2))  # pixels of a metre, a metre away
     # No more of the boxes than is in the picture, from the nearest to the farthest of them.
@@ -266,8 +268,9 @@ def _spots(actor: Actor) -> Array:
     h = actor.figure.height
     if not len(ends):
         ends = starts = np.flatnonzero(actor.figure.drawn)[:1]
-    middle = (p[:, ends] + p[:, starts]) / 2
-    length = np.linalg.norm(p[:, ends] - p[:, starts], axis=-1)
+    a, b = p[:, ends], p[:, starts]
+    middle = (a + b) / 2
+    length = np.sqrt(((a - b) ** 2).sum(-1))
     up = np.maximum(middle[..., 1], 0) / h
     radius = 0.55 * length + 0.05 * h + 0.30 * up * h
     strength = 0.60 * np.exp(-5.0 * up) * np.clip(length / (0.12 * h), 0.25, 1.0)
