@@ -94,6 +94,8 @@ def draft(
     kept = [cue for cue in old.cues if cue.start < now]
     played = {cue.meta for cue in kept}
     waiting = {cue.meta for cue in old.cues[len(kept) :]}  # also those whose chain of transitions has begun
+    # Who lies ahead may be called as what was played long ago: a request that is asked for again and again.
+    playing = {cue.meta for cue in kept if cue.end > now}
     written: list[MetaAction] = []
     cursor = old.cursor
     # What another's action has served since it began is played as that is.
@@ -111,7 +113,7 @@ def draft(
     for meta in old.metas:
         if meta.request.id in again or meta.request.id in served:
             continue
-        if meta.key in waiting or (meta.start >= now and meta.key not in played):
+        if meta.key in waiting or (meta.start >= now and meta.key not in playing):
             future.append(meta)
             if meta.request.late is not None:
                 judged.add(meta.request.id)
@@ -122,7 +124,7 @@ def draft(
         for meta in old.metas
         if meta.request.id not in again
         and meta.start not in planned.get(meta.request.id, [])
-        and (meta.key in played or meta.start < now or meta.request.id in served)
+        and (meta.key in playing or meta.start < now or meta.request.id in served)
     ]
     reports = [
         report

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from metagraph.graph import edits
@@ -59,6 +59,21 @@ asks = st.lists(
 )
 
 
+def _ask(ident: str, kind: str = "gesture", at: float = 0.0) -> tuple[Any, ...]:
+    return ident, kind, at, None, 1, False
+
+
+# What is asked for by the name of what has been played does not take the time that lies between.
+AGAIN = [
+    ([], 14.0),
+    ([_ask("a"), _ask("d", "transition"), _ask("a"), _ask("a")], 3.0),
+    ([], 25.0),
+    ([_ask("a"), _ask("a", at=14.0)], 23.0),
+    ([], 3.0),
+]
+
+
+@example(AGAIN, 0, False)
 @given(st.lists(st.tuples(asks, st.floats(3, 25)), min_size=4, max_size=12), st.integers(0, 9), st.booleans())
 @settings(max_examples=40, deadline=None)
 def test_whatever_is_asked_meanwhile_and_again(steps: list[Any], seed: int, remembers: bool) -> None:

@@ -143,6 +143,13 @@ inline Ref<LayerDraft> draft(
     for (const auto& cue : lang::part(old->cues, lang::len(kept))) {
         waiting.insert(cue->meta);
     }
+    // Who lies ahead may be called as what was played long ago: a request that is asked for again and again.
+    Set<std::string> playing;
+    for (const auto& cue : kept) {
+        if (cue->end > now) {
+            playing.insert(cue->meta);
+        }
+    }
     List<Ref<MetaAction>> written;
     Ref<Cursor> cursor = old->cursor;
     // What another's action has served since it began is played as that is.
@@ -170,7 +177,7 @@ inline Ref<LayerDraft> draft(
         if (lang::contains(again, meta->request->id) || lang::contains(served, meta->request->id)) {
             continue;
         }
-        if (lang::contains(waiting, meta->key()) || (meta->start >= now && !lang::contains(played, meta->key()))) {
+        if (lang::contains(waiting, meta->key()) || (meta->start >= now && !lang::contains(playing, meta->key()))) {
             future.push_back(meta);
             if (meta->request->late.has_value()) {
                 judged.insert(meta->request->id);
@@ -186,7 +193,7 @@ inline Ref<LayerDraft> draft(
     for (const auto& meta2 : old->metas) {
         if (!lang::contains(again, meta2->request->id)
             && !lang::contains(lang::get_or(planned, meta2->request->id, List<double>{}), meta2->start)
-            && (lang::contains(played, meta2->key())
+            && (lang::contains(playing, meta2->key())
                 || meta2->start < now
                 || lang::contains(served, meta2->request->id))) {
             done.push_back(meta2);

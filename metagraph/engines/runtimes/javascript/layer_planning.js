@@ -81,6 +81,8 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
   const played = new Set(kept.map((cue) => cue.meta));
   // also those whose chain of transitions has begun
   const waiting = new Set(old.cues.slice(kept.length).map((cue) => cue.meta));
+  // Who lies ahead may be called as what was played long ago: a request that is asked for again and again.
+  const playing = new Set(kept.filter((cue) => cue.end > now).map((cue) => cue.meta));
   const written = [];
   let cursor = old.cursor;
   // What another's action has served since it began is played as that is.
@@ -104,7 +106,7 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
     if (again.has(meta.request.id) || served.has(meta.request.id)) {
       continue;
     }
-    if (waiting.has(meta.key) || (meta.start >= now && !played.has(meta.key))) {
+    if (waiting.has(meta.key) || (meta.start >= now && !playing.has(meta.key))) {
       future.push(meta);
       if (meta.request.late !== null) {
         judged.add(meta.request.id);
@@ -116,7 +118,7 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
   const done = old.metas.filter((meta) =>
     !again.has(meta.request.id)
       && !(planned.get(meta.request.id) ?? []).includes(meta.start)
-      && (played.has(meta.key) || meta.start < now || served.has(meta.request.id)));
+      && (playing.has(meta.key) || meta.start < now || served.has(meta.request.id)));
   const reports = told.filter((report) =>
     report.layer === layer
       && !again.has(report.request)

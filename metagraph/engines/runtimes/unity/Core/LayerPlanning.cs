@@ -99,6 +99,8 @@ namespace Metagraph
             var played = new HashSet<string>(kept.Select(cue => cue.Meta));
             // also those whose chain of transitions has begun
             var waiting = new HashSet<string>(PlainLists.Part(old.Cues, kept.Count).Select(cue => cue.Meta));
+            // Who lies ahead may be called as what was played long ago: a request that is asked for again and again.
+            var playing = new HashSet<string>(kept.Where(cue => cue.End > now).Select(cue => cue.Meta));
             var written = new List<MetaAction>();
             var cursor = old.Cursor;
             // What another's action has served since it began is played as that is.
@@ -129,7 +131,7 @@ namespace Metagraph
                 {
                     continue;
                 }
-                if (waiting.Contains(meta.Key) || (meta.Start >= now && !played.Contains(meta.Key)))
+                if (waiting.Contains(meta.Key) || (meta.Start >= now && !playing.Contains(meta.Key)))
                 {
                     future.Add(meta);
                     if (meta.Request.Late != null)
@@ -142,7 +144,7 @@ namespace Metagraph
             // What was told about time still holds; the rest will be told again by those that are planned again.
             var done = old.Metas.Where(meta => !again.Contains(meta.Request.Id)
                 && !PlainMaps.GetOr(planned, meta.Request.Id, new List<double>()).Contains(meta.Start)
-                && (played.Contains(meta.Key) || meta.Start < now || served.Contains(meta.Request.Id))).ToList();
+                && (playing.Contains(meta.Key) || meta.Start < now || served.Contains(meta.Request.Id))).ToList();
             var reports = told.Where(report => report.Layer == layer
                 && !again.Contains(report.Request)
                 && ((MetaPlanRules.Temporal.Contains(report.Outcome) && !judged.Contains(report.Request))

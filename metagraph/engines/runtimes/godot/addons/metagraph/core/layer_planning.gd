@@ -82,6 +82,11 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 	var waiting = {}
 	for cue in Util.part(old.cues, kept.size(), old.cues.size()):
 		Util.add_to(waiting, cue.meta)
+	# Who lies ahead may be called as what was played long ago: a request that is asked for again and again.
+	var playing = {}
+	for cue in kept:
+		if cue.end > now:
+			Util.add_to(playing, cue.meta)
 	var written = []
 	var cursor = old.cursor
 	# What another's action has served since it began is played as that is.
@@ -105,7 +110,7 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 	for meta in old.metas:
 		if again.has(meta.request.id) or served.has(meta.request.id):
 			continue
-		if waiting.has(meta.key) or (meta.start >= now and not played.has(meta.key)):
+		if waiting.has(meta.key) or (meta.start >= now and not playing.has(meta.key)):
 			future.append(meta)
 			if meta.request.late != null:
 				Util.add_to(judged, meta.request.id)
@@ -115,7 +120,7 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 	for meta2 in old.metas:
 		if (not again.has(meta2.request.id)
 			and not planned.get(meta2.request.id, []).has(meta2.start)
-			and (played.has(meta2.key) or meta2.start < now or served.has(meta2.request.id))):
+			and (playing.has(meta2.key) or meta2.start < now or served.has(meta2.request.id))):
 			done.append(meta2)
 	var reports = []
 	for report in told:
