@@ -12,7 +12,6 @@ import atexit
 import contextlib
 import faulthandler
 import os
-import platform
 import re
 import sys
 import threading
@@ -20,13 +19,14 @@ import time
 import traceback
 from collections import deque
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from types import TracebackType
 
 from metagraph import __version__
 from metagraph.errors import FileError
 from metagraph.formats.locking import mark_is_gone, process_mark
+from metagraph.records import dataclass
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = "METAGRAPH_FAULTS"  # the variable that tells processes we start where their errors go
@@ -115,7 +115,8 @@ def report() -> str:
 
 
 def _versions() -> Iterable[str]:
-    from importlib.metadata import PackageNotFoundError, version  # takes a while to import, for a start
+    import platform  # like the next: it takes a while to import, for a start
+    from importlib.metadata import PackageNotFoundError, version
 
     yield f"Metagraph {__version__}"
     system = f"{platform.system()} {platform.release()}, {platform.machine()}"

@@ -2,33 +2,42 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
+from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QCoreApplication, QLibraryInfo, QSettings, Qt, QTranslator
+from PySide6.QtCore import QCoreApplication, QLibraryInfo, QSettings, Qt, QTimer, QTranslator
 from PySide6.QtGui import QSurfaceFormat
 from PySide6.QtWidgets import QApplication
 
-from app.memory import frugal
-from app.quick_imports import without_search
+from app.quick_imports import without_search, without_typing_extensions
+from metagraph.uncollected import uncollected
 
 without_search()
+without_typing_extensions()
 
 if TYPE_CHECKING:
     from app.shell.window import Window
 
+UNSEEN = 500  # milliseconds after which a project is opened though no picture was painted: it may be hidden
 
+
+@uncollected()
 def prepare() -> QApplication:
     """Return the application, its OpenGL format set; made once."""
     found = QApplication.instance()
     if isinstance(found, QApplication):
         return found
     from app import translation
+    from app.memory import frugal
+    from preview.early_driver import load_soon
 
     frugal()
+    load_soon()
     # Planning and checking run on threads; the window's own must get its turn well within a frame.
     sys.setswitchinterval(0.001)
     surface = QSurfaceFormat()
@@ -51,6 +60,7 @@ def prepare() -> QApplication:
     return app
 
 
+@uncollected()
 def make_window() -> Window:
     """Return a window with all features, not shown yet."""
     from app.features import FEATURES
@@ -64,17 +74,37 @@ def open_window(path: Path | None, sample: bool = False, clip: str | None = None
     from app.project.files import SAMPLE
 
     window = make_window()
+    gc.freeze()  # what was imported and made stays: nobody looks for circles in it again
     window.show()
     files = window.shell.files
     if clip is not None:
         files.opened.connect(lambda: _select(window, clip), Qt.ConnectionType.SingleShotConnection)
-    if path is not None:
-        files.open(path)
-        files.unsaved.tell()
-    else:
-        files.recover_untitled(lambda: files.open(SAMPLE, template=True) if sample else None)
-    window.load_late_panels_soon()
+
+    def begin() -> None:
+        if path is not None:
+            files.open(path)
+            files.unsaved.tell()
+        else:
+            files.recover_untitled(lambda: files.open(SAMPLE, template=True) if sample else None)
+        window.load_late_panels_soon()
+
+    _once_painted(window, begin)
     return window
+
+
+def _once_painted(window: Window, begin: Callable[[], None]) -> None:
+    """Call once, when the first picture is there: what else would run beside it takes turns with it."""
+    painted = window.shell.stage.painted
+    waiting = [begin]
+
+    def go() -> None:
+        if waiting:
+            waiting.pop()()
+
+    painted.connect(go, Qt.ConnectionType.SingleShotConnection)
+    unseen = QTimer(window, singleShot=True, interval=UNSEEN)
+    unseen.timeout.connect(go)
+    unseen.start()
 
 
 def _select(window: Window, clip: str) -> None:

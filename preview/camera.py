@@ -8,11 +8,14 @@ float64.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from metagraph.records import dataclass
 
 Array = NDArray[Any]
 
@@ -34,16 +37,20 @@ class Camera:
     distance: float = 4.2
     fov: float = math.radians(28.0)
 
-    @property
+    @cached_property
     def axes(self) -> Array:
-        """The camera's right, up and backward directions as rows `[3, 3]`."""
+        """The camera's right, up and backward directions as rows `[3, 3]`, not to be written to."""
         sy, cy, sp, cp = math.sin(self.yaw), math.cos(self.yaw), math.sin(self.pitch), math.cos(self.pitch)
-        return np.array([[cy, 0, -sy], [-sy * sp, cp, -cy * sp], [sy * cp, sp, cy * cp]])
+        out = np.array([[cy, 0, -sy], [-sy * sp, cp, -cy * sp], [sy * cp, sp, cy * cp]])
+        out.flags.writeable = False
+        return out
 
-    @property
+    @cached_property
     def eye(self) -> Array:
-        """Where the camera is, `[3]`."""
-        return np.asarray(self.target + self.axes[2] * self.distance)
+        """Where the camera is, `[3]`, not to be written to."""
+        out = np.asarray(self.target + self.axes[2] * self.distance)
+        out.flags.writeable = False
+        return out
 
     @property
     def near(self) -> float:
@@ -69,6 +76,10 @@ class Camera:
         out[2, 2], out[2, 3], out[3, 2] = (far + near) / (near - far), 2 * far * near / (near - far), -1
         return out
 
+    def matrix(self, aspect: float) -> Array:
+        """World to clip space, `[4, 4]`, not to be written to; `aspect` is width by height."""
+        return _matrix(self, aspect)
+
     def ray(self, x: float, y: float, aspect: float) -> tuple[Array, Array]:
         """Return origin `[3]` and unit direction `[3]` through the point `x, y`: 0..1 from the picture's
         upper left.
@@ -82,12 +93,12 @@ class Camera:
         """Return where `points [..., 3]` are seen `[..., 2]`: 0..1 from the picture's upper left; NaN behind
         the eye.
         """
-        p = (np.asarray(points, float) - self.eye) @ self.axes.T
-        depth = np.where(p[..., 2] < -1e-9, -p[..., 2], np.nan)
-        half = math.tan(self.fov / 2)
-        return np.stack(
-            [0.5 + p[..., 0] / (2 * half * aspect * depth), 0.5 - p[..., 1] / (2 * half * depth)], -1
-        )
+        points = np.asarray(points, float)
+        p = (points.reshape(-1, 3) - self.eye) @ self.axes.T
+        depth = np.where(p[:, 2] < -1e-9, -p[:, 2], np.nan)
+        twice = 2 * math.tan(self.fov / 2)
+        out = p[:, :2] / (depth[:, None] * (twice * aspect, -twice)) + 0.5
+        return np.asarray(out.reshape(*points.shape[:-1], 2))
 
     def orbit(self, dx: float, dy: float) -> Camera:
         """Turn round the target by a drag of `dx, dy` picture heights to the right and down; one height is
@@ -150,6 +161,13 @@ class Camera:
         return replace(
             self, yaw=math.remainder(yaw, 2 * math.pi), pitch=min(PITCH_LIMIT, max(-PITCH_LIMIT, pitch))
         )
+
+
+@lru_cache(maxsize=16)
+def _matrix(camera: Camera, aspect: float) -> Array:
+    out = np.asarray(camera.projection(aspect) @ camera.view())
+    out.flags.writeable = False
+    return out
 
 
 def whole_figure(bounds: tuple[ArrayLike, ArrayLike], aspect: float, heading: float = 0.0) -> Camera:

@@ -20,9 +20,9 @@ class Drawing:
     asked for.
     """
 
-    def __init__(self, ctx: moderngl.Context) -> None:
+    def __init__(self, ctx: moderngl.Context, software: bool = False) -> None:
         self.ctx = ctx
-        self.store = Store(ctx)
+        self.store = Store(ctx, software)
         self._programs: dict[str, moderngl.Program] = {}
         self._plain: dict[str, moderngl.VertexArray] = {}
         self._buffers: dict[str, moderngl.Buffer] = {}
@@ -41,25 +41,26 @@ class Drawing:
         for gone in (self._plain, self._programs, self._buffers):
             gone.clear()
 
+    def begin(self) -> None:
+        """Set everything somebody else may have changed since the last frame, but for what `state` sets."""
+        ctx: Any = self.ctx
+        ctx.depth_func = "<="
+        ctx.blend_equation = moderngl.FUNC_ADD
+        ctx.front_face, ctx.cull_face = "ccw", "back"
+        ctx.wireframe = False
+        ctx.polygon_offset = 0.0, 0.0
+
     def state(
         self, target: Any, viewport: tuple[int, int, int, int], flags: int, colors: bool = True
     ) -> None:
-        """Set everything somebody else may have changed since the last frame. colors: whether `target` has
-        any.
-        """
-        ctx: Any = self.ctx
+        """Draw into `target` from now on. colors: whether it has any."""
         target.viewport = viewport
         target.scissor = None
         target.depth_mask = True
         if colors:
             target.color_mask = (True, True, True, True)
         target.use()
-        ctx.enable_only(flags)
-        ctx.depth_func = "<="
-        ctx.blend_equation = moderngl.FUNC_ADD
-        ctx.front_face, ctx.cull_face = "ccw", "back"
-        ctx.wireframe = False
-        ctx.polygon_offset = 0.0, 0.0
+        self.ctx.enable_only(flags)
 
     def triangles(self, mesh: Mesh, actor: Actor, program: moderngl.Program, kind: str) -> None:
         """Draw the actor's batches that `program` is for: all (kind depth), the plain ones or the textured
@@ -71,7 +72,7 @@ class Drawing:
         flags = moderngl.DEPTH_TEST | (
             moderngl.BLEND if actor.opacity < 1 and kind != "depth" else moderngl.NOTHING
         )
-        for batch in mesh.batches:
+        for batch in mesh.batches if kind == "depth" else loaded.batches:
             if kind != "depth" and (batch.image is not None) != (kind == "textured"):
                 continue
             if not batch.count:
@@ -119,8 +120,19 @@ class Drawing:
 
 
 def set_uniforms(program: moderngl.Program, **values: Any) -> None:
-    """Set uniforms by name; those a compiler left out are skipped. Matrices are given row-major."""
+    """Set uniforms by name; those a compiler left out are skipped. Matrices are given row-major.
+
+    What a uniform holds already is not set again: arrays are known by who they are, and must not be written
+    to.
+    """
+    if program.extra is None:
+        program.extra = {}
+    held: dict[str, Any] = program.extra
     for name, value in values.items():
+        before = held.get(name)
+        if before is value or (type(before) is type(value) is not np.ndarray and before == value):
+            continue
+        held[name] = value
         member: Any = program.get(name, None)
         if member is None:
             continue

@@ -16,7 +16,7 @@ from metagraph.motion.character_mesh import Character, Material, followers
 from metagraph.motion.skeleton import Skeleton
 from preview import joints as rules
 from preview.levels import Level, levels_of
-from preview.mesh import VERTEX, Batch, Mesh, ball, capsule, egg, pieces
+from preview.mesh import VERTEX, Batch, Mesh, Morphs, ball, capsule, egg, pieces
 from preview.occlusion import Rods, main_matrices, rods
 
 Array = NDArray[Any]
@@ -92,6 +92,16 @@ class Figure:
             return np.zeros(3), np.ones(3)
         below, above = self._slack
         return np.minimum(box[0] + below, box[1]), np.maximum(box[1] - above, box[0])
+
+    def posed_bounds(self, rotations: Array, positions: Array) -> tuple[Array, Array]:
+        """Return the same where rotations `[..., J, 4]` are known, too, as they turn the mesh: what a
+        hand holds reaches where no ball about the hand's joint tells.
+        """
+        matrix, corners = self.boxes
+        moved = self.palette(rotations, positions)[..., matrix, :, :].astype(float)
+        points = (corners @ moved[..., :3].swapaxes(-1, -2) + moved[..., None, :, 3]).reshape(-1, 3)
+        points = points[np.isfinite(points).all(1)]
+        return (points.min(0), points.max(0)) if len(points) else self.bounds(positions)
 
     def _balls(self, positions: Array) -> tuple[Array, Array] | None:
         """Return the box round balls about the joints, None when no position is a number."""
@@ -177,7 +187,7 @@ class SkinnedFigure(Figure):
         self._inverse_rotations = rotation.conjugate(rest_r)[follow].astype(np.float32)
         self._rest_positions = rest_p[follow].astype(np.float32)
         super().__init__(skeleton, _character_mesh(character), sources)
-        self.character, self.morphs, self.meshes = character, character.morphs, character.meshes
+        self.morphs, self.meshes = character.morphs, character.meshes
 
     def palette(self, rotations: Array, positions: Array) -> Array:
         sources = np.maximum(self.sources, 0)
@@ -361,11 +371,11 @@ def _character_mesh(character: Character) -> Mesh:
         batches.append(Batch(start, first - start, image, double_sided))
     if not batches:
         return Mesh(np.zeros(0, VERTEX), np.zeros((0, 3), np.uint32), (), len(character.skeleton))
-    morphs = (
-        None
-        if character.morph_positions is None
-        else np.asarray(character.morph_positions, np.float32)[:, np.concatenate(origins)]
-    )
+    morphs = None
+    if character.morph_positions is not None:
+        offsets, origin = character.morph_positions, np.concatenate(origins)
+        moved = np.flatnonzero((offsets != 0).any((0, 2))[origin])
+        morphs = Morphs(moved, np.take(offsets, origin[moved], 1).astype(np.float32, copy=False))
     return Mesh(
         np.concatenate(vertices),
         np.concatenate(triangles).astype(np.uint32),

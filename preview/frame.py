@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.records import dataclass
 from preview.camera import Camera
 from preview.mesh import Mesh
 from preview.scene import Actor, Scene, Theme
@@ -17,17 +19,17 @@ Array = NDArray[Any]
 
 TILE = 16  # pixels, of the squares that figures are laid over a picture by
 MOST = 64  # rectangles; of a crowd all round it is smoothed, which costs less than so many
-MARGIN = 4  # pixels that smoothing looks and writes beyond an edge, and a bit
+MARGIN = 2  # pixels that smoothing looks and writes beyond an edge, and a bit
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class Frame:
     """What the passes of one picture share.
 
     rows: each actor's first row in the palette. matrix: world to clip space `[4, 4]`. bounds: a box round
     those who are no ghosts. meshes: which is drawn of each actor. boxes: the corners of those round all
     actors' pieces `[N, 8, 3]`. casters: what throws each actor's shadow. light: world to shadow map,
-    0..1, or None.
+    0..1, or None; set once shadows are cast.
     """
 
     scene: Scene
@@ -49,6 +51,17 @@ class Frame:
         scene = self.scene
         plain = scene.background is None and scene.picture is None
         return scene.ground and plain and float(self.camera.eye[1]) > 0
+
+    @cached_property
+    def ends(self) -> Array:
+        """The least x and y and the most that are seen of each box `[4, N]`, see `Camera.project`; NaN where
+        some of it is behind the eye.
+        """
+        camera = self.camera
+        x, y, z = camera.axes @ (self.boxes.reshape(-1, 3) - camera.eye).T
+        depth = np.where(z < -1e-9, z, np.nan) * (-2 * math.tan(camera.fov / 2))
+        x, y = (x / (depth * (self.size[0] / self.size[1]))).reshape(-1, 8), (y / depth).reshape(-1, 8)
+        return np.stack([0.5 + x.min(1), 0.5 - y.max(1), 0.5 + x.max(1), 0.5 - y.min(1)])
 
     def which(self, solid: bool) -> list[int]:
         """Return the places of those who are no ghosts, or of the ghosts."""
@@ -79,29 +92,32 @@ def covered(frame: Frame) -> Array:
     """
     if not frame.actors:
         return np.zeros((0, 4), int)
-    size = np.array(frame.size)
-    seen = frame.camera.project(frame.boxes, frame.size[0] / frame.size[1])
-    if not np.isfinite(seen).all():  # somebody is behind the eye, or round it
-        return np.array([[0, 0, *frame.size]])
-    seen[..., 1] = 1 - seen[..., 1]
-    seen = np.clip(seen, -1, 2) * size
-    wide, high = (size + TILE - 1) // TILE
-    low = np.maximum(np.floor((seen.min(1) - MARGIN) / TILE), 0).astype(int)
-    past = np.minimum(np.ceil((seen.max(1) + MARGIN) / TILE), (wide, high)).astype(int)
-    inside = (past > low).all(1)
-    low, past = low[inside], past[inside]
+    width, height = frame.size
+    if not np.isfinite(frame.ends).all():  # somebody is behind the eye, or round it
+        return np.array([[0, 0, width, height]])
+    wide, high = (width + TILE - 1) // TILE, (height + TILE - 1) // TILE
+    left, top, right, bottom = frame.ends.clip(-1, 2)  # in shares of the picture, from above
+    margin = MARGIN / TILE
+    left = np.floor(left * (width / TILE) - margin).clip(0).astype(int)
+    low = np.floor((1 - bottom) * (height / TILE) - margin).clip(0).astype(int)
+    right = np.ceil(right * (width / TILE) + margin).clip(None, wide).astype(int)
+    past = np.ceil((1 - top) * (height / TILE) + margin).clip(None, high).astype(int)
+    inside = (right > left) & (past > low)
+    if not inside.all():
+        left, low, right, past = (x[inside] for x in (left, low, right, past))
     # Corners of rectangles, summed up along both axes, count those that lie over each tile.
-    changes = np.zeros((high + 1, wide + 1), int)
-    for x, y, sign in ((low, low, 1), (past, low, -1), (low, past, -1), (past, past, 1)):
-        np.add.at(changes, (y[:, 1], x[:, 0]), sign)
-    tiles = np.zeros((high, wide + 2), np.int8)
-    tiles[:, 1:-1] = changes.cumsum(0).cumsum(1)[:high, :wide] > 0
-    change = np.diff(tiles, axis=1)
+    line = wide + 1
+    corners = np.concatenate([low * line + left, past * line + right, low * line + right, past * line + left])
+    signs = np.repeat([1, -1], 2 * len(left))
+    changes = np.bincount(corners, signs, line * (high + 1)).reshape(high + 1, line)
+    over = np.zeros((high, wide + 2), np.int8)
+    over[:, 1:-1] = changes.cumsum(0).cumsum(1)[:high, :wide] > 0.5
+    change = over[:, 1:] - over[:, :-1]
     (rows, first), (_, last) = np.nonzero(change == 1), np.nonzero(change == -1)
     runs = np.stack([first, rows, last, rows + 1], 1) * TILE
     if len(runs) > MOST:
         runs = np.concatenate([runs[:, :2].min(0), runs[:, 2:].max(0)])[None]
-    return np.asarray(np.minimum(runs, np.tile(size, 2)))
+    return np.asarray(np.minimum(runs, (width, height, width, height)))
 
 
 def boxes(actors: Sequence[Actor], palettes: Sequence[Array]) -> Array:

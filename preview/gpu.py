@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import lru_cache
 from typing import Any
 
@@ -14,8 +14,10 @@ from numpy.typing import NDArray
 
 from metagraph.budgets import PICTURE_PIXELS
 from metagraph.pictures import picture_size
-from preview.mesh import VERTEX, Mesh, arranged
+from metagraph.records import dataclass
+from preview.mesh import VERTEX, Batch, Mesh, arranged
 from preview.occlusion import Rods
+from preview.paint import painted
 from preview.scene import Actor
 
 Array = NDArray[Any]
@@ -36,9 +38,12 @@ _LAYOUTS = {
 
 @dataclass
 class LoadedMesh:
-    """One mesh's buffers, and a vertex array for each program that draws it. order: the vertices' `[U]`."""
+    """One mesh's buffers, and a vertex array for each program that draws it. order: the vertices' `[U]`.
+    batches: as they are drawn where colours count.
+    """
 
     order: Array
+    batches: tuple[Batch, ...]
     vertices: moderngl.Buffer
     positions: moderngl.Buffer
     indices: moderngl.Buffer
@@ -74,10 +79,12 @@ class LoadedMesh:
 
 
 class Store:
-    """Loads what a frame needs and lets go of what has not been drawn for long."""
+    """Loads what a frame needs and lets go of what has not been drawn for long. software: whether the
+    processor draws, to which textures are dear.
+    """
 
-    def __init__(self, ctx: moderngl.Context) -> None:
-        self._ctx = ctx
+    def __init__(self, ctx: moderngl.Context, software: bool = False) -> None:
+        self._ctx, self._software = ctx, software
         self._meshes: dict[Mesh, LoadedMesh] = {}
         self._images: dict[bytes, moderngl.Texture] = {}  # which a mesh and its levels of detail share
         self.palette = ctx.texture((3, 1), 4, dtype="f4")
@@ -163,14 +170,18 @@ class Store:
         loaded = self._meshes.get(mesh)
         if loaded is None:
             buffer = self._ctx.buffer
-            order, triangles = arranged(mesh)
-            vertices = mesh.vertices[order]
+            drawn, origins = (
+                painted(mesh, decoded) if self._software else (mesh, np.arange(len(mesh.vertices)))
+            )
+            order, triangles = arranged(drawn)
+            vertices = drawn.vertices[order]
             loaded = self._meshes[mesh] = LoadedMesh(
-                order,
+                origins[order],
+                drawn.batches,
                 buffer(vertices.tobytes()),
                 buffer(vertices["position"].tobytes()),
                 buffer(np.ascontiguousarray(triangles, "<u4").tobytes()),
-                {b.image: self._image(b.image) for b in mesh.batches if b.image is not None},
+                {b.image: self._image(b.image) for b in drawn.batches if b.image is not None},
             )
         loaded.idle = 0
 
@@ -184,8 +195,7 @@ class Store:
         wanted = np.asarray(weights, np.float32) if fits else np.zeros(len(mesh.morphs), np.float32)
         loaded = self._meshes[mesh]
         if wanted.tobytes() != (loaded.morphs or bytes(wanted.nbytes)):  # on change only
-            active = np.flatnonzero(np.abs(wanted) > 1e-5)
-            moved = mesh.vertices["position"] + np.tensordot(wanted[active], mesh.morphs[active], 1)
+            moved = mesh.morphs.positions(mesh.vertices["position"], wanted)
             loaded.positions.write(np.ascontiguousarray(moved[loaded.order], "<f4").tobytes())
             loaded.morphs = wanted.tobytes()
 

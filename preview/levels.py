@@ -10,7 +10,6 @@ import hashlib
 import io
 import os
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -18,12 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.disk_cache import DiskCache, cache_folder
+from metagraph.records import dataclass
 from preview.mesh import Mesh
 from preview.simplify import Fewer, simplified
 
 Array = NDArray[Any]
 
-ERRORS = (0.001, 0.002, 0.004, 0.008)  # of the figure's height
+ERRORS = (0.001, 0.0015, 0.002, 0.003, 0.004, 0.006, 0.008)  # of the figure's height
 MADE = 1  # to be raised when they are made otherwise
 LEAST, LARGEST = 600, 400_000  # triangles; what has fewer is drawn as it is, with more it would take minutes
 WORTH = 0.85  # of the triangles of the level before, with more than which there is none

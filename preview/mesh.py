@@ -6,11 +6,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from metagraph.records import dataclass
 
 Array = NDArray[Any]
 
@@ -37,18 +38,42 @@ class Batch:
 
 
 @dataclass(frozen=True, eq=False)
+class Morphs:
+    """What a face moves: a fifth of a character's vertices. moved: which `[W]`, rising. offsets: of their
+    positions, by each target `[K, W, 3]`.
+    """
+
+    moved: Array
+    offsets: Array
+
+    def __len__(self) -> int:
+        return len(self.offsets)
+
+    def of(self, used: Array) -> Morphs:
+        """Return those of a mesh that has some of the vertices: `used [U]`, rising."""
+        _, here, there = np.intersect1d(used, self.moved, assume_unique=True, return_indices=True)
+        return Morphs(here, np.take(self.offsets, there, 1))
+
+    def positions(self, rest: Array, weights: Array) -> Array:
+        """Return the vertices' positions `[V, 3]` with a face of `weights [K]` on, from those at `rest`."""
+        out = rest.copy()
+        active = np.flatnonzero(np.abs(weights) > 1e-5)
+        out[self.moved] += np.tensordot(weights[active], self.offsets[active], 1)
+        return out
+
+
+@dataclass(frozen=True, eq=False)
 class Mesh:
     """vertices: `[V]` of VERTEX in rest pose. triangles: `[N, 3]`. matrices: how many the palette holds.
 
-    morphs: offsets of the positions `[K, V, 3]`, or None. Compared by identity: the renderer keeps one copy
-    per value.
+    morphs: what a face moves, or None. Compared by identity: the renderer keeps one copy per value.
     """
 
     vertices: Array
     triangles: Array
     batches: tuple[Batch, ...]
     matrices: int
-    morphs: Array | None = None
+    morphs: Morphs | None = None
 
 
 def arranged(mesh: Mesh) -> tuple[Array, Array]:

@@ -32,14 +32,18 @@ def no_opengl(reasons: str) -> OpenGLError:
 
 def standalone_context() -> moderngl.Context:
     """Return a context of OpenGL 3.3 that belongs to no window. Raises OpenGLError."""
-    tries: list[dict[str, Any]] = [{"backend": "egl"}, {}] if sys.platform.startswith("linux") else [{}]
+    tries: list[dict[str, Any]] = [{}]
+    if sys.platform.startswith("linux"):
+        # By their names first: to look for them, another program is started, twice.
+        named = {"libgl": "libGL.so.1", "libegl": "libEGL.so.1"}
+        tries = [{"backend": "egl", **named}, {"backend": "egl"}, {}]
     reasons = []
     for options in tries:
         try:
             return moderngl.create_context(standalone=True, require=330, **options)
         except Exception as error:  # each backend raises its own kinds
             reasons.append(f"{options.get('backend', 'system')}: {error}")
-    raise no_opengl("; ".join(reasons))
+    raise no_opengl("; ".join(dict.fromkeys(reasons)))
 
 
 class Offscreen:

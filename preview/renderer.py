@@ -5,7 +5,6 @@ software.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 import moderngl
@@ -27,6 +26,7 @@ SHADE = 0.8  # how dark the figure's shadow on itself is
 # software; in a crowd, which has no shadows on itself either; in software of a ghost or in a view beside
 # another, looked at less closely.
 OFF, OFF_CROWD, OFF_BESIDE = (0.5, 1.0), 1.4, 1.6
+WHOLE = 0.5  # of a picture, from which on clearing all of it costs less: clearing a part is drawing it
 _SOFTWARE = ("llvmpipe", "softpipe", "swiftshader", "software", "basic render")
 
 
@@ -51,7 +51,7 @@ class Renderer:
         self.software = is_software(ctx)
         self.samples = min((0 if self.software else 4) if samples is None else samples, int(ctx.max_samples))
         self._beside = beside
-        self._drawing: Drawing = Drawing(ctx) if beside is None else beside._drawing
+        self._drawing: Drawing = Drawing(ctx, self.software) if beside is None else beside._drawing
         self._shadows: Shadows = Shadows(self._drawing, self.software) if beside is None else beside._shadows
         self.store = self._drawing.store
         self.occlusion = not self.software  # a tenth of a picture's time where the processor draws
@@ -86,6 +86,7 @@ class Renderer:
         width, height = max(1, int(size[0])), max(1, int(size[1]))
         actors = [a for a in scene.actors if drawable(a)]
         self._resize(width, height)
+        self._drawing.begin()
         solid = [a for a in actors if a.opacity >= 1]
         cast = scene.shadow and 0 < sum(a.count for a in solid) <= SHADOW_LIMIT
         crowd = sum(a.count for a in actors) > SHADOW_LIMIT
@@ -98,14 +99,14 @@ class Renderer:
         meshes = [mesh(a) for a in actors]
         casters = shadow_casters(actors) if cast else []
         rows = self._drawing.store.prepare(actors, meshes + casters)
-        matrix = camera.projection(width / height) @ camera.view()
+        matrix = camera.matrix(width / height)
         bounds = Scene(tuple(solid)).bounds()
         round_pieces = boxes(actors, self.store.palettes if actors else ())
         frame = Frame(
             scene, actors, rows, camera, (width, height), theme, matrix, bounds, meshes, round_pieces, casters
         )
         if cast:
-            frame = replace(frame, light=self._shadows.cast(frame))
+            frame.light = self._shadows.cast(frame)
 
         # The ground and the sky need no smoothing and go to the target; figures are drawn apart and laid over
         # them.
@@ -115,10 +116,7 @@ class Renderer:
         parts = covered(frame)
         if len(parts):
             self._drawing.state(self._main, (0, 0, width, height), moderngl.DEPTH_TEST)
-            # Smoothing looks a little beyond.
-            low, past = parts[:, :2].min(0) - MARGIN, parts[:, 2:].max(0) + MARGIN
-            low, past = np.maximum(low, 0), np.minimum(past, (width, height))
-            self._main.clear(depth=1.0, viewport=(*low.tolist(), *(past - low).tolist()))
+            self._clear(parts)
             self._bodies(frame, frame.which(solid=True))
             self._ghosts(frame)
             self._compose(frame, target, parts)
@@ -131,16 +129,27 @@ class Renderer:
         self._drawing.store.palette.use(0)
         self._shadows.map.use(1)
         self._drawing.store.marks.use(3)
+        shared: dict[str, Any] = {"u_palette": 0, "u_shadow": 1, "u_image": 2, "u_marks": 3}
+        shared |= {"u_matrix": frame.matrix, "u_eye": frame.camera.eye, "u_to_light": theme.to_light}
+        shared |= {"u_key": theme.key, "u_above": theme.above, "u_below": theme.below, "u_rim": theme.rim}
+        shared["u_shade"] = SHADE
+        if frame.light is not None:
+            off = self._shadows.off(frame.light)
+            shared |= {"u_light": frame.light, "u_spread": self._shadows.spread, "u_off": off}
         for i in which:
             actor = frame.actors[i]
             cast = frame.light is not None and actor.opacity >= 1
             rods = actor.figure.rods if self.occlusion and cast and actor.count == 1 else None
-            for kind in ("plain", "textured"):
-                if not any((b.image is not None) == (kind == "textured") for b in frame.meshes[i].batches):
-                    continue
-                sunk = frame.floor and float(np.min(actor.positions[..., 1])) < 0
+            sunk = frame.floor and float(np.min(actor.positions[..., 1])) < 0
+            own: dict[str, Any] = {"u_opacity": actor.opacity, "u_marks_row": i, "u_row": frame.rows[i]}
+            contact = CONTACT if frame.floor and cast else 0.0
+            own["u_near_ground"] = contact, 1 / (CONTACT_HIGH * actor.figure.height)
+            if rods is not None:
+                own["u_rod_starts"], own["u_rod_ends"] = rods.placed(self.store.palettes[i][0])
+            batches = self._drawing.store[frame.meshes[i]].batches
+            for textured in {b.image is not None for b in batches}:
                 flags = (
-                    ("TEXTURED", kind == "textured"),
+                    ("TEXTURED", textured),
                     ("MARKED", bool(actor.marks)),
                     ("SHADOWED", cast),
                     ("SUNK", sunk),
@@ -151,33 +160,8 @@ class Renderer:
                 program = self._drawing.program(
                     "body " + " ".join(words), head + shaders.BODY_VERTEX, head + shaders.BODY
                 )
-                set_uniforms(
-                    program,
-                    u_matrix=frame.matrix,
-                    u_eye=frame.camera.eye,
-                    u_to_light=theme.to_light,
-                    u_opacity=actor.opacity,
-                )
-                set_uniforms(
-                    program, u_palette=0, u_shadow=1, u_image=2, u_marks=3, u_marks_row=i, u_row=frame.rows[i]
-                )
-                set_uniforms(
-                    program,
-                    u_key=theme.key,
-                    u_above=theme.above,
-                    u_below=theme.below,
-                    u_rim=theme.rim,
-                    u_shade=SHADE,
-                )
-                if frame.light is not None:
-                    shadows = self._shadows
-                    set_uniforms(program, u_light=frame.light, u_spread=shadows.spread)
-                    set_uniforms(program, u_off=shadows.off(frame.light))
-                if rods is not None:
-                    starts, ends = rods.placed(self.store.palettes[i][0])
-                    set_uniforms(program, u_rod_starts=starts, u_rod_ends=ends)
-                contact = CONTACT if frame.floor and cast else 0.0
-                set_uniforms(program, u_near_ground=(contact, 1 / (CONTACT_HIGH * actor.figure.height)))
+                set_uniforms(program, **shared, **own)
+                kind = "textured" if textured else "plain"
                 self._drawing.triangles(frame.meshes[i], actor, program, kind)
 
     def _ghosts(self, frame: Frame) -> None:
@@ -195,6 +179,16 @@ class Renderer:
         self.ctx.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
         self._bodies(frame, which)
         self.ctx.polygon_offset = 0.0, 0.0
+
+    def _clear(self, parts: Array) -> None:
+        """Make place for figures, in all of the picture or round their parts, whichever costs less."""
+        low, past = parts[:, :2].min(0) - MARGIN, parts[:, 2:].max(0) + MARGIN  # smoothing looks beyond
+        low, past = np.maximum(low, 0), np.minimum(past, self._size)
+        part = (*low.tolist(), *(past - low).tolist())
+        if part[2] * part[3] > WHOLE * self._size[0] * self._size[1]:
+            self._main.clear(depth=1.0)
+        else:
+            self._main.clear(depth=1.0, viewport=part)
 
     def _overlay(self, frame: Frame) -> None:
         """The skeletons of actors that want it, over everything."""

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.records import dataclass
 from preview.figure import Figure
 
 Array = NDArray[Any]
@@ -35,7 +38,7 @@ class Actor:
     @property
     def count(self) -> int:
         """How many instances."""
-        return int(np.prod(self.rotations.shape[:-2], dtype=int))
+        return math.prod(self.rotations.shape[:-2])
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,10 +103,21 @@ class Theme:
     ink: Color  # the skeleton drawn over a mesh
     toward: Color = (-0.42, 0.80, 0.62)  # where the lamp is, of any length; above the ground
 
-    @property
+    @cached_property
     def to_light(self) -> Array:
-        """The direction of the lamp, a unit vector `[3]`."""
-        return np.asarray(np.array(self.toward) / np.linalg.norm(self.toward))
+        """The direction of the lamp, a unit vector `[3]`, not to be written to."""
+        out = np.asarray(np.array(self.toward) / np.linalg.norm(self.toward))
+        out.flags.writeable = False
+        return out
+
+    @cached_property
+    def lamp(self) -> Array:
+        """The lamp's right, up and forward as rows `[3, 3]`, not to be written to."""
+        side = np.cross([0.0, 1, 0], self.to_light)
+        side /= np.linalg.norm(side)
+        out = np.stack([side, np.cross(self.to_light, side), -self.to_light])
+        out.flags.writeable = False
+        return out
 
 
 DARK = Theme(

@@ -15,12 +15,11 @@ void main() {
 
 # A rectangle of the picture, in pixels: left, low, right, high.
 PART_VERTEX = """#version 330 core
-uniform vec2 u_pixel;
+uniform vec2 u_pixel;  // one by the picture's size
 in vec4 in_part;
-out vec2 v_at;
 void main() {
-    v_at = mix(in_part.xy, in_part.zw, vec2(gl_VertexID & 1, gl_VertexID >> 1)) * u_pixel;
-    gl_Position = vec4(v_at * 2.0 - 1.0, 0.0, 1.0);
+    vec2 at = mix(in_part.xy, in_part.zw, vec2(gl_VertexID & 1, gl_VertexID >> 1)) * u_pixel;
+    gl_Position = vec4(at * 2.0 - 1.0, 0.0, 1.0);
 }
 """
 
@@ -156,12 +155,15 @@ void main() {
 # Soft spots where the body comes near the ground: one square each.
 SPOT_VERTEX = """#version 330 core
 uniform mat4 u_matrix;
+uniform float u_most;  // that a spot of strength 1 takes
 in vec4 in_spot;  // x, z, radius, strength
 out vec2 v_at;
 out float v_strength;
 void main() {
-    v_at = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
     v_strength = in_spot.w;
+    // Farther out a spot takes less than a step of 512 from the ground.
+    float seen = sqrt(1.0 - min(1.0, sqrt(1.0 / (512.0 * u_most * v_strength))));
+    v_at = (vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0) * seen;
     gl_Position = u_matrix * vec4(in_spot.x + v_at.x * in_spot.z, 0.0, in_spot.y + v_at.y * in_spot.z, 1.0);
 }
 """
@@ -259,7 +261,7 @@ void main() {
     v_world = m * vec4(in_position, 1.0);
     v_normal = mat3(m) * in_normal;
     v_uv = in_uv;
-    v_color = vec4(pow(in_color.rgb, vec3(2.2)), in_color.a);
+    v_color = vec4(pow(in_color.rgb, vec3(1.1)), in_color.a);  // the root of linear light: so colours fade evenly
 #ifdef MARKED
     v_mark = vec4(0.0);
     for (int i = 0; i < 4; ++i) {
@@ -300,7 +302,7 @@ void main() {
 #endif
     vec3 n = normalize(v_normal) * (gl_FrontFacing ? 1.0 : -1.0);
     vec3 v = normalize(u_eye - v_world);
-    vec3 base = v_color.rgb;
+    vec3 base = v_color.rgb * v_color.rgb;
 #ifdef TEXTURED
     vec3 texel = texture(u_image, v_uv).rgb;
     base *= texel * texel * (0.7 * texel + 0.3);  // close to the power of 2.2, without it
@@ -381,7 +383,6 @@ void main() {
 
 COPY = """#version 330 core
 uniform sampler2D u_picture;
-in vec2 v_at;
 out vec4 o_color;
 void main() { o_color = texelFetch(u_picture, ivec2(gl_FragCoord.xy), 0); }
 """
@@ -399,27 +400,22 @@ void main() {
 }
 """
 
-# Smooths edges found by contrast: looks along an edge's direction and takes the mean, unless that leaves the
-# local range.
+# Smooths edges found by contrast: mixes a point with those beside it along the edge. Looking farther shows no
+# more, and what lies between points costs four times a point where the processor draws.
 SMOOTH = """#version 330 core
 uniform sampler2D u_picture;
-uniform vec2 u_pixel;
-in vec2 v_at;
 out vec4 o_color;
 float luma(vec4 c) { return dot(c, vec4(0.30, 0.59, 0.11, 0.30)); }
-vec4 at(vec2 p) { return textureLod(u_picture, p, 0.0); }
-float near(ivec2 p, int x, int y) { return luma(texelFetch(u_picture, p + ivec2(x, y), 0)); }
+vec4 near(int x, int y) { return texelFetch(u_picture, ivec2(gl_FragCoord.xy) + ivec2(x, y), 0); }
 void main() {
-    ivec2 p = ivec2(gl_FragCoord.xy);
-    vec4 here = texelFetch(u_picture, p, 0);
-    float m = luma(here);
-    // Whole texels: half a texel off would be the mean of four, at twice the price where the processor draws.
-    float a = near(p, -1, -1), b = near(p, 1, -1), c = near(p, -1, 1), d = near(p, 1, 1);
-    float low = min(m, min(min(a, b), min(c, d))), high = max(m, max(max(a, b), max(c, d)));
-    vec2 along = vec2((c + d) - (a + b), (a + c) - (b + d));
-    float least = 1.0 / (min(abs(along.x), abs(along.y)) + max((a + b + c + d) * 0.03, 0.008));
-    along = clamp(along * least, -3.0, 3.0) * u_pixel;
-    vec4 mean = 0.5 * (at(v_at - along * 0.4) + at(v_at + along * 0.4));
-    o_color = high - low < 0.03 ? here : mean;
+    vec4 here = near(0, 0), left = near(-1, 0), right = near(1, 0), low = near(0, -1), high = near(0, 1);
+    float m = luma(here), a = luma(left), b = luma(right), c = luma(low), d = luma(high);
+    float least = min(m, min(min(a, b), min(c, d))), most = max(m, max(max(a, b), max(c, d)));
+    vec2 along = abs(vec2(d - c, b - a));
+    along /= min(along.x, along.y) + max((a + b + c + d) * 0.015, 0.004);
+    along = min(along * 0.4, 1.0);
+    along *= 0.5 / max(1.0, along.x + along.y);
+    vec4 mean = here + along.x * (left + right - 2.0 * here) + along.y * (low + high - 2.0 * here);
+    o_color = most - least < 0.03 ? here : mean;
 }
 """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -25,12 +26,15 @@ SHADOW_SIZE = (1024, 1024), (416, 208)
 SMALL, NEAR = 2.0, 3.0
 # Texels from the middle of the two places of the map that are looked at, likewise.
 TAPS = (1.6, 0.9), (0.8, 0.45)
-OFF_LEAST, OFF_TEXELS = 0.010, 1.6  # metres, texels: how far before a surface its shadow is looked up
+# Metres, on a graphics card and in software; texels: how far before a surface its shadow is looked up. In
+# software both that and what throws it may be off more.
+OFF_LEAST, OFF_TEXELS = (0.010, 0.013), 1.6
 CAST_OFF = 0.004  # of the height, that what throws a shadow may be off
 STEPS = 8  # sizes of the map near by for each doubling: else its texels would creep over a body that moves
 SOFT_SIZE = 128, 56  # texels of the ground's shadow, along the light and across
 SHADOW_LIMIT = 8  # instances; a crowd has only the soft spots under it
 FAINT = 0.02  # the strength under which a spot on the ground is not worth its points
+_HALF = np.array([[0.5, 0, 0, 0.5], [0, 0.5, 0, 0.5], [0, 0, 0.5, 0.5], [0, 0, 0, 1]])  # -1..1 to 0..1
 Strip = tuple[
     tuple[float, ...], tuple[float, float], tuple[float, ...]
 ]  # a patch of the ground, its turn, fading
@@ -57,6 +61,7 @@ class Shadows:
 
     def __init__(self, drawing: Drawing, software: bool) -> None:
         self._drawing, self._taps, ctx = drawing, TAPS[software], drawing.ctx
+        self._off_least = OFF_LEAST[software]
         size, small = SHADOW_SIZE[software]
         self._whole, self._near, self._low = _Map(ctx, size), _Map(ctx, size), _Map(ctx, small)
         self._used = self._whole
@@ -85,13 +90,13 @@ class Shadows:
         a slope must not shade it. light: as `cast` returned it.
         """
         texel = 1 / (float(np.linalg.norm(light[:2, :3], axis=1).min()) * self._used.size)
-        return max(OFF_LEAST, OFF_TEXELS * texel)
+        return max(self._off_least, OFF_TEXELS * texel)
 
     def cast(self, frame: Frame) -> Array:
         """Draw depth as the lamp sees it, if it sees another; return the matrix from the world to the shadow
         map, 0..1. Near by, what is in the picture has a map of its own.
         """
-        axes, centre, radius = _lamp(frame)
+        axes, (centre, radius) = frame.theme.lamp, _lit(frame)
         pixels, low, high = _window(frame, axes)
         if pixels * 2 * radius < NEAR * self._whole.size:
             small = pixels * 2 * radius < SMALL * self._low.size
@@ -108,7 +113,7 @@ class Shadows:
         before = into.seen
         if before is not None and before[1] == frame.theme.toward and _alike(before[0], frame.actors):
             return before[2]
-        axes, centre, radius = _lamp(frame)
+        axes, (centre, radius) = frame.theme.lamp, _lit(frame)
         matrix = np.eye(4)
         matrix[:3, :3] = axes / radius
         matrix[:3, 3] = -axes @ centre / radius
@@ -119,9 +124,7 @@ class Shadows:
         self._drawing.state(into.target, (0, 0, into.size, into.size), moderngl.DEPTH_TEST, colors=False)
         into.target.clear(depth=1.0)
         depths(self._drawing, frame, frame.which(solid=True), matrix, frame.casters)
-        half = np.eye(4) * 0.5
-        half[:3, 3], half[3, 3] = 0.5, 1
-        return np.asarray(half @ matrix)
+        return np.asarray(_HALF @ matrix)
 
     def on_ground(self, frame: Frame, target: Any, ground_to: int, solid: Sequence[Actor]) -> None:
         """What darkens the ground multiplies what is there. ground_to: the row, from below, it ends at."""
@@ -139,7 +142,8 @@ class Shadows:
             set_uniforms(program, u_dark=frame.theme.shadow, u_soft=4)
             self._drawing.bare("cast", program).render(moderngl.TRIANGLE_STRIP, 4)
         program = self._drawing.program("spots", shaders.SPOT_VERTEX, shaders.SPOT)
-        set_uniforms(program, u_matrix=frame.matrix, u_dark=frame.theme.shadow)
+        dark = frame.theme.shadow
+        set_uniforms(program, u_matrix=frame.matrix, u_dark=dark, u_most=max(1e-3, 1 - min(dark)))
         self._drawing.squares("spots", program, np.concatenate([_spots(a) for a in solid]), "4f/i", "in_spot")
         target.scissor = None
 
@@ -158,7 +162,7 @@ class Shadows:
         depth.compare_func = ""
         depth.use(1)
         set_uniforms(program, u_depth=1, u_light=light, u_patch=patch, u_turn=turn, u_fade=fade)
-        set_uniforms(program, u_scale=float(np.linalg.norm(light[0, :3])))
+        set_uniforms(program, u_scale=math.hypot(*light[0, :3]))
         self._drawing.bare("soft", program).render(moderngl.TRIANGLES, 3)
         depth.compare_func = "<="
 
@@ -167,24 +171,30 @@ def _strip(frame: Frame) -> Strip | None:
     """Return where on the ground the shadow can be; None where that is out of the picture. Only a strip along
     the light can be dark.
     """
-    low, high = frame.bounds
-    to_light = frame.theme.to_light
-    thrown = -to_light / to_light[1] * max(0.0, float(high[1]))
-    fade_low, fade_high = np.minimum(low, low + thrown), np.maximum(high, high + thrown)
-    middle, half = (fade_low + fade_high) / 2, (fade_high - fade_low) / 2 * 1.05
-    along = to_light[[0, 2]] / np.linalg.norm(to_light[[0, 2]])
-    axes = np.stack([along, [-along[1], along[0]]])
-    feet = np.array([(x, z) for x in (low[0], high[0]) for z in (low[2], high[2])])
-    strip = np.concatenate([feet, feet + thrown[[0, 2]]]) @ axes.T
-    least, most = strip.min(0) - 0.05 * half.max(), strip.max(0) + 0.05 * half.max()
-    corners = np.array([(x, z) for x in (least[0], most[0]) for z in (least[1], most[1])]) @ axes
-    seen = np.insert(corners, 1, 0.0, axis=1) @ frame.matrix[:, [0, 1, 2]].T + frame.matrix[:, 3]
-    if (seen[:, :2] > seen[:, 3:]).all(0).any() or (seen[:, :2] < -seen[:, 3:]).all(0).any():
+    (low_x, low_y, low_z), (high_x, high_y, high_z) = (x.tolist() for x in frame.bounds)
+    x, y, z = frame.theme.to_light.tolist()
+    reach = max(0.0, high_y) / y
+    fade_x = min(low_x, low_x - x * reach), max(high_x, high_x - x * reach)
+    fade_z = min(low_z, low_z - z * reach), max(high_z, high_z - z * reach)
+    tall = max(high_y, high_y - y * reach) - min(low_y, low_y - y * reach)
+    half = 1.05 / 2 * max(fade_x[1] - fade_x[0], tall, fade_z[1] - fade_z[0])
+    flat = math.hypot(x, z)
+    x, z = x / flat, z / flat  # along the light; across it is -z, x
+    feet = [(u, v) for u in (low_x, high_x) for v in (low_z, high_z)]
+    along, across = [u * x + v * z for u, v in feet], [v * x - u * z for u, v in feet]
+    pad = 0.05 * half
+    least, most = (min(along) - flat * reach - pad, min(across) - pad), (max(along) + pad, max(across) + pad)
+    m = frame.matrix.tolist()
+    seen = []
+    for a, b in ((a, b) for a in (least[0], most[0]) for b in (least[1], most[1])):
+        u, v = a * x - b * z, a * z + b * x
+        seen.append([m[k][0] * u + m[k][2] * v + m[k][3] for k in (0, 1, 3)])
+    if any(all(s * c[k] > c[2] for c in seen) for s in (1, -1) for k in (0, 1)):
         return None
-    x, z = (least + most) / 2 @ axes
-    patch = (float(x), float(z), *((most - least) / 2).tolist())
-    fade = (float(middle[0]), float(middle[2]), float(max(half[0], half[2])))
-    return patch, (float(along[0]), float(along[1])), fade
+    a, b = (least[0] + most[0]) / 2, (least[1] + most[1]) / 2
+    patch = (a * x - b * z, a * z + b * x, (most[0] - least[0]) / 2, (most[1] - least[1]) / 2)
+    wide = 1.05 / 2 * max(fade_x[1] - fade_x[0], fade_z[1] - fade_z[0])
+    return patch, (x, z), ((fade_x[0] + fade_x[1]) / 2, (fade_z[0] + fade_z[1]) / 2, wide)
 
 
 def shadow_casters(actors: Sequence[Actor]) -> list[Mesh]:
@@ -204,14 +214,10 @@ def depths(
         drawing.triangles(meshes[i], frame.actors[i], program, "depth")
 
 
-def _lamp(frame: Frame) -> tuple[Array, Array, float]:
-    """Return the lamp's right, up and forward `[3, 3]`, and the middle `[3]` and radius of what it lights."""
+def _lit(frame: Frame) -> tuple[Array, float]:
+    """Return the middle `[3]` and radius of what the lamp lights."""
     low, high = frame.bounds
-    to_light = frame.theme.to_light
-    side = np.cross([0.0, 1, 0], to_light)
-    side /= np.linalg.norm(side)
-    axes = np.stack([side, np.cross(to_light, side), -to_light])
-    return axes, (low + high) / 2, max(0.05, float(np.linalg.norm(high - low)) / 2)
+    return (low + high) / 2, max(0.05, math.dist(low, high) / 2)
 
 
 def _window(frame: Frame, axes: Array) -> tuple[float, Array, Array]:
@@ -219,26 +225,35 @@ def _window(frame: Frame, axes: Array) -> tuple[float, Array, Array]:
     `[2], [2]`, metres, that shades what is seen. No pixels where nothing is.
     """
     camera, (width, height) = frame.camera, frame.size
-    seen = camera.project(frame.boxes, width / height)
-    behind = np.asarray(np.isnan(seen).any(2))  # the eye
-    low, high = (np.where(behind[..., None], fill, seen) for fill in (np.inf, -np.inf))
-    inside = (low.min(1) < 1).all(1) & (high.max(1) > 0).all(1)
-    inside |= behind.any(1) & ~behind.all(1)
+    ends = frame.ends
+    if np.isnan(ends).any():
+        seen = camera.project(frame.boxes, width / height)
+        behind = np.asarray(np.isnan(seen).any(2))  # the eye
+        low, high = (np.where(behind[..., None], fill, seen) for fill in (np.inf, -np.inf))
+        inside = (low.min(1) < 1).all(1) & (high.max(1) > 0).all(1)
+        inside |= behind.any(1) & ~behind.all(1)
+    else:
+        inside = (ends[:2] < 1).all(0) & (ends[2:] > 0).all(0)
     if not inside.any():
         return 0.0, np.zeros(2), np.ones(2)
-    corners = frame.boxes[inside].reshape(-1, 3)
-    away = np.maximum((camera.eye - corners) @ camera.axes[2], camera.near)
-    tall = height / (2 * np.tan(camera.fov / 2))  # pixels of a metre, a metre away
+    back = camera.axes[2]
+    # Along the lamp's right and up, and away from the eye.
+    corners = (frame.boxes if inside.all() else frame.boxes[inside]).reshape(-1, 3)
+    placed = np.stack([axes[0], axes[1], -back]) @ corners.T
+    least, most = placed.min(1), placed.max(1)
+    near, far = (max(float(camera.eye @ back + x), camera.near) for x in (least[2], most[2]))
+    tall = height / (2 * math.tan(camera.fov / 2))  # pixels of a metre, a metre away
     # No more of the boxes than is in the picture, from the nearest to the farthest of them.
-    right, up, back = camera.axes
-    sides = [(x * width * right + y * height * up) / (2 * tall) for x in (-1, 1) for y in (-1, 1)]
-    view = camera.eye + np.array([d * (s - back) for d in (away.min(), away.max()) for s in sides])
-    boxes, view = corners @ axes[:2].T, view @ axes[:2].T
-    low, high = np.maximum(boxes.min(0), view.min(0)), np.minimum(boxes.max(0), view.max(0))
-    half = 2 ** (np.ceil(np.log2(np.maximum((high - low) / 2, 1e-3) * 1.04) * STEPS) / STEPS)
+    sides = np.array([[x * width, y * height] for x in (-1, 1) for y in (-1, 1)]) / (2 * tall)
+    rays = (sides @ camera.axes[:2] - back) @ axes[:2].T
+    view = camera.eye @ axes[:2].T + np.concatenate([near * rays, far * rays])
+    low, high = np.maximum(least[:2], view.min(0)), np.minimum(most[:2], view.max(0))
+    half = np.array(
+        [2 ** (math.ceil(math.log2(max(x, 1e-3) * 1.04) * STEPS) / STEPS) for x in (high - low) / 2]
+    )
     texel = half / 128
     middle = np.round((low + high) / 2 / texel) * texel
-    return tall / float(away.min()), middle - half, middle + half
+    return tall / near, middle - half, middle + half
 
 
 def _alike(before: Sequence[Actor], now: Sequence[Actor]) -> bool:
@@ -253,8 +268,9 @@ def _spots(actor: Actor) -> Array:
     h = actor.figure.height
     if not len(ends):
         ends = starts = np.flatnonzero(actor.figure.drawn)[:1]
-    middle = (p[:, ends] + p[:, starts]) / 2
-    length = np.linalg.norm(p[:, ends] - p[:, starts], axis=-1)
+    a, b = p[:, ends], p[:, starts]
+    middle = (a + b) / 2
+    length = np.sqrt(((a - b) ** 2).sum(-1))
     up = np.maximum(middle[..., 1], 0) / h
     radius = 0.55 * length + 0.05 * h + 0.30 * up * h
     strength = 0.60 * np.exp(-5.0 * up) * np.clip(length / (0.12 * h), 0.25, 1.0)

@@ -11,12 +11,12 @@ neighbours are collapsed at once, since Python would take seconds one by one.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.records import dataclass
 from preview.mesh import Batch, Mesh
 
 Array = NDArray[Any]
@@ -47,7 +47,7 @@ class Fewer:
             Batch(int(end - count), int(count), b.image, b.double_sided)
             for b, end, count in zip(mesh.batches, ends, self.counts, strict=True)
         ]
-        morphs = None if mesh.morphs is None else mesh.morphs[:, self.used]
+        morphs = None if mesh.morphs is None else mesh.morphs.of(self.used)
         return Mesh(mesh.vertices[self.used], self.triangles, tuple(batches), mesh.matrices, morphs)
 
 

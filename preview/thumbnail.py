@@ -66,7 +66,7 @@ def thumbnail(
     turn = rotation.from_axis_angle(np.array([0.0, 1, 0]), np.array(-_heading(figure, positions)))
     centred = rotation.rotate(turn, positions - positions[0] * [1, 0, 1])
     actor = Actor(figure, rotation.multiply(turn, rotations), centred)
-    camera = _camera(_person(figure, figure.bounds(actor.positions)))
+    camera = _camera(_person(figure, figure.posed_bounds(actor.rotations, actor.positions)))
     return offscreen.render(Scene((actor,), background=background), camera, theme, (pixels, pixels))
 
 
@@ -88,17 +88,17 @@ def thumbnails(
     rotations, positions = clip.skeleton.globals(clip.poses()[every])
     turn = rotation.from_axis_angle(np.array([0.0, 1, 0]), np.array(-_heading(figure, positions[0])))
     centred = rotation.rotate(turn, positions - positions[:, :1] * [1, 0, 1])
+    turned = rotation.multiply(turn, rotations)
     near = nearness(clip)
-    box = whole = figure.bounds(centred)
     if near == "whole":
-        box = _person(figure, whole)
+        box = _person(figure, figure.posed_bounds(turned, centred))
     else:
-        box = near_box(clip.skeleton, near, centred, whole, figure.height)
+        box = near_box(clip.skeleton, near, centred, figure.bounds(centred), figure.height)
     camera = _camera(box)
     at = 1 + np.searchsorted(every[1:], frames)
     return [
         offscreen.render(
-            Scene((Actor(figure, rotation.multiply(turn, rotations[n]), centred[n]),), background=background),
+            Scene((Actor(figure, turned[n], centred[n]),), background=background),
             camera, theme, (pixels, pixels),
         )
         for n in at

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from functools import cache
 
-from PySide6.QtCore import QByteArray, QRectF, Qt
+from PySide6.QtCore import QByteArray, Qt
 from PySide6.QtGui import QIcon, QPainter, QPixmap
 from PySide6.QtSvg import QSvgRenderer
 
@@ -51,18 +51,21 @@ PATHS = {
 @cache
 def icon(name: str, color: str, size: int = 18) -> QIcon:
     """Return an icon in a colour (#rrggbb), sharp up to 3 times its size; faded when disabled."""
-    out = QIcon()
+    out, drawing = QIcon(), _drawing(name, color)
     for scale in (1, 2, 3):
-        picture = _draw(name, color, size * scale, 1.0)
-        picture.setDevicePixelRatio(scale)
-        out.addPixmap(picture)
-        faded = _draw(name, color, size * scale, 0.35)
-        faded.setDevicePixelRatio(scale)
-        out.addPixmap(faded, QIcon.Mode.Disabled)
+        for mode, opacity in ((QIcon.Mode.Normal, 1.0), (QIcon.Mode.Disabled, 0.35)):
+            picture = QPixmap(size * scale, size * scale)
+            picture.fill(Qt.GlobalColor.transparent)
+            painter = QPainter(picture)
+            painter.setOpacity(opacity)
+            drawing.render(painter)
+            painter.end()
+            picture.setDevicePixelRatio(scale)
+            out.addPixmap(picture, mode)
     return out
 
 
-def _draw(name: str, color: str, pixels: int, opacity: float) -> QPixmap:
+def _drawing(name: str, color: str) -> QSvgRenderer:
     path = PATHS[name]
     filled = path.startswith("!")
     style = (
@@ -74,10 +77,4 @@ def _draw(name: str, color: str, pixels: int, opacity: float) -> QPixmap:
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 24 24"><path {style} '
         f'd="{path.lstrip("!")}"/></svg>'
     )
-    picture = QPixmap(pixels, pixels)
-    picture.fill(Qt.GlobalColor.transparent)
-    painter = QPainter(picture)
-    painter.setOpacity(opacity)
-    QSvgRenderer(QByteArray(svg.encode())).render(painter, QRectF(0, 0, pixels, pixels))
-    painter.end()
-    return picture
+    return QSvgRenderer(QByteArray(svg.encode()))

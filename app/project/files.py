@@ -8,6 +8,7 @@ import json
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
@@ -19,8 +20,6 @@ from app.project.keeper import Keeper
 from app.project.leftovers import FoundJournal, forget, keep_as_copy, look_beside
 from app.project.opening import load_recovered, open_whole
 from app.project.outside import Outside
-from app.project.questions import ask_held, holder_words
-from app.project.recovering import Choice, ask_recover
 from app.project.saver import Saver
 from app.project.unsaved import Unsaved, not_steps
 from app.translation import tr, tr_error
@@ -31,6 +30,9 @@ from metagraph.formats.locking import Lock
 from metagraph.formats.recovery import Left
 from metagraph.formats.store import SUFFIX, Opened, absolute, read_project
 from metagraph.graph.model import Project
+
+if TYPE_CHECKING:
+    from app.project.recovering import Choice
 
 RECENT = 10
 FILTER = tr("Metagraph projects (*{ending} *.yaml);;All files (*)", ending=SUFFIX)
@@ -109,6 +111,10 @@ class Files(QObject):
 
     def _looked(self, path: Path, before: Project, found: FoundJournal) -> None:
         """Ask about what was found beside a project file, and open it."""
+        # Dialogs are imported when there is something to ask: the first picture does not wait for them.
+        from app.project.questions import ask_held
+        from app.project.recovering import ask_recover
+
         read_only = False
         holder = found.holder
         while holder is not None and not read_only:
@@ -221,6 +227,8 @@ class Files(QObject):
         lock = Lock(path, self.document.owner)
         holder = lock.acquire()
         if holder is not None:
+            from app.project.questions import holder_words
+
             QMessageBox.warning(
                 self.window,
                 tr("Not saved"),

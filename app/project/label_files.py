@@ -5,7 +5,6 @@ with the clips that lie beside them.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from PySide6.QtWidgets import QFileDialog, QWidget
@@ -20,6 +19,7 @@ from metagraph.formats.action_labels import LabelRow, labelled, read_labels
 from metagraph.formats.clips import SUFFIXES
 from metagraph.formats.imports import Imported, import_files
 from metagraph.graph.model import Project
+from metagraph.records import dataclass
 
 ENDING = ".labels.json"
 FILES = tr("Labels (*{ending});;JSON (*.json);;All files (*)", ending=ENDING)

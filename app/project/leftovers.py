@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 
 from app.project.document import state_folder
@@ -17,6 +17,7 @@ from metagraph.formats.recovery import Left, journals_in, left_journals, read_jo
 from metagraph.formats.store import SUFFIX, load_returned, save_project
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
+from metagraph.records import dataclass
 
 # The second as they were called at first, `.old` as those were that could not be read.
 UNTITLED = r"\.untitled\.[0-9a-f]+\.(journal|old)|untitled(-\d+)?\.(journal|old)"

@@ -12,7 +12,6 @@ from PySide6.QtWidgets import QMessageBox
 
 from app.project.jobs import Job
 from app.project.opening import load_whole, with_motion_of
-from app.project.questions import ask_changed
 from app.project.writing import FileChangedError, file_changed
 from app.translation import tr
 from metagraph.formats.merging import MergeError, merge
@@ -69,6 +68,8 @@ class Outside(QObject):
 
     def ask(self, changed: FileChangedError) -> None:
         """The project file is another one than was read: ask what to do with both."""
+        from app.project.questions import ask_changed
+
         document, files = self.document, self.files
         era, dirty = self._era, document.dirty
         answer = ask_changed(files.window, changed, document.common, document.project, dirty)

@@ -12,7 +12,6 @@ from PySide6.QtCore import QObject
 
 from app.project.leftovers import FoundJournal, forget, read_untitled, untitled_journals
 from app.project.opening import load_recovered
-from app.project.recovering import ask_recover
 from app.translation import tr
 from metagraph.formats.history import Step
 from metagraph.formats.recovery import Left
@@ -68,6 +67,8 @@ class Unsaved(QObject):
         if not found.left:
             self._nothing(otherwise)
             return
+        from app.project.recovering import ask_recover
+
         choices = ask_recover(files.window, found, None) or ("later",) * len(found.left)
         chosen: Left | None = None
         for left, choice in zip(found.left, choices, strict=True):

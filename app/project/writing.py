@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 
 from metagraph.errors import FileError
@@ -11,6 +11,7 @@ from metagraph.formats.atomic import write_atomically
 from metagraph.formats.journal import Journal
 from metagraph.formats.store import SUFFIX, content_digest, encoded, file_digest, moved, read_with_digest
 from metagraph.graph.model import Project
+from metagraph.records import dataclass
 
 
 class FileChangedError(Exception):

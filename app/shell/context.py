@@ -5,8 +5,10 @@ returns a `Contribution`.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
+
+from metagraph.records import dataclass
 
 if TYPE_CHECKING:
     from PySide6.QtCore import QSettings

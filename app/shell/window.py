@@ -112,11 +112,10 @@ class Window(QMainWindow):
         self.statusBar().addPermanentWidget(self.job_line)
         self.statusBar().addPermanentWidget(shell.notice)
         self.keyboard = Keyboard(self, shell.actions)
-        self._wire()
         self.resize(1680, 1020)
         self.workspaces.restore()
+        self._wire()  # now: each signal before would have everything shown once more
         self.restyle()
-        self.refresh()
 
     # --- building
 

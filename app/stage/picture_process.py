@@ -11,7 +11,6 @@ import queue
 import sys
 import threading
 from collections import Counter
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -19,6 +18,7 @@ import numpy as np
 
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
+from metagraph.records import dataclass
 
 SIZE, SCALE = 112, 2
 MOVING_SIZE, MOVING_RATE, MOVING_MOST = (

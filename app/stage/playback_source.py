@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -34,6 +34,7 @@ from metagraph.playback.manual_playback import (
 from metagraph.playback.plan import MetaRequest, Plan
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import morphs_at, pose_at
+from metagraph.records import dataclass
 
 if TYPE_CHECKING:
     from metagraph.playback.overlay import Overlay

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 from collections import OrderedDict
+from collections.abc import Sequence
 from pathlib import Path
 
 from PySide6.QtCore import QObject, Qt, QTimer, Signal
@@ -16,6 +17,7 @@ from PySide6.QtGui import QImage
 
 from app.look.theme import theme
 from app.project.document import Document
+from app.stage.cropped import Cropped
 from app.stage.figures import Figures
 from app.stage.gl_view import to_image
 from app.stage.kept_pictures import KeptPictures
@@ -49,7 +51,7 @@ class Thumbnails(QObject):
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.figures = document, session, figures
-        self._pictures: OrderedDict[Key, tuple[Clip, list[QImage]]] = OrderedDict()
+        self._pictures: OrderedDict[Key, tuple[Clip, Sequence[QImage]]] = OrderedDict()
         self.bytes = 0  # of all pictures
         self._asked: dict[Key, Clip] = {}
         self._orders: dict[int, tuple[Key, Clip]] = {}
@@ -86,7 +88,7 @@ class Thumbnails(QObject):
             return self.picture(clip, bare=True)
         return found[0] if found else None
 
-    def scrub(self, clip: str) -> list[QImage]:
+    def scrub(self, clip: str) -> Sequence[QImage]:
         """Return a few pictures from a clip's first frame to its last, framed as its still is; none until
         they are drawn.
         """
@@ -99,13 +101,13 @@ class Thumbnails(QObject):
         found = self._get(clip, "moving")
         return found[beat % len(found)] if found else self.picture(clip, bare=True)
 
-    def strip(self, clip: str) -> list[QImage]:
+    def strip(self, clip: str) -> Sequence[QImage]:
         """Return pictures of a clip's poses from its first frame to its last, evenly apart, transparent
         behind the figure; none until they are drawn.
         """
         return self._get(clip, "strip") or []
 
-    def _get(self, clip: str, what: str) -> list[QImage] | None:
+    def _get(self, clip: str, what: str) -> Sequence[QImage] | None:
         entry = self.document.project.clips.get(clip)
         motion = entry.motion if entry is not None else None
         if motion is None:
@@ -136,14 +138,15 @@ class Thumbnails(QObject):
             for key in [k for k in self._pictures if k[0] not in after.clips]:
                 self._let_go(key)
 
-    def _keep(self, number: int, pictures: list[QImage] | None) -> None:
+    def _keep(self, number: int, pictures: Sequence[QImage] | None) -> None:
         if pictures is None:
             self._begun = number
             return
         if number in self._given:
             self._begun, self._fruitless = None, 0
             self._given.discard(number)
-            self.kept.keep(number, pictures)
+            if isinstance(pictures, list):
+                self.kept.keep(number, pictures)
             self._feed()
         key, motion = self._orders.pop(number, (None, None))
         if key is None or motion is None:  # it was forgotten meanwhile
@@ -242,7 +245,9 @@ class Thumbnails(QObject):
             while True:
                 number, pictures = pickle.load(pipe)
                 if pictures is not None:  # one after the other, so that a loop is never there twice
-                    pictures = [to_image(pictures.pop(0)) for _ in range(len(pictures))]
+                    each = (pictures.pop(0) for _ in range(len(pictures)))
+                    (_, what, _), _ = self._orders.get(number, (("", "", ""), None))
+                    pictures = Cropped(each) if what == "moving" else [to_image(p) for p in each]
                 self._drawn.emit(number, pictures)
                 del pictures  # until the next ones come, which may be long
         with contextlib.suppress(RuntimeError):  # the window is gone
@@ -293,5 +298,7 @@ class Thumbnails(QObject):
             thread.join(5)
 
 
-def _size(pictures: list[QImage]) -> int:
+def _size(pictures: Sequence[QImage]) -> int:
+    if isinstance(pictures, Cropped):
+        return pictures.bytes
     return sum(picture.sizeInBytes() for picture in pictures)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Collection
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -18,6 +17,7 @@ from metagraph.formats.takes import frame_rate, repaired, take_name, take_repair
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
+from metagraph.records import dataclass
 from metagraph.wording import told
 
 Array = NDArray[Any]

@@ -5,7 +5,7 @@ before and after it, which share what the step left alone.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from metagraph.formats.data import FORMAT, from_data, to_data
@@ -13,6 +13,7 @@ from metagraph.formats.fields import Data, DataError
 from metagraph.formats.journal import ABOUT, KEYED
 from metagraph.formats.recovery import Left, Replay
 from metagraph.graph.model import ClipEntry, MetaGraph, Project
+from metagraph.records import dataclass
 
 UNNAMED = "Recovered edit"
 

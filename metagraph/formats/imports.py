@@ -5,13 +5,12 @@ alone.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from metagraph.errors import FileError, error_words
 from metagraph.files import unforeseen
-from metagraph.formats.characters import CharacterFile, character_among
 from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clips
 from metagraph.formats.store import kept_path, relative
 from metagraph.graph.edits import add_clips
@@ -23,7 +22,11 @@ from metagraph.motion.adopt import SkeletonMismatchError, adopt, bone_difference
 from metagraph.motion.clip import Clip, ClipError
 from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint
 from metagraph.motion.skeleton import Skeleton
+from metagraph.records import dataclass
 from metagraph.wording import told
+
+if TYPE_CHECKING:
+    from metagraph.formats.characters import CharacterFile
 
 Loaded = tuple[str, int, str, Clip]  # path as the project keeps it, take, digest, clip
 Maps = Callable[
@@ -189,6 +192,8 @@ def import_files(
     character: CharacterFile | None = None
     stand_ins: tuple[CharacterFile, ...] = ()
     if project.character is None and skeleton is not None:
+        from metagraph.formats.characters import character_among
+
         still = {_name(e.path, folder): e for e in report.failures}
         character, stand_ins = character_among([name for name, *_ in loaded], still, folder, skeleton)
         if character is not None and character.path in still:  # it is of use without a motion

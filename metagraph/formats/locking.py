@@ -19,11 +19,12 @@ import subprocess
 import tempfile
 import time
 import uuid
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
 import msgspec
+
+from metagraph.records import dataclass
 
 REFRESH = 30.0  # seconds
 STALE = 150.0  # seconds; a computer may be busy, and a drive away for a while

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from typing import Any
 
 from metagraph.formats.data import from_data, to_data
 from metagraph.formats.fields import Data, DataError
 from metagraph.graph.model import Project, Timing
+from metagraph.records import dataclass
 
 _GONE: Any = object()
 _MADE = re.compile(r"[a-z]+\d+")  # ids that the program makes

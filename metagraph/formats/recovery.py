@@ -8,7 +8,6 @@ import json
 import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 
 import msgspec
@@ -20,6 +19,7 @@ from metagraph.formats.journal import ABOUT, KEYED
 from metagraph.formats.locking import Owner, is_gone
 from metagraph.formats.store import file_digest, from_text, read_project
 from metagraph.graph.model import LAYERS, Project
+from metagraph.records import dataclass
 
 _KEPT = "It is kept."
 _ANOTHER = "belongs to another state of the project file"

@@ -8,7 +8,6 @@ T- or A-pose) and is left by a step unlike the take's own motion; either alone i
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -19,6 +18,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Pose
+from metagraph.records import dataclass
 
 Array = NDArray[Any]
 

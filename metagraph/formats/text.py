@@ -12,7 +12,6 @@ from collections.abc import Iterator
 from typing import Any
 
 import msgspec
-import yaml
 
 HEADER = "# A Metagraph project. One line a clip, stance or action; times in seconds.\n"
 DEPTH = 16  # a project needs 6
@@ -141,40 +140,43 @@ _INFINITE = re.compile(r"[-+]?\.(?:inf|Inf|INF)\Z|\.(?:nan|NaN|NAN)\Z")
 
 def parse(text: str) -> tuple[Any, Lines]:
     """Return the data of a text and the line of every field. Raises TextError."""
+    import yaml  # a window opens before there is anything to read
+
+    nodes = frozenset((yaml.ScalarEvent, yaml.MappingStartEvent, yaml.SequenceStartEvent, yaml.AliasEvent))
     lines: Lines = {}
     stack: list[list[Any]] = []  # [container, its field, key that waits for its value]
     result: Any = None
     documents = 0
     for event in _events(text):
-        line = event.start_mark.line + 1
-        if isinstance(event, yaml.DocumentStartEvent):
-            documents += 1
-            if documents > 1:
-                raise TextError(line, "a second document begins")
-        if isinstance(event, yaml.AliasEvent) or getattr(event, "anchor", None) is not None:
-            raise TextError(line, "anchors and aliases are not used in project files")
-        if getattr(event, "tag", None) is not None:
-            raise TextError(line, f"the tag {event.tag} is not used in project files")
-        if isinstance(event, yaml.MappingEndEvent | yaml.SequenceEndEvent):
-            value, where, _ = stack.pop()
-        elif isinstance(event, yaml.MappingStartEvent | yaml.SequenceStartEvent):
-            if len(stack) >= DEPTH:
-                raise TextError(line, "it is nested too deep")
-            new: Any = {} if isinstance(event, yaml.MappingStartEvent) else []
-            stack.append([new, _place(stack, line), None])
-            lines.setdefault(stack[-1][1], line)
-            continue
-        elif isinstance(event, yaml.ScalarEvent):
-            frame = stack[-1] if stack else None
-            if frame is not None and isinstance(frame[0], dict) and frame[2] is None:
-                if event.value in frame[0]:
-                    raise TextError(line, f"'{event.value}' is there twice")
-                frame[2] = event.value
+        kind = type(event)
+        if kind is yaml.MappingEndEvent or kind is yaml.SequenceEndEvent:
+            value = stack.pop()[0]
+        elif kind in nodes:
+            line = event.start_mark.line + 1
+            if kind is yaml.AliasEvent or event.anchor is not None:
+                raise TextError(line, "anchors and aliases are not used in project files")
+            if event.tag is not None:
+                raise TextError(line, f"the tag {event.tag} is not used in project files")
+            if kind is not yaml.ScalarEvent:
+                if len(stack) >= DEPTH:
+                    raise TextError(line, "it is nested too deep")
+                new: Any = {} if kind is yaml.MappingStartEvent else []
+                where = _place(stack, line)
+                stack.append([new, where, None])
+                lines.setdefault(where, line)
                 continue
-            where = _place(stack, line)
+            if stack and stack[-1][2] is None and type(stack[-1][0]) is dict:
+                if event.value in stack[-1][0]:
+                    raise TextError(line, f"'{event.value}' is there twice")
+                stack[-1][2] = event.value
+                continue
+            lines.setdefault(_place(stack, line), line)
             value = _resolved(event)
-            lines.setdefault(where, line)
         else:
+            if kind is yaml.DocumentStartEvent:
+                documents += 1
+                if documents > 1:
+                    raise TextError(event.start_mark.line + 1, "a second document begins")
             continue
         if not stack:
             result = value
@@ -187,6 +189,8 @@ def parse(text: str) -> tuple[Any, Lines]:
 
 
 def _events(text: str) -> Iterator[Any]:
+    import yaml
+
     loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     try:
         yield from yaml.parse(text, Loader=loader)

@@ -4,7 +4,6 @@ that warns of a pop goes by.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Literal
 from weakref import ref
@@ -18,6 +17,7 @@ from metagraph.graph.model import REACH, Action, MetaGraph, Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.features import pose_distance
 from metagraph.motion.rig_controls import rig_controls
+from metagraph.records import dataclass
 from metagraph.wording import told
 
 Array = NDArray[Any]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+
+from metagraph.records import dataclass
 
 
 def _words(text: str) -> frozenset[str]:

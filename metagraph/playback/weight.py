@@ -8,7 +8,6 @@ here they meet arrays.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 from weakref import ref
@@ -42,6 +41,7 @@ from metagraph.playback.follow_through import (
 )
 from metagraph.playback.plan import LayerPlan, Plan
 from metagraph.playback.solving import carry_weight, compiled
+from metagraph.records import dataclass
 
 Array = NDArray[Any]
 Vector = tuple[float, float, float]

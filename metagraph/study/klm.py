@@ -10,7 +10,9 @@ command (rule 4). Here a decision about a clip is such a unit, so is a command.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import fields
+
+from metagraph.records import dataclass
 
 
 @dataclass(frozen=True)

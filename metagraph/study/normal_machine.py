@@ -29,7 +29,8 @@ Pair = tuple[str, str]
 class NormalState:
     """A use of a clip. clip: its file's name, with the take where it is not the first. kind: None where
     nothing tells. stance, ends: the stances it begins and ends in, as the machine calls them; None where
-    nothing tells. start, end: seconds of the clip. limb, joints: what it moves.
+    nothing tells. start, end: seconds of the clip. limb, joints: what it moves; joint_weights: how far those
+    that it moves in part, by name.
     """
 
     key: str
@@ -43,6 +44,7 @@ class NormalState:
     end: float
     limb: Limb
     joints: tuple[str, ...]
+    joint_weights: tuple[tuple[str, float], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,6 +142,7 @@ def _of_graph(project: Project, graph: MetaGraph, names: Mapping[str, str]) -> N
             end,
             a.limb,
             joints,
+            tuple(sorted(a.joint_weights)),
         )
     found = {
         (keys[c.source], keys[c.target]): NormalConnection(c.leave, c.blend) for c in expanded(project, graph)
@@ -169,6 +172,7 @@ def _of_manual(project: Project, manual: Manual, meant: MetaGraph, names: Mappin
             *spans[s.id],
             s.limb,
             tuple(sorted(s.joints)),
+            tuple(sorted(s.joint_weights)),
         )
     found = {}
     for (source, target), links in sorted(manual.ways.items()):

@@ -18,6 +18,7 @@ from metagraph.study.normal_machine import NormalMachine, NormalState, Pair
 
 TOLERANCE = 0.1  # seconds
 MOST_USES = 6  # of one clip, beyond which their order is not tried out
+NOTCH = 0.05  # weight of a joint: what is as near as a notch of the wheel that sets it is the same
 NAMED = 4  # clips in a sentence, of more only how many
 
 What = Literal["absent", "unwanted", "kind", "stance", "layer", "mask", "timing", "missing", "extra", "jump"]
@@ -279,7 +280,7 @@ def _placing(
         if got.kind == "transition":
             found += f" to {machine.stances.get(ends or '', 'another stance')}"
         out.append(Mistake("stance", layer, key, 1, f"{key} is of {found} rather than of {should}."))
-    if got.limb != want.limb or got.joints != want.joints:
+    if not _moves_alike(got, want):
         out.append(Mistake("mask", layer, key, 1, f"{key} moves {_moved(got)} rather than {_moved(want)}."))
     return out
 
@@ -288,13 +289,24 @@ def _kind(state: NormalState) -> str:
     return f"a {state.kind}"
 
 
+def _moves_alike(got: NormalState, want: NormalState) -> bool:
+    """Whether both move the same joints, each as far but for a notch of what sets it."""
+    if got.limb != want.limb or got.joints != want.joints:
+        return False
+    has, should = dict(got.joint_weights), dict(want.joint_weights)
+    return all(abs(has.get(j, 1.0) - should.get(j, 1.0)) < NOTCH * 1.01 for j in has.keys() | should.keys())
+
+
 def _moved(state: NormalState) -> str:
     limb = {"both": "everything", "left": "the left arm", "right": "the right arm"}[state.limb]
-    return (
-        limb
-        if not state.joints
-        else f"{len(state.joints)} joints" + (f" of {limb}" if state.limb != "both" else "")
-    )
+    out = limb
+    if state.joints:
+        out = f"{len(state.joints)} joints" + (f" of {limb}" if state.limb != "both" else "")
+    if state.joint_weights:
+        least, most = (f(round(100 * w) for _, w in state.joint_weights) for f in (min, max))
+        share = f"{least} %" if least == most else f"{least} to {most} %"
+        out += f", {len(state.joint_weights)} {'of them' if state.joints else 'joints of it'} by {share}"
+    return out
 
 
 def _timing(

@@ -119,12 +119,22 @@ class _Judge:
         return track[chosen], velocity_of(track)[chosen]
 
     def _moved(self, state: NormalState) -> Array:
-        """Return `[J]` 1 for the counted joints that a state moves, else 0."""
-        key = state.limb, state.joints
+        """Return `[J]` how far, 0..1, a state moves each of the counted joints."""
+        key = state.limb, state.joints, state.joint_weights
         if key not in self._weights:
-            action = Action("", "", "gesture", self.layer, "", "", limb=state.limb, joints=state.joints)
+            action = Action(
+                "",
+                "",
+                "gesture",
+                self.layer,
+                "",
+                "",
+                limb=state.limb,
+                joints=state.joints,
+                joint_weights=state.joint_weights,
+            )
             moved = anatomy.mask(self.project, action)
             rig = rig_of(next(iter(self.motions.values())), self.measured.roles)
             ones = np.ones(len(rig.joints))
-            self._weights[key] = ones if moved is None else (moved[rig.keep[rig.joints]] > 0) * ones
+            self._weights[key] = ones if moved is None else moved[rig.keep[rig.joints]] * ones
         return self._weights[key]

@@ -38,6 +38,7 @@ def drawn(project: Project) -> Project:
                 a.joints,
                 n % COLUMNS * WIDE,
                 n // COLUMNS * HIGH,
+                joint_weights=a.joint_weights,
             )
             for n, a in enumerate(actions.values())
         }

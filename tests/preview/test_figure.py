@@ -148,6 +148,39 @@ def test_bounds_hold_all_poses_and_ignore_what_is_not_a_number():
     assert high[0] > 5 and low[0] < 0 and np.isfinite([low, high]).all()
 
 
+def test_posed_bounds_hold_the_mesh_however_it_is_turned_and_little_more():
+    """A rod in the left hand, as long as the character is tall, straight out ahead at rest."""
+    skeleton = mannequin_skeleton()
+    hand = skeleton.index("LeftHand")
+    _, rest = skeleton.globals(skeleton.rest)
+    tip = rest[hand] + [0, 0, 1.7]
+    count = len(skeleton)
+    rod = {
+        "positions": np.stack([rest[hand] + [0, 0.02, 0], rest[hand], tip]),
+        "normals": np.tile([0.0, 1, 0], (3, 1)),
+        "uvs": np.zeros((3, 2)),
+        "joints": np.tile([hand, 0, 0, 0], (3, 1)),
+        "weights": np.tile([1.0, 0, 0, 0], (3, 1)),
+        "triangles": np.array([[0, 1, 2]]),
+    }
+    figure = SkinnedFigure(character(skeleton, **rod))
+    for axis in np.eye(3):
+        rotations = skeleton.rest_rotations.copy()
+        rotations[hand] = rotation.from_axis_angle(axis, np.pi / 2)
+        rotations[0] = rotation.from_axis_angle(np.roll(axis, 1), np.pi / 2)
+        posed = skeleton.globals(Pose(rotations, skeleton.rest_translations))
+        palette = figure.palette(*posed)
+        vertex = figure.mesh.vertices
+        points = np.array(
+            [moved(palette, v["bones"][np.argmax(v["weights"])], v["position"]) for v in vertex]
+        )
+        low, high = figure.posed_bounds(*posed)
+        assert (low <= points.min(0)).all() and (high >= points.max(0)).all()
+        assert (high - low <= np.ptp(points, axis=0) + 0.2 * figure.height).all()
+    nowhere = np.full((count, 3), np.nan)
+    assert np.isfinite(figure.posed_bounds(skeleton.rest_rotations, nowhere)).all()
+
+
 def test_the_head_is_found_above_its_joint():
     skeleton = mannequin_skeleton()
     rotations, positions = skeleton.globals(skeleton.rest)
@@ -173,9 +206,15 @@ def test_weights_that_do_not_add_up_are_mended_and_materials_of_one_texture_are_
 
 def test_morphs_follow_vertices_into_the_mesh():
     skeleton = chain("a", "b", "c")
-    made = character(skeleton, morphs=("smile",), morph_positions=np.arange(9.0).reshape(1, 3, 3))
-    assert SkinnedFigure(made).mesh.morphs is not None
-    assert np.allclose(SkinnedFigure(made).mesh.morphs, made.morph_positions)
+    offsets = np.arange(9.0).reshape(1, 3, 3)
+    offsets[:, 1] = 0
+    mesh = SkinnedFigure(character(skeleton, morphs=("smile",), morph_positions=offsets)).mesh
+    assert mesh.morphs is not None and len(mesh.morphs) == 1
+    assert list(mesh.morphs.moved) == [0, 2], "what stays is not held"
+    assert np.array_equal(mesh.morphs.offsets, offsets[:, [0, 2]])
+    rest = mesh.vertices["position"]
+    assert np.allclose(mesh.morphs.positions(rest, np.array([0.5])), rest + 0.5 * offsets[0])
+    assert np.array_equal(mesh.morphs.positions(rest, np.zeros(1)), rest)
 
 
 def test_shapes_are_closed_and_face_outwards():
@@ -186,9 +225,10 @@ def test_shapes_are_closed_and_face_outwards():
         assert np.allclose(face.sum(0), 0, atol=1e-9)
 
 
-def skinned(figure: SkinnedFigure, rotations: np.ndarray, positions: np.ndarray) -> np.ndarray:
-    """The vertices `[V, 3]` of a figure in a pose."""
-    body = figure.character
+def skinned(
+    figure: SkinnedFigure, body: Character, rotations: np.ndarray, positions: np.ndarray
+) -> np.ndarray:
+    """The vertices `[V, 3]` of a figure's character in a pose."""
     matrices = figure.palette(rotations, positions)[body.joints].astype(float)
     corners = np.concatenate([body.positions, np.ones((len(body.positions), 1))], 1)
     return np.einsum("vj,vjab,vb->va", body.weights, matrices, corners)
@@ -197,14 +237,14 @@ def skinned(figure: SkinnedFigure, rotations: np.ndarray, positions: np.ndarray)
 def test_what_is_exported_of_a_mesh_on_another_skeleton_is_what_is_drawn() -> None:
     body, skeleton = read_character(MANNEQUIN), stick_skeleton()
     assert body.skeleton != skeleton
-    drawn, exported = SkinnedFigure(body, skeleton), SkinnedFigure(bound(body, skeleton), skeleton)
+    drawn, exported = ((SkinnedFigure(x, skeleton), x) for x in (body, bound(body, skeleton)))
     rest = skeleton.globals(skeleton.rest)
-    assert np.abs(skinned(drawn, *rest) - skinned(exported, *rest)).max() < 1e-5
+    assert np.abs(skinned(*drawn, *rest) - skinned(*exported, *rest)).max() < 1e-5
     turns = rotation.multiply(skeleton.rest_rotations, rotation.exp(np.full((len(skeleton), 3), 0.15)))
     posed = skeleton.globals(Pose(turns, skeleton.rest_translations))
-    apart = np.linalg.norm(skinned(drawn, *posed) - skinned(exported, *posed), axis=1)
+    apart = np.linalg.norm(skinned(*drawn, *posed) - skinned(*exported, *posed), axis=1)
     assert apart.mean() < 1e-3 and apart.max() < 0.02, "they mix several joints in another order"
-    assert np.linalg.norm(skinned(drawn, *posed) - skinned(drawn, *rest), axis=1).max() > 0.1
+    assert np.linalg.norm(skinned(*drawn, *posed) - skinned(*drawn, *rest), axis=1).max() > 0.1
 
 
 def test_a_bound_mesh_names_no_joint_twice_for_a_vertex() -> None:
@@ -220,7 +260,7 @@ def test_a_host_whose_mesh_came_with_another_skeleton_is_exported_as_it_is_drawn
     body = read_character(home / "characters" / "adult_female" / "cristine" / "cristine.gltf")
     idle = read_gltf_clips(home / "animations" / "adult_female" / "stand_idle.glb")[0]
     assert body.skeleton.names == idle.skeleton.names and body.skeleton != idle.skeleton
-    drawn, exported = (SkinnedFigure(x, idle.skeleton) for x in (body, bound(body, idle.skeleton)))
+    drawn, exported = ((SkinnedFigure(x, idle.skeleton), x) for x in (body, bound(body, idle.skeleton)))
     pose = idle.skeleton.globals(idle.pose_at(1.0))
-    apart = np.linalg.norm(skinned(drawn, *pose) - skinned(exported, *pose), axis=1)
+    apart = np.linalg.norm(skinned(*drawn, *pose) - skinned(*exported, *pose), axis=1)
     assert len(apart) > 10_000 and apart.max() < 1e-3

@@ -152,6 +152,26 @@ def test_a_wrong_kind_layer_and_limb_are_named() -> None:
     assert found.count("layer") == 1
 
 
+def test_how_far_joints_move_is_compared_to_a_notch_of_the_wheel() -> None:
+    project = small()
+    wave = action(project, "sides_wave")
+
+    def weighed(weight: float) -> Project:
+        return edits.update_actions(project, [wave], joint_weights=(("Head", weight), ("LeftArm", 0.5)))
+
+    assert words(scored(weighed(0.5), weighed(0.55))) == []
+    found = scored(weighed(0.3), weighed(0.6))
+    assert words(found) == [
+        "sides_wave.glb moves everything, 2 joints of it by 30 to 50 % rather than everything, 2 joints of it by "
+        "50 to 60 %."
+    ]
+    assert found.placed == found.states - 1
+    assert words(scored(project, weighed(0.5))) == [
+        "sides_wave.glb moves everything rather than everything, 2 joints of it by 50 %."
+    ]
+    assert scored(drawn(weighed(0.3)), weighed(0.6)).count("mask") == 1
+
+
 def test_a_requested_link_makes_a_gesture_of_a_fidget() -> None:
     project = drawn(small())
     fidgets = [

@@ -104,3 +104,7 @@ def test_a_mask_leaves_out_what_is_not_moved() -> None:
     moved = edits.move_actions(project, [gesture.id], "gesture", hips)
     still = edits.update_actions(moved, [gesture.id], joints=(project.skeleton.names[0],))
     assert (judged(still).jumps or 0) < (judged(moved).jumps or 0)
+    faint = edits.update_actions(
+        moved, [gesture.id], joint_weights=tuple((name, 0.05) for name in project.skeleton.names)
+    )
+    assert (judged(faint).jumps or 0) < (judged(moved).jumps or 0)

@@ -150,6 +150,7 @@ class Canvas(QWidget):
 
     def paintEvent(self, event: QPaintEvent) -> None:
         begun = time.perf_counter()
+        self._soon.now()  # else what an edit changed elsewhere would be taken for painted with this part
         layout, graph = self.layout_now(), self.document.project.graphs[self.session.place.layer]
         look = self._look(pictures_of(self.thumbnails, layout, graph, self._beat.count))
         painter = QPainter(self)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF
-from PySide6.QtGui import QColor
+from PySide6.QtGui import QColor, QFontMetricsF
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from app.features.models.heatmap import SIDES
@@ -22,6 +22,8 @@ from metagraph.playback.compare import SURE, Comparison, quantiles
 from metagraph.playback.learn import State
 
 WIDTH = 0.34  # of a bar; two stand side by side
+TOP = 6.0  # pixels, so that a number at the upper end is whole
+APART = 4.0  # pixels between the words under bars, at least
 
 
 def short(state: State, layer: str) -> str:
@@ -83,11 +85,14 @@ class ComparePlot(QWidget):
         layout.addLayout(row, 1)
         layout.addWidget(self.words)
         session.look.changed.connect(self._draw)
+        self._draw()  # in the theme's colours before there is anything, too
 
     def _plot(self) -> Any:
         plot = still_plot(self)
         plot.getAxis("left").setWidth(34)
+        plot.plotItem.vb.sigResized.connect(self._name_bars)
         plot.setMinimumHeight(96)
+        plot.plotItem.layout.setContentsMargins(0, TOP, 0, 0)
         plot.setYRange(0, 1.08, padding=0.05)  # the uppermost number is whole, too
         plot.scene().sigMouseMoved.connect(lambda at, p=plot: self._hover(p, at))
         return plot
@@ -102,7 +107,7 @@ class ComparePlot(QWidget):
             empty_plot(plot, t)
         if self.found is None:
             return
-        found, layer = self.found, self.found.model.layer
+        found = self.found
         seen = found.expected if found.observed is None else found.observed.shares()
         made = found.generated.shares()
         chance = 2 * found.deviation
@@ -122,9 +127,7 @@ class ComparePlot(QWidget):
         if found.observed is not None:
             self._box(self.long, count - WIDTH / 2, found.observed.rests, QColor(t.dim), False)
         self._box(self.long, count + WIDTH / 2, found.generated.rests, QColor(t.dim), True)
-        ticks = [(n, short(state, layer)) for n, state in enumerate(found.generated.states)]
-        self.often.getAxis("bottom").setTicks([ticks])
-        self.long.getAxis("bottom").setTicks([[*ticks, (count, "rest")]])
+        self._name_bars()
         self.often.setXRange(-0.5, count - 0.5, padding=0.02)
         self.often.setYRange(0, 108 * float(max(np.max(seen), np.max(made + chance), 0.05)), padding=0.0)
         self.long.setXRange(-0.5, count + 0.5, padding=0.02)
@@ -132,6 +135,21 @@ class ComparePlot(QWidget):
         tops = [quantiles(x)[-1] for tally in tallies for x in (*tally.lengths, tally.rests) if len(x)]
         self.long.setYRange(0, 1.08 * max(tops, default=1.0), padding=0)
         self.words.setText(verdict(found))
+
+    def _name_bars(self) -> None:
+        """Write states under their bars; where these stand close without marks, as bars have their
+        colours.
+        """
+        if self.found is None:
+            return
+        states, layer = self.found.generated.states, self.found.model.layer
+        metrics, rest = QFontMetricsF(self.font()), tr("rest")
+        for plot, more in ((self.often, []), (self.long, [rest])):
+            names = [short(state, layer) for state in states]
+            room = plot.plotItem.vb.width() / (1.04 * (len(names) + len(more))) - APART
+            if layer == "arms" and max(map(metrics.horizontalAdvance, names)) > room:
+                names = [name[1:] for name in names]
+            plot.getAxis("bottom").setTicks([list(enumerate([*names, *more]))])
 
     def _bar(self, plot: Any, x: float, height: float, color: QColor, filled: bool) -> None:
         pale = QColor(color)

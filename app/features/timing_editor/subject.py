@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -185,7 +185,7 @@ class Subject(QObject):
         hands = [f"hand {n}" for n in range(len(tuple(self.facts().values())[place].hands))]
         return (*first, "phases", "speed", "numbers", *hands, "stance")
 
-    def film(self, ident: str) -> list[QImage]:
+    def film(self, ident: str) -> Sequence[QImage]:
         action = self.document.project.action(ident)
         wanted = self.shows.poses and len(self.idents) == 1 and action is not None
         return self.thumbnails.strip(action.clip) if wanted and action is not None else []

@@ -21,7 +21,6 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -44,6 +43,7 @@ from metagraph.playback.life.solve import LifeDials, LifeNow, enlivened
 from metagraph.playback.life.track import Track
 from metagraph.playback.mood import Bearing, bearing
 from metagraph.playback.mood import shown as mood_shown
+from metagraph.records import dataclass
 
 Array = NDArray[Any]
 

@@ -6,10 +6,11 @@ shut.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from metagraph.playback.life.alphabet import Alphabet
 from metagraph.playback.life.mouth import VOWELS, MouthPiece
+from metagraph.records import dataclass
 
 PACE = 14.0  # characters a second: about 150 words a minute
 SHORTEST = 0.4  # seconds

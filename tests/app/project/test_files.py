@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
-from app.project import outside
+from app.project import questions
 from app.project.document import Document, state_folder
 from app.project.files import Files
 from app.project.importing import Importing
@@ -305,7 +305,7 @@ def test_edits_of_another_state_of_the_file_are_offered_and_can_be_merged(
     qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3 and bool(noticed))
     assert "saved by somebody else" in person.asked[0]
     assert desk.document.project.settings.seed == 7 and desk.document.project.name == "mine"
-    monkeypatch.setattr(outside, "ask_changed", lambda *a: "merge")
+    monkeypatch.setattr(questions, "ask_changed", lambda *a: "merge")
     noticed[0][2]()
     qtbot.waitUntil(lambda: desk.document.project.name == "renamed by git")
     assert desk.document.project.settings.seed == 7 and desk.document.dirty

@@ -93,7 +93,7 @@ def test_thumbnails_are_drawn_elsewhere_and_a_loop_moves(document, figures, toy,
         qtbot.waitUntil(lambda: thumbnails.moving(clip, 0) is not bare, timeout=20000)
         beats = [thumbnails.moving(clip, n) for n in range(24)]
         assert any(beats[0] != other for other in beats), "the arms swing"
-        assert thumbnails.moving(clip, 24) is beats[0]
+        assert thumbnails.moving(clip, 24) == beats[0]
         gone = {i: replace(e, motion=None) for i, e in document.project.clips.items()}
         document.load(replace(document.project, clips=gone), None)
         assert thumbnails.picture(clip) is None

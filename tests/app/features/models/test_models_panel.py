@@ -22,6 +22,7 @@ from metagraph.graph.model import LAYERS, Markov
 from metagraph.playback.compare import compare
 from metagraph.playback.learn import learn, states_of
 from metagraph.playback.markov import ARMS, DEFAULTS
+from tests.app.painted_text import faults, seen_in
 
 
 @pytest.fixture(scope="module")
@@ -170,6 +171,19 @@ def test_what_was_learned_is_compared_with_what_was_seen(panel, reading, qtbot):
             in panel.plot.words.text()
         )
     )
+
+
+@pytest.mark.parametrize("wide", [440, 500, 560, 900])
+def test_what_stands_under_bars_does_not_touch_however_narrow_the_plot(panel, qtbot, wide):
+    qtbot.waitUntil(lambda: panel.plot.found is not None)
+    alone = ComparePlot(panel.session)
+    qtbot.addWidget(alone)
+    alone.show_comparison(panel.plot.found)
+    alone.resize(wide, 140)
+    alone.show()
+    qtbot.waitExposed(alone)
+    assert ("▲LR" if wide > 800 else "LR") in {seen.painted.text for seen in seen_in(alone)}
+    assert faults(alone) == []
 
 
 def test_what_was_read_but_not_kept_can_be_compared_with_until_another_project_comes(panel, reading, toy):
