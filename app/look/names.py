@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
-from app.look.plural import parts, short
+from app.look.plural import parts, short, words_of
 from metagraph.graph.model import KINDS, Action, Kind, Layer, Limb, MetaGraph, Project
 from metagraph.records import dataclass
 
@@ -51,22 +51,26 @@ def _shared(project: Project, action: Action) -> int:
     graph = project.graphs[action.layer]
     if not graph.of(action.stance, "stance"):
         return 0
-    names = [parts(a.name) for kind in KINDS for a in graph.of(action.stance, kind)]
+    names = [words_of(a.name) for kind in KINDS for a in graph.of(action.stance, kind)]
     alike = 0
     for words in zip(*names, strict=False):
-        if len({w for w, *_ in words}) > 1:
+        if len(set(words)) > 1:
             break
         alike += 1
     return min(alike, min(map(len, names)) - 1) if len(names) > 1 else 0
 
 
-@lru_cache(maxsize=MANY)
 def _row_name(name: str, stance: str, shared: int, limb: Limb | None) -> str:
     """Return a name as it is read without its stance's in front, or else without the words that all on the
     stance share.
     """
     out = short(name, stance)
-    return plain(name[parts(name)[shared][1] :] if out == name and shared > 0 else out, "", limb)
+    return _read(name[parts(name)[shared][1] :] if out == name and shared > 0 else out, limb)
+
+
+@lru_cache(maxsize=MANY)
+def _read(name: str, limb: Limb | None) -> str:
+    return plain(name, "", limb)
 
 
 def row_names(project: Project, actions: Iterable[Action]) -> dict[str, str]:

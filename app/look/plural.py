@@ -26,14 +26,22 @@ def short(name: str, stance: str) -> str:
     """Return an action's name without its stance's name in front, nor what is before that up to one of FRONT:
     what is the same in every row tells nothing. Numbers count as such: "Idle01" is "idle 1".
     """
-    wanted, found = parts(stance), parts(name)
-    words = [word for word, *_ in wanted]
-    for first in range(len(found) - len(words) if words else 0):
+    words, told = words_of(stance), words_of(name)
+    if not words or words[0] not in told:
+        return name
+    found = parts(name)
+    for first in range(len(found) - len(words)):
         if first and name[found[first][1] - 1] not in FRONT:
             continue
-        if [word for word, *_ in found[first : first + len(words)]] == words:
+        if told[first : first + len(words)] == words:
             return name[found[first + len(words)][1] :]
     return name
+
+
+@lru_cache(maxsize=16384)
+def words_of(name: str) -> tuple[str, ...]:
+    """Return a name's words and numbers."""
+    return tuple(word for word, *_ in parts(name))
 
 
 @lru_cache(maxsize=16384)  # each name is looked at beside each stance, whenever cards are painted
