@@ -94,7 +94,7 @@ class Camera:
         the eye.
         """
         points = np.asarray(points, float)
-        p = (points.reshape(-1, 3) - self.eye) @ self.axes.T
+        p = np.einsum("ij,nj->ni", self.axes, points.reshape(-1, 3) - self.eye)
         depth = np.where(p[:, 2] < -1e-9, -p[:, 2], np.nan)
         twice = 2 * math.tan(self.fov / 2)
         out = p[:, :2] / (depth[:, None] * (twice * aspect, -twice)) + 0.5

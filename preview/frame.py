@@ -58,7 +58,8 @@ class Frame:
         some of it is behind the eye.
         """
         camera = self.camera
-        x, y, z = camera.axes @ (self.boxes.reshape(-1, 3) - camera.eye).T
+        # Not `@`: of a crowd that starts threads, which spin.
+        x, y, z = np.einsum("ij,nj->in", camera.axes, self.boxes.reshape(-1, 3) - camera.eye)
         depth = np.where(z < -1e-9, z, np.nan) * (-2 * math.tan(camera.fov / 2))
         x, y = (x / (depth * (self.size[0] / self.size[1]))).reshape(-1, 8), (y / depth).reshape(-1, 8)
         return np.stack([0.5 + x.min(1), 0.5 - y.max(1), 0.5 + x.max(1), 0.5 - y.min(1)])

@@ -239,7 +239,7 @@ def _window(frame: Frame, axes: Array) -> tuple[float, Array, Array]:
     back = camera.axes[2]
     # Along the lamp's right and up, and away from the eye.
     corners = (frame.boxes if inside.all() else frame.boxes[inside]).reshape(-1, 3)
-    placed = np.stack([axes[0], axes[1], -back]) @ corners.T
+    placed = np.einsum("ij,nj->in", np.stack([axes[0], axes[1], -back]), corners)
     least, most = placed.min(1), placed.max(1)
     near, far = (max(float(camera.eye @ back + x), camera.near) for x in (least[2], most[2]))
     tall = height / (2 * math.tan(camera.fov / 2))  # pixels of a metre, a metre away
