@@ -197,9 +197,9 @@ def test_the_characters_of_both_are_drawn(staged):
 
     def drawn() -> set[str]:
         figures = [a.figure for a in staged.preview._scene().actors]
-        return {f.character.name for f in figures if isinstance(f, SkinnedFigure)}
+        return {mesh for f in figures if isinstance(f, SkinnedFigure) for mesh in f.meshes}
 
-    staged.wait(lambda: drawn() == {"ada", "mannequin"})
+    staged.wait(lambda: drawn() == {"Ada", "Mannequin"})
 
 
 def test_two_other_projects_are_each_read_once(talking, monkeypatch):
