@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QToolButton, QWidget
 
 from app.project.jobs import Jobs
 from app.translation import tr
 from app.widgets.making import make_widget
+
+PAUSE = 40  # milliseconds between two stands of the bar
 
 
 class JobLine(QWidget):
@@ -27,6 +29,9 @@ class JobLine(QWidget):
         for widget in (self.label, self.bar, self.cancel):
             row.addWidget(widget)
         jobs.changed.connect(self._show)
+        self._latest: tuple[int, int, str] | None = None  # told, and not shown yet
+        self._pause = QTimer(self, singleShot=True, interval=PAUSE)
+        self._pause.timeout.connect(self._show_progress)
         self.hide()
 
     def _show(self) -> None:
@@ -34,10 +39,23 @@ class JobLine(QWidget):
         self.setVisible(job is not None)
         if job is not None:
             self.label.setText(job.title)
+            self._latest = None
             self.bar.setRange(0, 0)
             job.progress.connect(self._progress, Qt.ConnectionType.UniqueConnection)
 
     def _progress(self, done: int, total: int, words: str = "") -> None:
+        self._latest = done, total, words
+        if not self._pause.isActive():
+            self._show_progress()
+
+    def _show_progress(self) -> None:
+        """Show what was told last. A bar is painted at once whenever it moves, which takes longer than many a
+        step of a job.
+        """
+        if self._latest is None:
+            return
+        (done, total, words), self._latest = self._latest, None
+        self._pause.start()
         self.bar.setRange(0, max(1, total))
         self.bar.setValue(done)
         if self.jobs.running and words:
