@@ -16,6 +16,10 @@ from metagraph.graph.model import Kind, Project
 from metagraph.records import dataclass
 
 RADIUS = 8.0
+KNOWN = 512  # pictures
+GRAIN = 24  # points across, by which a picture is looked through
+FAINT = 40  # of 255: what is more transparent is paper
+LYING = 0.36  # of a picture, down to where nothing is of who lies
 NOWHERE = GraphHit("nothing")
 
 
@@ -73,10 +77,29 @@ def between(font: QFont, text: str, width: float, others: tuple[str, ...] = ()) 
 
 
 def upper(picture: QImage) -> QRectF:
-    """Return the part of a picture in which arms and head are."""
-    return QRectF(
-        picture.width() * 0.24, picture.height() * 0.03, picture.width() * 0.52, picture.height() * 0.52
-    )
+    """Return the part of a picture in which arms and head are: the upper middle, or all of who lies."""
+    key = picture.cacheKey()
+    if key not in _UPPER:
+        if len(_UPPER) >= KNOWN:
+            _UPPER.clear()
+        _UPPER[key] = _found_upper(picture)
+    return _UPPER[key]
+
+
+def _found_upper(picture: QImage) -> QRectF:
+    wide, high = picture.width(), picture.height()
+    small = picture.scaled(GRAIN, GRAIN, mode=Qt.TransformationMode.SmoothTransformation)
+    seen = [(x, y) for x in range(GRAIN) for y in range(GRAIN) if small.pixelColor(x, y).alpha() > FAINT]
+    if not seen or min(y for _, y in seen) < LYING * GRAIN:
+        return QRectF(wide * 0.24, high * 0.03, wide * 0.52, high * 0.52)
+    left, top = (min(at) for at in zip(*seen, strict=True))
+    right, bottom = (1 + max(at) for at in zip(*seen, strict=True))
+    side = min(GRAIN, max(right - left, bottom - top))
+    x, y = (max(0.0, min(GRAIN - side, (a + b - side) / 2)) for a, b in ((left, right), (top, bottom)))
+    return QRectF(x / GRAIN * wide, y / GRAIN * high, side / GRAIN * wide, side / GRAIN * high)
+
+
+_UPPER: dict[int, QRectF] = {}  # by picture
 
 
 def draw_offer(painter: QPainter, rect: QRectF, look: GraphLook, kind: Kind, font: QFont) -> None:
