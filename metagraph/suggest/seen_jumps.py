@@ -11,6 +11,7 @@ import numpy as np
 
 from metagraph.graph import end_gaps
 from metagraph.graph.model import Action, Project
+from metagraph.wording import joined, told
 
 if TYPE_CHECKING:
     from metagraph.suggest.jumps import Curves
@@ -102,27 +103,46 @@ def verdict(costs: Mapping[str, float], far: Mapping[str, str] | None = None) ->
     """
     far = far or {}
     if max(costs.values()) <= 1 and not far:
-        return f"{' and '.join(costs)} without a jump"
-    told: list[str] = []
+        return told("Begins and ends without a jump") if len(costs) > 1 else told("Repeats without a jump")
+    said: list[str] = []
     for what, cost in costs.items():
-        of = "one" if any("jump" in words for words in told) else "a jump"
         if what in far:
-            told.append(far[what][:1].upper() + far[what][1:] if not told else far[what])
+            words = far[what]
+            said.append(words if said or words[:1].isupper() else words[:1].upper() + words[1:])
         else:
-            told.append(
-                f"{what} without {of}" if cost <= 1 else f"{what} {cost:.1f} times what shows as {of}"
-            )
-    return ", ".join(told)
+            said.append(_cost_words(what, cost, any("jump" in words for words in said)))
+    return joined(said, ", ")
+
+
+def _cost_words(what: str, cost: float, again: bool) -> str:
+    """Say what one of both costs. again: whether a jump was spoken of before."""
+    if what == "Repeats":
+        return told("Repeats {cost:.1f} times what shows as a jump", cost=cost)
+    if what == "Begins":
+        if cost <= 1:
+            return told("Begins without a jump")
+        return told("Begins {cost:.1f} times what shows as a jump", cost=cost)
+    if cost <= 1:
+        return told("ends without one") if again else told("ends without a jump")
+    if again:
+        return told("ends {cost:.1f} times what shows as one", cost=cost)
+    return told("ends {cost:.1f} times what shows as a jump", cost=cost)
 
 
 def far_ends(project: Project, action: Action) -> dict[str, str]:
     """Return which ends of an action are too far from their stance, by how `verdict` calls them, in words."""
     graph = project.graphs[action.layer]
     return {
-        "Begins" if gap.edge == "begins" else "ends": end_gaps.gap_words(gap, graph.stances[gap.stance].name)
+        "Begins" if gap.edge == "begins" else "ends": _gap_words(gap, graph.stances[gap.stance].name)
         for gap in end_gaps.gaps(project, graph, action)
         if gap.far and gap.stance in graph.stances
     }
+
+
+def _gap_words(gap: end_gaps.Gap, stance: str) -> str:
+    if gap.edge == "begins":
+        return told("Begins {far:.0f} cm from stance '{stance}'", far=gap.metres * 100, stance=stance)
+    return end_gaps.gap_words(gap, stance)
 
 
 def times_words(seen: Seen) -> str:

@@ -24,7 +24,7 @@ from app.look.theme import Theme, theme
 from app.project.document import Document
 from app.stage.compatibility_state import Compatibility, proposed_fields
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_told
 from app.widgets.restyling import set_sheet
 from metagraph.graph.model import Action, Project
 from metagraph.motion.clip import Clip
@@ -152,7 +152,7 @@ class TimingPlot(QWidget):
         first, last = seen.cost("start", start), seen.cost("end", end)
         costs = {"Repeats": last} if seen.loops else {"Begins": first, "ends": last}
         far = far_ends(project, action)
-        self.verdict.setText(verdict(costs, far))
+        self.verdict.setText(tr_told(verdict(costs, far)))
         fine = max(costs.values()) <= 1 and not far
         set_sheet(self.verdict, f"color: {t.dim if fine else t.warning}")
         self.use.setToolTip(tr("{times}: it {reason}", times=times_words(seen), reason=seen.proposed.reason))
