@@ -102,21 +102,19 @@ def verdict(costs: Mapping[str, float], far: Mapping[str, str] | None = None) ->
     those that begin or end too far from their stance, what the problems say of it.
     """
     far = far or {}
-    if max(costs.values()) <= 1 and not far:
-        return told("Begins and ends without a jump") if len(costs) > 1 else told("Repeats without a jump")
+    if len(costs) > 1 and max(costs.values()) <= 1 and not far:
+        return told("Begins and ends without a jump")
     said: list[str] = []
     for what, cost in costs.items():
-        if what in far:
-            words = far[what]
-            said.append(words if said or words[:1].isupper() else words[:1].upper() + words[1:])
-        else:
-            said.append(_cost_words(what, cost, any("jump" in words for words in said)))
+        said.append(far[what] if what in far else _cost_words(what, cost, any("jump" in x for x in said)))
     return joined(said, ", ")
 
 
 def _cost_words(what: str, cost: float, again: bool) -> str:
     """Say what one of both costs. again: whether a jump was spoken of before."""
     if what == "Repeats":
+        if cost <= 1:
+            return told("Repeats without a jump")
         return told("Repeats {cost:.1f} times what shows as a jump", cost=cost)
     if what == "Begins":
         if cost <= 1:
@@ -140,6 +138,7 @@ def far_ends(project: Project, action: Action) -> dict[str, str]:
 
 
 def _gap_words(gap: end_gaps.Gap, stance: str) -> str:
+    """Say a gap as the problems do; what begins a sentence with a capital."""
     if gap.edge == "begins":
         return told("Begins {far:.0f} cm from stance '{stance}'", far=gap.metres * 100, stance=stance)
     return end_gaps.gap_words(gap, stance)

@@ -4,6 +4,9 @@ proposed.
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
+
 import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, QPointF, Qt
@@ -14,6 +17,9 @@ from app.stage.compatibility_state import proposed_fields
 from metagraph.graph import edits
 from metagraph.suggest.jumps import Measured, curves
 from metagraph.suggest.seen_jumps import Seen, far_ends, verdict, words_at
+from metagraph.wording import reworded
+
+ROOT = Path(__file__).resolve().parents[4]
 
 
 @pytest.fixture(scope="module")
@@ -90,7 +96,11 @@ def test_a_loop_shows_its_seam(toy, wide):
     ],
 )
 def test_the_verdict_is_one_sentence(costs, words):
-    assert verdict(costs) == words
+    found = verdict(costs)
+    assert found == words
+    german = json.loads((ROOT / "app" / "languages" / "de.json").read_text("utf-8"))
+    said = reworded(found, lambda template: german.get(template, template))
+    assert not {"jump", "without", "times"} & set(said.replace(",", "").split())
 
 
 def test_what_the_problems_call_far_is_never_said_to_be_without_a_jump(toy, wide):
@@ -99,10 +109,10 @@ def test_what_the_problems_call_far_is_never_said_to_be_without_a_jump(toy, wide
     action = wide.action(toy.id(wide, "wide"))
     far = far_ends(wide, action)
     told = [p.message for p in check(wide) if p.code in ("far-start", "far-end") and p.action == action.id]
-    assert far and len(told) == len(far) and all(any(w in m for m in told) for w in far.values())
+    assert far and len(told) == len(far) and all(any(w[1:] in m for m in told) for w in far.values())
     words = verdict({"Begins": 0.1, "ends": 0.2}, far)
     assert "cm from stance 'rest'" in words and words[0].isupper()
-    assert verdict({"Begins": 0.1, "ends": 3.0}, {"Begins": "begins 20 cm from stance 'x'"}) == (
+    assert verdict({"Begins": 0.1, "ends": 3.0}, {"Begins": "Begins 20 cm from stance 'x'"}) == (
         "Begins 20 cm from stance 'x', ends 3.0 times what shows as a jump"
     )
 
