@@ -93,11 +93,17 @@ class Figure:
         below, above = self._slack
         return np.minimum(box[0] + below, box[1]), np.maximum(box[1] - above, box[0])
 
-    def posed_bounds(self, rotations: Array, positions: Array) -> tuple[Array, Array]:
+    def posed_bounds(
+        self, rotations: Array, positions: Array, joint: int | None = None
+    ) -> tuple[Array, Array]:
         """Return the same where rotations `[..., J, 4]` are known, too, as they turn the mesh: what a
-        hand holds reaches where no ball about the hand's joint tells.
+        hand holds reaches where no ball about the hand's joint tells. joint: whose part of the mesh alone is
+        meant.
         """
         matrix, corners = self.boxes
+        if joint is not None:
+            its = self.sources[matrix] == joint
+            matrix, corners = matrix[its], corners[its]
         moved = self.palette(rotations, positions)[..., matrix, :, :].astype(float)
         points = (corners @ moved[..., :3].swapaxes(-1, -2) + moved[..., None, :, 3]).reshape(-1, 3)
         points = points[np.isfinite(points).all(1)]

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
+from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Pose
 from preview import joints as rules
 from preview.camera import Camera
@@ -93,7 +94,10 @@ def thumbnails(
     if near == "whole":
         box = _person(figure, figure.posed_bounds(turned, centred))
     else:
-        box = near_box(clip.skeleton, near, centred, figure.bounds(centred), figure.height)
+        low, high = near_box(clip.skeleton, near, centred, figure.bounds(centred), figure.height)
+        # Some heads are wider than shoulders.
+        head = figure.posed_bounds(turned, centred, find_roles(clip.skeleton)["head"])
+        box = np.minimum(low, [head[0][0], low[1], head[0][2]]), np.maximum(high, head[1])
     camera = _camera(box)
     at = 1 + np.searchsorted(every[1:], frames)
     return [

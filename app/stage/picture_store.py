@@ -13,7 +13,7 @@ from PySide6.QtGui import QImage, QImageWriter, QPainter
 from app.stage.picture_process import LARGE, SCALE, SCRUB, SIZE, PictureOrder
 from metagraph.disk_cache import DiskCache, cache_folder
 
-DRAWN = 3  # to be raised when pictures are drawn otherwise
+DRAWN = 4  # to be raised when pictures are drawn otherwise
 MOST = 192 * 1024 * 1024  # bytes on disk
 KEPT = ("card", "bare", "large", "scrub")
 

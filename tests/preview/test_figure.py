@@ -177,6 +177,11 @@ def test_posed_bounds_hold_the_mesh_however_it_is_turned_and_little_more():
         low, high = figure.posed_bounds(*posed)
         assert (low <= points.min(0)).all() and (high >= points.max(0)).all()
         assert (high - low <= np.ptp(points, axis=0) + 0.2 * figure.height).all()
+        assert all(
+            np.array_equal(a, b) for a, b in zip(figure.posed_bounds(*posed, hand), (low, high), strict=True)
+        )
+        others = figure.posed_bounds(*posed, 0)  # has no part of the mesh
+        assert all(np.array_equal(a, b) for a, b in zip(others, figure.bounds(posed[1]), strict=True))
     nowhere = np.full((count, 3), np.nan)
     assert np.isfinite(figure.posed_bounds(skeleton.rest_rotations, nowhere)).all()
 

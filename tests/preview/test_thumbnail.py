@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from metagraph.motion import rotation
+from metagraph.motion.character_mesh import Character, Material, Surface
 from metagraph.motion.clip import Clip
-from preview.figure import StickFigure
+from preview.figure import SkinnedFigure, StickFigure
 from preview.thumbnail import clip_thumbnail, telling_frame, thumbnail, thumbnails
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 
@@ -77,3 +78,26 @@ def test_a_gesture_of_the_arms_is_nearer_than_a_step_and_all_its_frames_are_fram
     far = [tall(p) for p in thumbnails(offscreen, figure, stepped, frames, 96)]
     assert min(n[0] for n in near) > max(f[0] for f in far)
     assert len(set(near)) == 1, "the head stays where it is"
+
+
+@pytest.mark.gl
+def test_a_head_that_is_wider_than_shoulders_is_whole(offscreen):
+    head, count = SKELETON.index("Head"), 12
+    _, rest = SKELETON.globals(SKELETON.rest)
+    ring = np.linspace(0, 2 * np.pi, count, endpoint=False)
+    points = rest[head] + np.stack([0.7 * np.cos(ring), 0.1 + 0.2 * np.sin(ring), 0 * ring], 1)
+    wide = Character(
+        "wide",
+        SKELETON,
+        points,
+        np.tile([0.0, 0, 1], (count, 1)),
+        np.zeros((count, 2)),
+        np.tile([head, 0, 0, 0], (count, 1)),
+        np.tile([1.0, 0, 0, 0], (count, 1)),
+        np.array([[0, n, n + 1] for n in range(1, count - 1)]),
+        (Material("m"),),
+        (Surface(0, count - 2, 0),),
+    )
+    (picture,) = thumbnails(offscreen, SkinnedFigure(wide), clip([0.0, 0.4], "Head"), np.array([0]), 96)
+    seen = np.flatnonzero(picture[..., 3].any(0))
+    assert seen[0] > 0 and seen[-1] < 95 and seen[-1] - seen[0] > 60
