@@ -21,7 +21,9 @@ from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Layer, Life, Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
+from metagraph.speech import pitch, sound
 from tests import kernels
+from tests.once import heard_once
 from tests.run_notes import KEY, NOTES
 from tests.thorough import THOROUGH
 
@@ -32,6 +34,11 @@ os.environ["NUMBA_CACHE_DIR"] = str(kernels.provide(WORKER or "alone"))
 os.environ["METAGRAPH_LOOP_CACHE"] = ""  # loops are numba's own but where a test says otherwise
 os.environ["METAGRAPH_MOTION_CACHE"] = str(ROOT / ".pytest_cache" / "motion")
 os.environ["METAGRAPH_MESH_CACHE"] = str(ROOT / ".pytest_cache" / "meshes")
+
+# A process hears each sound once: the samples' conversations were heard a hundred times. Before others take
+# these names from their modules.
+sound.hear = heard_once(sound.hear)
+pitch.pitch = heard_once(pitch.pitch)
 
 # Files that take longest, the longest first: begun late, one of them would keep one process busy while the
 # others have nothing left.
