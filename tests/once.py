@@ -15,7 +15,7 @@ MOST = 64  # results a process keeps
 
 
 def heard_once(measure: Callable[[NDArray[Any], int], Any]) -> Callable[[NDArray[Any], int], Any]:
-    """Return a function of a sound, samples `[N]` and samples a second, that measures each sound once; whoever
+    """Return a function of a sound, samples `[N]` and samples a second, that measures each sound once; who
     asks gets values of their own.
     """
     known: dict[tuple[bytes, str, tuple[int, ...], int], Any] = {}

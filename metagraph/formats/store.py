@@ -25,7 +25,7 @@ from metagraph.formats.data import FORMAT, from_data, to_data
 from metagraph.formats.fbx_readers import batch
 from metagraph.formats.fields import Data, DataError
 from metagraph.formats.motion_cache import read_or_kept
-from metagraph.formats.text import TextError, as_text, parse, to_text
+from metagraph.formats.text import TextError, as_text, read, to_text
 from metagraph.graph.clip_source import source_of, with_source
 from metagraph.graph.conversation import Conversation, Side
 from metagraph.graph.face_takes import FACE_TAKE, is_face_take, on_body
@@ -67,7 +67,7 @@ def from_text(text: str, path: Path, notes: list[str] | None = None) -> Project:
     notes: see `data.from_data`.
     """
     try:
-        data, lines = parse(text)
+        data, lines = read(text)
     except TextError as error:
         line = f"line {error.line}" if error.line else "its text"
         raise FileError(
@@ -81,7 +81,7 @@ def from_text(text: str, path: Path, notes: list[str] | None = None) -> Project:
     except DataError as error:
         cause = f"{error.where} {error}".strip()
         raise FileError(
-            path, cause, _line_of(lines, error.where), told("Correct it, or restore a backup.")
+            path, cause, _line_of(lines(), error.where), told("Correct it, or restore a backup.")
         ) from None
 
 
@@ -153,7 +153,7 @@ def encoded(project: Project, path: Path) -> bytes:
 
 def _parsed(text: str, path: Path) -> Data:
     try:
-        data: Data = parse(text)[0]
+        data: Data = read(text)[0]
     except TextError as error:
         raise FileError(
             path,

@@ -24,7 +24,7 @@ from metagraph.formats.data import from_data, to_data  # noqa: E402
 from metagraph.formats.journal import Journal, journal_path  # noqa: E402
 from metagraph.formats.recovery import recover  # noqa: E402
 from metagraph.formats.store import SUFFIX, open_project, read_project, save_project  # noqa: E402
-from metagraph.formats.text import parse, to_text  # noqa: E402
+from metagraph.formats.text import read, to_text  # noqa: E402
 from metagraph.graph import edits  # noqa: E402
 from metagraph.graph.model import LAYERS, Project  # noqa: E402
 
@@ -68,7 +68,7 @@ def main() -> None:
         print(f"{sum(1 for _ in project.actions()):,} actions, {len(text) / 1e6:.2f} MB")
         print(f"save               {save:8.0f} ms")
         print(f"open               {median(lambda: read_project(path)):8.0f} ms")
-        print(f"  text -> data     {median(lambda: parse(text)):8.0f} ms")
+        print(f"  text -> data     {median(lambda: read(text)):8.0f} ms")
         print(f"  data -> project  {median(lambda: from_data(data)):8.0f} ms")
         print(f"  data -> text     {median(lambda: to_text(data)):8.0f} ms")
         journal = Journal(journal_path(path), path)
