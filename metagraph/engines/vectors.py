@@ -120,9 +120,7 @@ def _expected(project: Project, case: Case) -> dict[str, Any]:
         "plan": plan_data(plan),
         "life": life_data(plan),
         "poses": [
-            pose
-            for alive in case.alive
-            for pose in _poses(project, plan, living if alive else times, alive)
+            pose for alive in case.alive for pose in _poses(project, plan, living if alive else times, alive)
         ],
     }
 
