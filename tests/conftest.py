@@ -23,9 +23,12 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.speech import pitch, sound
 from tests import kernels
+from tests.browsing import browse
 from tests.once import heard_once
 from tests.run_notes import KEY, NOTES
 from tests.thorough import THOROUGH
+
+__all__ = ["browse"]
 
 ROOT = Path(__file__).resolve().parents[1]
 

@@ -16,9 +16,9 @@ from metagraph.engines.reading import read_export
 from metagraph.engines.targets import registry, web, web_tools
 from metagraph.engines.vectors import check_vectors, every_case, write_vectors
 from metagraph.graph.model import Project
+from tests.browsing import MODULES, Browser
 from tests.engines import cpp_program, test_runtime_godot, test_runtime_unity
 from tests.engines.test_runtime_godot import game, needs_godot
-from tests.engines.test_target_web import MODULES, browse
 from tests.formats.test_gltf_packed import BODY, parts, rewritten
 
 __all__ = ["game"]
@@ -192,7 +192,7 @@ def test_targets_that_cannot_read_it_refuse_and_the_others_write_it(
     assert "EXT_meshopt_compression" in parts(glb)[0]["extensionsRequired"]
 
 
-def test_a_page_shows_it(sample: Project, tmp_path: Path) -> None:
+def test_a_page_shows_it(sample: Project, tmp_path: Path, browse: Browser) -> None:
     if web_tools.esbuild(MODULES) is None or not web_tools.has_three(MODULES):
         pytest.skip("needs three.js and esbuild (python3 run.py test fetches them where npm is)")
     with pytest.MonkeyPatch.context() as patch:
