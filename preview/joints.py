@@ -23,6 +23,7 @@ _LEFT = re.compile(r"left|(^|[^a-z])l([^a-z]|$)")
 _RIGHT = re.compile(r"right|(^|[^a-z])r([^a-z]|$)")
 
 
+@lru_cache(maxsize=4096)  # the same joints are asked about for each picture
 def words(name: str) -> str:
     """Return the name in lower case with its humps split: `mixamorig:LeftUpLeg2` gives
     `mixamorig:left_up_leg2`.

@@ -8,7 +8,7 @@ import hashlib
 import math
 import os
 import sys
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -23,9 +23,12 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.speech import pitch, sound
 from tests import kernels
+from tests.browsing import browse
 from tests.once import heard_once
 from tests.run_notes import KEY, NOTES
 from tests.thorough import THOROUGH
+
+__all__ = ["browse"]
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -351,6 +354,20 @@ def sample_clips_read_once() -> None:
         return [copy.copy(clip) for clip in known[key]]  # each reader has clips of its own to lose
 
     gltf.read_gltf_clips = read_once
+
+
+@pytest.fixture(scope="module")
+def compiled_loops() -> Iterator[None]:
+    """Poses are worked out by compiled loops where numba is, as in a window: for what looks at minutes of it.
+    Without them NumPy gives the same (`tests/playback/test_loops.py`), and so do most tests.
+    """
+    from metagraph.playback import loops
+
+    before = [known.now for known in loops.LOOPS]
+    loops.load()
+    yield
+    for known, now in zip(loops.LOOPS, before, strict=True):
+        known.now = now
 
 
 @pytest.fixture(scope="session")

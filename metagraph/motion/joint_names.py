@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 
 from metagraph.records import dataclass
 
@@ -45,6 +46,7 @@ class JointWords:
     number: int
 
 
+@lru_cache(maxsize=4096)  # clips of a project name the same joints
 def take_apart(name: str) -> JointWords:
     """Split a name at separators, capitals and digits, without its namespace."""
     bare = re.split(r"[:|]", name)[-1]
@@ -67,6 +69,7 @@ def take_apart(name: str) -> JointWords:
     return JointWords(tuple(words), "".join(words), side, number)
 
 
+@lru_cache(maxsize=4096)
 def kind_of(words: JointWords) -> str:
     """Return what a name alone says of a limb's joint; "" when it says nothing, or nothing certain."""
     own, joined = set(words.words), words.joined

@@ -65,8 +65,12 @@ def _weighed_at(plan: Plan, project: Project, seconds: float) -> Pose:
     for of, whose, when, pose in tuple(_latest):
         if of() is plan and whose() is project and when == seconds:
             return pose
-    times = np.array([float(seconds)])
-    return _alone(weighed(layered(plan, project, times), plan, project, times))
+    return _alone(before_life(plan, project, np.array([float(seconds)])))
+
+
+def before_life(plan: Plan, project: Project, times: Array) -> Pose:
+    """Return the poses `[T]` that the other life layers are added to."""
+    return weighed(layered(plan, project, times), plan, project, times)
 
 
 def _alone(pose: Pose) -> Pose:

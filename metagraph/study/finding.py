@@ -6,7 +6,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
+from types import MappingProxyType
 
 LONGEST = 24  # letters of a part of a name that is tried
 WIDEST = 4  # parts that are put together at most
@@ -21,6 +22,43 @@ class Words:
     terms: int
 
 
+@lru_cache(maxsize=4096)
+def _pieces(name: str) -> tuple[str, ...]:
+    """Return the parts of a name that can be typed as one; those of a clip are asked for again and again."""
+    starts = [i for i, letter in enumerate(name) if letter not in " |-"]
+    ends = [n for n, letter in enumerate(name) if letter in " |"] + [len(name)]
+    pieces = dict[str, None]()
+    for i in starts:
+        last = min(next(n for n in ends if n >= i), i + LONGEST)
+        pieces.update(dict.fromkeys(name[i:j] for j in range(i + 1, last + 1)))
+    return tuple(pieces)
+
+
+@lru_cache(maxsize=8)
+def _parts(names: tuple[str, ...]) -> Mapping[int, str]:
+    """Return set of names -> the shortest part that just these have."""
+    seen: dict[str, int] = {}
+    for n, name in enumerate(names):
+        bit = 1 << n
+        for piece in _pieces(name):
+            seen[piece] = seen.get(piece, 0) | bit
+    out: dict[int, str] = {}
+    for piece, which in seen.items():
+        known = out.get(which)
+        if known is None or (len(piece), piece) < (len(known), known):
+            out[which] = piece
+    return MappingProxyType(out)
+
+
+def _most(sets: Sequence[tuple[int, int]], left: int) -> int:
+    """Return the first set that has most of what is left for its keys, 0 where none has any."""
+    best, most = 0, 0.0
+    for one, keys in sets:
+        if one & left and (share := (one & left).bit_count() / keys) > most:
+            best, most = one, share
+    return best
+
+
 class Finder:
     """What parts of names select. names: of all states there are, of which sets are told as bits."""
 
@@ -30,19 +68,7 @@ class Finder:
     @cached_property
     def parts(self) -> Mapping[int, str]:
         """Set of states -> the shortest part of a name that selects just these."""
-        seen: dict[str, int] = {}
-        for n, name in enumerate(self.names):
-            pieces = {
-                name[i:j] for i in range(len(name)) for j in range(i + 1, min(len(name), i + LONGEST) + 1)
-            }
-            for piece in pieces:
-                if not any(c in " |-" for c in piece[:1]) and " " not in piece and "|" not in piece:
-                    seen[piece] = seen.get(piece, 0) | 1 << n
-        out: dict[int, str] = {}
-        for piece, which in seen.items():
-            if which not in out or (len(piece), piece) < (len(out[which]), out[which]):
-                out[which] = piece
-        return out
+        return _parts(self.names)
 
     def one(self, want: int) -> Words | None:
         """Return one part of names, or two that both must be there, that select a set; None where none do."""
@@ -76,14 +102,12 @@ class Finder:
         plain = self.one(want)
         found = [plain] if plain is not None else []
         above = [m for m in self.parts if m & want == want and m != want]
-        outside = [m for m in self.parts if not m & want]
+        outside = [(m, len(part) + 7) for m, part in self.parts.items() if not m & want]
         for whole in sorted(above, key=lambda m: len(self.parts[m]))[:TRIED]:
             rest, text, terms = whole & ~want, self.parts[whole], 1
             while rest and terms <= WIDEST:
-                best = max(
-                    outside, key=lambda m: (m & rest).bit_count() / (len(self.parts[m]) + 7), default=0
-                )
-                if not best & rest:
+                best = _most(outside, rest)
+                if not best:
                     break
                 text, rest, terms = f"{text} -{self.parts[best]}", rest & ~best, terms + 1
             if not rest:
@@ -98,15 +122,12 @@ class Finder:
             more = m & ~want
             if more and m & want and more in self.parts and m & want not in inside:
                 inside[m & want] = Words(f"{whole} -{self.parts[more]}", 2)
+        costs = [(m, len(words.text) + 5 * words.terms) for m, words in inside.items()]
         left = want
         chosen: list[Words] = []
         while left:
-            best = max(
-                inside,
-                key=lambda m: (m & left).bit_count() / (len(inside[m].text) + 5 * inside[m].terms),
-                default=0,
-            )
-            if not best & left or len(chosen) >= 60:
+            best = _most(costs, left)
+            if not best or len(chosen) >= 60:
                 return None
             chosen.append(inside[best])
             left &= ~best

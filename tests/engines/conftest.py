@@ -35,11 +35,14 @@ def sample_export(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> 
 
 
 @pytest.fixture(scope="session")
-def cpp_probe(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cpp_probe(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A program that does in C++ what a test says: one for all, since to compile takes longer than to run."""
-    from tests.engines import test_runtime_cpp
+    from tests.engines import cpp_program
 
-    return made_once(tmp_path_factory, "cpp", test_runtime_cpp.make_probe) / "probe"
+    def make(folder: Path) -> None:
+        cpp_program.make_probe(folder, cpp_program.every_part(sample))
+
+    return made_once(tmp_path_factory, "cpp", make) / "probe"
 
 
 @pytest.fixture(scope="session")

@@ -16,9 +16,9 @@ from metagraph.engines.reading import read_export
 from metagraph.engines.targets import registry, web, web_tools
 from metagraph.engines.vectors import check_vectors, every_case, write_vectors
 from metagraph.graph.model import Project
-from tests.engines import test_runtime_cpp, test_runtime_godot, test_runtime_unity
+from tests.browsing import MODULES, Browser
+from tests.engines import cpp_program, test_runtime_godot, test_runtime_unity
 from tests.engines.test_runtime_godot import game, needs_godot
-from tests.engines.test_target_web import MODULES, browse
 from tests.formats.test_gltf_packed import BODY, parts, rewritten
 
 __all__ = ["game"]
@@ -159,13 +159,13 @@ def test_it_plays_the_same_in_c_sharp_and_a_damaged_one_is_refused(
     assert all("sample.glb" in line for line in lines[:-1]), lines
 
 
-@test_runtime_cpp.pytestmark
+@cpp_program.needs_compiler
 def test_it_plays_the_same_in_cpp_and_a_damaged_one_is_refused(
     packed: Path, damaged: list[Path], cpp_probe: Path
 ) -> None:
-    done = test_runtime_cpp.ran(cpp_probe, "conformance", packed)
+    done = cpp_program.ran(cpp_probe, "conformance", packed)
     assert done.returncode == 0, done.stdout[:2000] + done.stderr[:2000]
-    done = test_runtime_cpp.ran(cpp_probe, "conformance", *damaged)
+    done = cpp_program.ran(cpp_probe, "conformance", *damaged)
     told = [line for line in done.stdout.splitlines() if "loading" in line]
     assert done.returncode == 1 and len(told) == len(damaged), done.stdout
     assert all("sample.glb" in line for line in told)
@@ -192,7 +192,7 @@ def test_targets_that_cannot_read_it_refuse_and_the_others_write_it(
     assert "EXT_meshopt_compression" in parts(glb)[0]["extensionsRequired"]
 
 
-def test_a_page_shows_it(sample: Project, tmp_path: Path) -> None:
+def test_a_page_shows_it(sample: Project, tmp_path: Path, browse: Browser) -> None:
     if web_tools.esbuild(MODULES) is None or not web_tools.has_three(MODULES):
         pytest.skip("needs three.js and esbuild (python3 run.py test fetches them where npm is)")
     with pytest.MonkeyPatch.context() as patch:

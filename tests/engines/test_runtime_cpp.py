@@ -5,7 +5,6 @@ conformance vectors would notice.
 from __future__ import annotations
 
 import json
-import os
 import re
 import shutil
 import struct
@@ -22,197 +21,15 @@ from metagraph.graph.requests import request_from
 from metagraph.playback.extend_performance import hear, since
 from metagraph.playback.life.voice import voice_from_text
 from metagraph.playback.plan import Plan
-from tests.engines.mutants import PLAYED, broken, folders_to_try
+from tests.engines.cpp_program import MUTANTS, needs_compiler, ran
+from tests.engines.mutants import PLAYED, folders_to_try
 from tests.engines.test_runtime_unity import ASKED, SENSELESS
 
 ROOT = Path(__file__).resolve().parents[2]
-RUNTIME = ROOT / "metagraph" / "engines" / "runtimes" / "cpp"
 VECTORS = sorted(p.parent for p in (ROOT / "metagraph" / "engines" / "conformance").glob("*/vectors.json"))
 STICK = ROOT / "metagraph" / "engines" / "conformance" / "stick"
-# That the compiler tidies its memory seldom takes an eighth off its time.
-SELDOM = ("--param", "ggc-min-heapsize=600000", "--param", "ggc-min-expand=200")
-FLAGS = (*SELDOM, "-std=c++17", "-O0", "-Wall", "-Wextra", "-Werror", "-fno-exceptions", "-fno-rtti")
 
-pytestmark = pytest.mark.skipif(shutil.which("g++") is None, reason="needs a C++ compiler (g++)")
-
-
-def compiled(source: Path, *more: str | Path) -> Path:
-    """Compile one source with all warnings as errors, as engines do that have no exceptions."""
-    program = source.with_suffix("")
-    done = subprocess.run(
-        ["g++", *FLAGS, *map(str, more), str(source), "-o", str(program)],
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr[:4000]
-    return program
-
-
-def ran(program: Path, *words: object, **environment: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [str(program), *map(str, words)],
-        capture_output=True, text=True, timeout=120, check=False, env={**os.environ, **environment},
-    )  # fmt: skip
-
-
-# What is broken: a file, a rule's expression, what it is instead, and which case notices.
-MUTANTS = [
-    ("pose.hpp", "1 - pose::cue_weight(*cue, time)", "pose::cue_weight(*cue, time)", "sparse: arms: strokes that are planned on"),
-    ("pose.hpp", "elapsed >= period", "elapsed < 0", "standing: the models alone"),
-    ("pose.hpp", "rotation::ease((time - rest.fade_start) / rest.fade)", "1.0", "standing: the models alone"),
-    ("pose.hpp", "weight == 1 ?", "weight > 0 ?", "varied: nothing is asked"),
-    ("pose.hpp", "cue.hold <= 0", "cue.hold <= 1e9", "sparse: arms: holds and preparations"),
-    ("loading.hpp", "arm || masked", "masked", "standing: the models alone"),
-    ("loading.hpp", "masked = !action.joints.empty()", "masked = action.joints.size() > 1000", "standing: arms: strokes in a mood"),
-    ("glb.hpp", "std::clamp((time - track.times[key]) / span, 0.0, 1.0)", "0.0", "quiet: the models alone"),
-    ("enliven.hpp", "full_ * breath.w", "2 * full_ * breath.w", "slow: the models alone"),
-    ("solve.hpp", "shut + blink * (1 - shut)", "shut + blink", "quiet: the models in four moods"),
-    ("solve.hpp", "2 * share);", "share);", "quiet: a thing that moves"),
-    ("gaze.hpp", "since > start", "since > 1e9", "standing: chatter 1"),
-    ("gaze.hpp", "moved - turned", "now - came", "quiet: a thing that moves"),
-    ("lips.hpp", "(time - speech.end) / CLOSING", "(time - speech.end) / 1e-9", "quiet: stressed syllables"),
-    ("schedule.hpp", "ways->breathing", "1.0", "calm: the models in four moods"),
-    ("items.hpp", "speech->priority < last->priority", "false", "quiet: words that are said"),
-    ("hearing.hpp", "bool turns = holds3;", "bool turns = false;", "sparse: modes asked for live"),
-    ("meaning.hpp", "at + *inner->at", "at", "stick: lines"),
-    ("planner.hpp", "plan.track->stays_at(meta->request->layer, meta->start)", "false", "sparse: arms: to stay"),
-]  # fmt: skip
-
-
-def _switched(path: Path, number: int, rule: str, instead: str) -> str:
-    """Return a source in which a rule is followed, or broken where MUTANT says so; it stays one expression."""
-    if rule.endswith((";", "?")):
-        end = rule[-1]
-        head, _, tail = rule[:-1].rpartition(" = ")
-        other = instead[:-1].rpartition(" = ")[2]
-        lead = f"{head} = " if head else ""
-        if rule == "2 * share);":
-            return broken(path, rule, f"(MUTANT == {number} ? 1 : 2) * share);")
-        return broken(path, rule, f"{lead}(MUTANT == {number} ? ({other}) : ({tail})){end}")
-    if " = " in rule or " += " in rule:
-        head, sign, tail = re.split(r" (=|\+=) ", rule, maxsplit=1)
-        other = re.split(r" (?:=|\+=) ", instead, maxsplit=1)[1]
-        return broken(path, rule, f"{head} {sign} (MUTANT == {number} ? ({other}) : ({tail}))")
-    return broken(path, rule, f"(MUTANT == {number} ? ({instead}) : ({rule}))")
-
-
-PROBE = r"""
-#include <fstream>
-#include <iostream>
-#include <iterator>
-
-#define main shipped
-#include "conformance.cpp"
-#undef main
-#define main example
-#include "play.cpp"
-#undef main
-namespace talking {
-#define main talk
-#include "talk.cpp"
-#undef main
-}
-
-using namespace metagraph;
-
-static std::string read(const std::string& path) { return conformance::file(path).value_or(""); }
-
-static Loaded loaded(const std::string& json) {
-    const std::string text = read(json), glb = read(json.substr(0, json.size() - 4) + "glb");
-    return load(text, reinterpret_cast<const std::uint8_t*>(glb.data()), glb.size(), json.substr(json.rfind('/') + 1));
-}
-
-static int live(Character& character, const Json& steps) {
-    List<std::string> ids;
-    for (const Json& step : steps.items) {
-        for (const Json& ask : step.items[1].items) ids.push_back(character.ask(ask.text));
-        character.update(step.items[0].number);
-        character.pose();
-        character.morphs();
-        for (const Happening& e : character.events()) {
-            std::cout << json::text(Json::list({"event", e.kind, e.layer, e.action, e.meta, e.at})) << "\n";
-        }
-    }
-    std::cout << json::text(Json::list({"now", character.now()})) << "\n";
-    for (const std::string& id : ids) {
-        const Answer a = character.answer(id);
-        std::cout << json::text(Json::list({"answer", id, a.state, Json::maybe(a.at), Json::maybe(a.until), a.why})) << "\n";
-    }
-    for (const std::string& layer : graph::LAYERS) {
-        for (const auto& c : character.plan().layers.at(layer)->cues) {
-            std::cout << json::text(Json::list({"cue", layer, c->action->id, c->start, c->end, c->meta})) << "\n";
-        }
-    }
-    return 0;
-}
-
-int main(int count, char** words) {
-    const std::string what = words[1];
-    if (what == "conformance") return shipped(count - 1, words + 1);
-    if (what == "example") return example();
-    if (what == "talk") return talking::talk(count - 1, words + 1);
-    const std::string text = read(words[count - 1]);
-    json::Parser parser(text);
-    const Json data = parser.parse();
-    if (what == "json") {
-        std::cout << (parser.wrong.empty() ? json::text(data) : parser.wrong) << "\n";
-        return 0;
-    }
-    if (what == "voices") {
-        for (const Json& one : data.items) {
-            const Ref<Voice> voice = voice::from_text(one.text, 2.5);
-            List<Json> accents(voice->accents.begin(), voice->accents.end());
-            Json weights = Json::list();
-            for (const float weight : voice->weights) weights.items.push_back(static_cast<double>(weight));
-            std::cout << json::text(Json::list({Json::list(accents), weights})) << "\n";
-        }
-        return 0;
-    }
-    const Loaded export_ = loaded(words[2]);
-    if (export_.graph == nullptr) {
-        std::cout << export_.error << "\n";
-        return 3;
-    }
-    for (const auto& problem : export_.graph->problems) std::cout << problem << "\n";
-    if (what != "live") return 0;
-    CharacterOptions options;
-    options.seed = 5;
-    Character character(export_.graph, options);
-    return live(character, data);
-}
-"""
-
-
-def example() -> str:
-    """Return the README's program, with what else it shows in it."""
-    found = re.findall(r"```cpp\n(.*?)```", (RUNTIME / "README.md").read_text(), re.DOTALL)
-    program, *more = found
-    return str(program).replace("    for (double now = 0;", "".join(more) + "    for (double now = 0;", 1)
-
-
-def make_probe(folder: Path) -> None:
-    """Compile the program that does what a test says, the shipped runner among it, with a switch for each
-    mutant.
-    """
-    from tests.engines.test_talk_runtimes import CPP_PROGRAM
-
-    for path in (*RUNTIME.glob("*.hpp"), RUNTIME / "conformance.cpp"):
-        shutil.copy(path, folder)
-    for number, (name, rule, instead, _) in enumerate(MUTANTS, 1):
-        (folder / name).write_text(_switched(folder / name, number, rule, instead))
-    language = folder / "language.hpp"
-    switch = 'inline const int MUTANT = std::getenv("MUTANT") ? std::atoi(std::getenv("MUTANT")) : 0;\n'
-    language.write_text(
-        broken(language, "namespace metagraph {\n\ntemplate", f"{switch}namespace metagraph {{\n\ntemplate")
-    )
-    (folder / "metagraph").symlink_to(folder)
-    (folder / "play.cpp").write_text(example())
-    (folder / "talk.cpp").write_text(CPP_PROGRAM)
-    source = folder / "probe.cpp"
-    source.write_text(PROBE)
-    compiled(source, "-I", folder)
+pytestmark = needs_compiler
 
 
 @pytest.fixture(scope="module")
@@ -245,12 +62,6 @@ def test_the_runner_fails_without_vectors_and_with_those_of_another_version(
     done = ran(probe, "conformance", folder)
     assert done.returncode == 1
     assert "update the runtime" in done.stdout
-
-
-def test_the_shipped_headers_compile_as_they_are(tmp_path: Path) -> None:
-    """Those with switches are what runs; what is shipped differs from them in the mutants' lines alone."""
-    shutil.copy(RUNTIME / "conformance.cpp", tmp_path)
-    compiled(tmp_path / "conformance.cpp", "-I", RUNTIME, "-fsyntax-only")
 
 
 def test_single_cases_that_notice_mutants_pass_where_nothing_is_broken(probe: Path, single: Path) -> None:

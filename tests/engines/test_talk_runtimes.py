@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from metagraph.engines.translation.gesture_word_lists import CPP, GODOT, JAVASCRIPT, UNITY, gesture_word_lists
-from tests.engines import test_runtime_cpp, test_runtime_godot, test_runtime_unity
+from tests.engines import cpp_program, test_runtime_godot, test_runtime_unity
 from tests.engines.test_runtime_godot import game, needs_godot
 from tests.speech.test_text_gestures import SPOKEN, TEXTS
 
@@ -125,9 +125,6 @@ public static class Program
 """
 
 CPP_PROGRAM = r"""
-#include <fstream>
-#include <iostream>
-#include <iterator>
 #include "metagraph.hpp"
 using namespace metagraph;
 
@@ -299,32 +296,26 @@ def test_a_lexicon_that_is_none_is_an_error_with_a_remedy_in_c_sharp(tmp_path: P
     assert "'rules' should be a list" in told and "docs/live.md" in told
 
 
-@test_runtime_cpp.pytestmark
+@cpp_program.needs_compiler
 def test_cpp_says_what_javascript_says(
     wanted: Any, sample_export: Path, cpp_probe: Path, tmp_path: Path
 ) -> None:
     (tmp_path / "asked.json").write_text(json.dumps(asked(sample_export)))
-    done = test_runtime_cpp.ran(cpp_probe, "talk", tmp_path / "asked.json")
+    done = cpp_program.ran(cpp_probe, "talk", tmp_path / "asked.json")
     assert done.returncode == 0, done.stderr
     same(json.loads(done.stdout), wanted)
 
 
-@test_runtime_cpp.pytestmark
-def test_small_letters_are_pythons_in_cpp(tmp_path: Path) -> None:
+@cpp_program.needs_compiler
+def test_small_letters_are_pythons_in_cpp(cpp_probe: Path) -> None:
     """Of the alphabets that lexicons are likely to be written in; all else stays as it is."""
-    source = tmp_path / "small.cpp"
-    source.write_text(
-        '#include <iostream>\n#include "language.hpp"\nint main() { for (std::string one; std::getline(std::cin, one);) '
-        "std::cout << metagraph::lang::lowered(one) << '\\n'; }\n"
-    )
-    program = test_runtime_cpp.compiled(source, "-I", RUNTIMES / "cpp")
     kept = {*range(0x181, 0x1CD), *range(0x1F1, 0x1F8), 0x220, 0x130, 0x4C0} - {0x1A0, 0x1AF}
     codes = {*range(0x21, 0x7F), *range(0xA1, 0x234), *range(0x386, 0x3CF), *range(0x3D0, 0x3D8)}
     codes |= {*range(0x400, 0x588), *range(0x1E00, 0x1F00), 0x4E00, 0xAC00, 0x1F600}
     letters = [chr(code) for code in sorted(codes - kept) if chr(code).isprintable()]
     broken = [b"\xc3", b"\xe2\x82 A", b"\xff\x80A"]
     done = subprocess.run(
-        [program],
+        [cpp_probe, "lowered"],
         input=b"\n".join([*(x.encode() for x in letters), *broken]),
         capture_output=True,
         timeout=60,

@@ -7,11 +7,8 @@ from __future__ import annotations
 import base64
 import io
 import json
-import os
 import shutil
-import subprocess
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -23,36 +20,12 @@ from metagraph.graph.model import Project
 from metagraph.playback.extend_performance import hear
 from metagraph.playback.plan import Plan
 from metagraph.playback.player import pose_at
+from tests.browsing import MODULES, Browser
 
 HERE = Path(__file__).parent
-MODULES = HERE.parent / "node_modules"
 SAMPLES = HERE.parents[1] / "sample_clips"
 CONFORMANCE = HERE.parents[1] / "metagraph" / "engines" / "conformance"
-CHROMIUM = os.environ.get("CHROMIUM") or next(
-    (c for c in ("chromium", "chromium-browser", "google-chrome") if shutil.which(c)), None
-)
 SEED, TIME = 7, 12.3
-
-
-def browse(folder: Path, *steps: dict[str, Any]) -> tuple[list[Any], list[str]]:
-    """Run steps in a page of a folder; return the values its `run` steps gave, and the errors the browser
-    told.
-    """
-    if CHROMIUM is None or shutil.which("node") is None or not (MODULES / "playwright-core").is_dir():
-        pytest.skip("needs Chromium, Node and playwright-core (python3 run.py test fetches what it can)")
-    script = folder / "steps.json"
-    script.write_text(json.dumps(steps))
-    environ = {**os.environ, "CHROMIUM": shutil.which(CHROMIUM) or CHROMIUM}
-    done = subprocess.run(
-        ["node", str(HERE / "run" / "browser.mjs"), str(folder), str(script)],
-        capture_output=True,
-        text=True,
-        timeout=180,
-        env=environ,
-    )
-    assert done.returncode == 0, done.stderr[-2000:]
-    rows = [json.loads(line) for line in done.stdout.splitlines()]
-    return [row["value"] for row in rows if "value" in row], rows[-1]["errors"]
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +54,7 @@ PICTURE = """(() => { const { stage } = metagraph; stage.scene.background.set("#
 
 
 def test_the_page_poses_the_character_as_the_preview_does_and_its_picture_matches(
-    sample: Project, page: Path
+    sample: Project, page: Path, browse: Browser
 ) -> None:
     (_, joints, picture), errors = browse(page, OPEN, SEEK, {"run": JOINTS}, {"run": PICTURE})
     assert not errors
@@ -112,7 +85,7 @@ def test_the_page_poses_the_character_as_the_preview_does_and_its_picture_matche
     assert overlap > 0.96, overlap
 
 
-def test_buttons_ask_and_the_answers_and_the_plan_show_it(page: Path) -> None:
+def test_buttons_ask_and_the_answers_and_the_plan_show_it(page: Path, browse: Browser) -> None:
     state = """[metagraph.object.character.plan.layers.arms.cues.map((c) => [c.action.name, c.meta]),
       document.getElementById('answers').textContent]"""
     lanes = "(() => { const c = document.getElementById('lanes'); return c.toDataURL().length; })()"
@@ -139,7 +112,7 @@ def test_buttons_ask_and_the_answers_and_the_plan_show_it(page: Path) -> None:
     assert before
 
 
-def test_speech_moves_the_jaw_and_a_look_the_eyes(page: Path) -> None:
+def test_speech_moves_the_jaw_and_a_look_the_eyes(page: Path, browse: Browser) -> None:
     turns = """Object.fromEntries(metagraph.object.joints.filter(({ bone }) => /Jaw|LeftEye/.test(bone.name))
       .map(({ bone }) => [bone.name, bone.quaternion.toArray()]))"""
     (rest, _, _, _, _, talking), errors = browse(
@@ -154,13 +127,16 @@ def test_speech_moves_the_jaw_and_a_look_the_eyes(page: Path) -> None:
 
 
 @pytest.mark.parametrize("scheme", ["dark", "light"])
-def test_the_page_takes_the_systems_colours(page: Path, scheme: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("SCHEME", scheme)
-    (color,), errors = browse(page, OPEN, {"run": "getComputedStyle(document.body).backgroundColor"})
+def test_the_page_takes_the_systems_colours(browse: Browser, page: Path, scheme: str) -> None:
+    (color,), errors = browse(
+        page, OPEN, {"run": "getComputedStyle(document.body).backgroundColor"}, scheme=scheme
+    )
     assert not errors and color == {"dark": "rgb(23, 24, 27)", "light": "rgb(233, 235, 238)"}[scheme]
 
 
-def test_what_is_missing_newer_or_cut_short_is_told_in_the_page(page: Path, tmp_path: Path) -> None:
+def test_what_is_missing_newer_or_cut_short_is_told_in_the_page(
+    page: Path, tmp_path: Path, browse: Browser
+) -> None:
     shutil.copytree(page, tmp_path / "page")
     data = json.loads((page / "sample.json").read_bytes())
     (tmp_path / "page" / "newer.json").write_text(json.dumps({**data, "metagraph": 99}))
@@ -180,7 +156,9 @@ def test_what_is_missing_newer_or_cut_short_is_told_in_the_page(page: Path, tmp_
     assert "cut.glb" in told[2] or "GLB" in told[2]
 
 
-def test_the_vectors_hold_in_the_browser(page: Path, sample_export: Path, tmp_path: Path) -> None:
+def test_the_vectors_hold_in_the_browser(
+    page: Path, sample_export: Path, tmp_path: Path, browse: Browser
+) -> None:
     shutil.copytree(page, tmp_path / "page")
     shutil.copytree(
         HERE.parents[1] / "metagraph" / "engines" / "runtimes" / "javascript", tmp_path / "page" / "metagraph"
@@ -253,7 +231,7 @@ README = (HERE.parents[1] / "metagraph" / "engines" / "runtimes" / "javascript" 
 FIVE_LINES = README.partition("```html\n")[2].partition("```")[0]
 
 
-def test_a_character_is_in_any_page_in_five_lines(page: Path, tmp_path: Path) -> None:
+def test_a_character_is_in_any_page_in_five_lines(page: Path, tmp_path: Path, browse: Browser) -> None:
     """Offline, from files of the export alone; then in another page three of them."""
     shutil.copytree(page, tmp_path / "page")
     shutil.rmtree(tmp_path / "page" / "player")  # which only its own page needs

@@ -19,6 +19,8 @@ from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import pose_at
 
+pytestmark = pytest.mark.usefixtures("compiled_loops")
+
 LENGTH = 600.0
 SEEDS = range(1, 11)
 FPS = 60

@@ -2,11 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import os
-import shutil
-import signal
-import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -17,13 +12,9 @@ from metagraph.study.perceive.answers import keep, read_answers
 from metagraph.study.perceive.folder import Perceived
 from metagraph.study.perceive.perceive_data import collect
 from metagraph.study.perceive.serving import serve
+from tests.browsing import Browser
 from tests.study.perceive.perceive_makers import CHOICE, RATING, shown, text
 
-TESTS = Path(__file__).resolve().parents[2]
-CHROMIUM = os.environ.get("CHROMIUM") or next(
-    (c for c in ("chromium", "chromium-browser", "google-chrome") if shutil.which(c)), None
-)
-LONGEST = 150  # seconds
 MORE = "checks: {told: 1}\nconsent: You take part of your own free will.\ninstructions: Watch, then choose.\n"
 
 BUTTONS = "[...document.querySelectorAll('button')]"
@@ -35,35 +26,6 @@ BEGIN = [
     {"click": "button:text-is('I agree')"},
     {"click": "button:text-is('Go on')"},
 ]
-
-
-def browse(folder: Path, steps: list[dict[str, Any]]) -> tuple[list[Any], list[str]]:
-    """Run steps in a page; return what its `run` steps gave, and the errors the browser told."""
-    if (
-        CHROMIUM is None
-        or shutil.which("node") is None
-        or not (TESTS / "node_modules" / "playwright-core").is_dir()
-    ):
-        pytest.skip("needs Chromium, Node and playwright-core (python3 run.py test fetches what it can)")
-    script = folder / "steps.json"
-    script.write_text(json.dumps(steps))
-    process = subprocess.Popen(
-        ["node", str(TESTS / "engines" / "run" / "browser.mjs"), str(folder), str(script)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        env={**os.environ, "CHROMIUM": shutil.which(CHROMIUM) or CHROMIUM},
-        start_new_session=True,  # the browser's processes end with it
-    )
-    try:
-        out, wrong = process.communicate(timeout=LONGEST)
-    finally:
-        if process.poll() is None:
-            os.killpg(process.pid, signal.SIGKILL)
-            process.communicate()
-    assert process.returncode == 0, wrong[-2000:]
-    rows = [json.loads(line) for line in out.splitlines()]
-    return [row["value"] for row in rows if "value" in row], rows[-1]["errors"]
 
 
 def answer(made: Perceived, who: str = "P01") -> list[dict[str, Any]]:
@@ -89,7 +51,7 @@ def made(tmp_path: Path) -> Perceived:
 
 
 def test_from_a_file_everything_is_answered_by_keyboard_saved_and_read(
-    made: Perceived, tmp_path: Path
+    made: Perceived, tmp_path: Path, browse: Browser
 ) -> None:
     page = (made.show / "index.html").as_uri() + "#P01"
     steps = [{"url": page, "until": "document.querySelector('#code').value === 'P01'"}, *BEGIN, READY]
@@ -101,7 +63,7 @@ def test_from_a_file_everything_is_answered_by_keyboard_saved_and_read(
         {"download": ["button:text-is('Save the answers')", str(saved)]},
         {"download": ["button:text-is('Save as a table (CSV)')", str(table)]},
     ]
-    (disabled, before), errors = browse(made.folder, steps)
+    (disabled, before), errors = browse(made.folder, *steps)
     assert not errors and disabled is True
     assert [e["type"] for e in before] == ["begin"]  # nothing counts that was not watched
     sheet = read_answers(saved)
@@ -116,7 +78,9 @@ def test_from_a_file_everything_is_answered_by_keyboard_saved_and_read(
     assert len(rows) == len(trials) + 1 and rows[1].split(",")[2] == "training"
 
 
-def test_served_answers_arrive_replays_are_counted_and_a_reload_goes_on(made: Perceived) -> None:
+def test_served_answers_arrive_replays_are_counted_and_a_reload_goes_on(
+    made: Perceived, browse: Browser
+) -> None:
     served = serve(made)
     try:
         first, second = answer(made, "P02")[:4], answer(made, "P02")[4:8]
@@ -133,7 +97,7 @@ def test_served_answers_arrive_replays_are_counted_and_a_reload_goes_on(made: Pe
             {"run": "document.querySelector('#state').textContent"},
         ]
         steps += [*second, {"until": "kept.sent === kept.events.length"}, EVENTS]
-        (state, events), errors = browse(made.folder, steps)
+        (state, events), errors = browse(made.folder, *steps)
     finally:
         served.close()
     assert not errors
@@ -145,7 +109,9 @@ def test_served_answers_arrive_replays_are_counted_and_a_reload_goes_on(made: Pe
     assert [e["type"] for e in log.events] == [e["type"] for e in events] and not log.problems
 
 
-def test_who_withdraws_leaves_nothing_in_the_browser_and_is_not_counted(made: Perceived) -> None:
+def test_who_withdraws_leaves_nothing_in_the_browser_and_is_not_counted(
+    made: Perceived, browse: Browser
+) -> None:
     served = serve(made)
     try:
         steps = [{"url": served.url + "#P03", "until": "document.querySelector('#code')"}, *BEGIN]
@@ -155,7 +121,7 @@ def test_who_withdraws_leaves_nothing_in_the_browser_and_is_not_counted(made: Pe
             {"run": "document.querySelector('h1').textContent"},
         ]
         steps += [{"run": "Object.values(localStorage).join()"}]
-        (title, left), errors = browse(made.folder, steps)
+        (title, left), errors = browse(made.folder, *steps)
     finally:
         served.close()
     assert not errors and title == "You withdrew" and "value" not in left and "withdrawn" in left
@@ -163,15 +129,15 @@ def test_who_withdraws_leaves_nothing_in_the_browser_and_is_not_counted(made: Pe
     assert next(p for p in collect(made).people if p.participant == "P03").why == "withdrawn"
 
 
-def test_who_does_not_agree_leaves_no_trace_but_that(made: Perceived) -> None:
+def test_who_does_not_agree_leaves_no_trace_but_that(made: Perceived, browse: Browser) -> None:
     page = (made.show / "index.html").as_uri()
     steps = [{"url": page, "until": "document.querySelector('#code')"}, {"fill": ["#code", " p01 "]}]
     steps += [{"click": "button:text-is('Begin')"}, {"click": "button:text-is('I do not agree')"}, EVENTS]
-    (events,), errors = browse(made.folder, steps)
+    (events,), errors = browse(made.folder, *steps)
     assert not errors and [e["type"] for e in events] == ["declined"]
 
 
-def test_a_video_that_is_missing_is_told(made: Perceived) -> None:
+def test_a_video_that_is_missing_is_told(made: Perceived, browse: Browser) -> None:
     for path in (made.show / "videos").iterdir():
         path.unlink()
     page = (made.show / "index.html").as_uri() + "#P01"
@@ -179,4 +145,4 @@ def test_a_video_that_is_missing_is_told(made: Perceived) -> None:
     steps += [
         {"until": "document.querySelector('[role=status].dim')?.textContent.includes('cannot be played')"}
     ]
-    browse(made.folder, steps)
+    browse(made.folder, *steps)
