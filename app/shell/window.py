@@ -202,8 +202,12 @@ class Window(QMainWindow):
 
     def _fetch(self, names: Iterable[str], then: Callable[[], object]) -> None:
         """Import modules on a thread, and go on."""
+
+        def fetched(_: object) -> None:
+            then()
+
         self.shell.jobs.start(
-            "panels", lambda _: [import_module(name) for name in names], lambda _: then(), quick=True
+            "panels", lambda _: [import_module(name) for name in names], fetched, quick=True
         )
 
     def make_late_panels(self) -> None:

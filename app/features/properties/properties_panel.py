@@ -51,7 +51,8 @@ class PropertiesPanel(QScrollArea):
         self.pages = QStackedWidget(self)
         self.layer = LayerPage(document, session, self._try, self)
         self.clip = ClipPage(document, session, self)
-        for page in (self.layer, QWidget(self), self.clip):
+        self._none = QWidget(self)  # where the page of actions will be
+        for page in (self.layer, self._none, self.clip):
             self.pages.addWidget(page)
         self.setWidget(self.pages)
         document.changed.connect(self._edited)
@@ -70,10 +71,9 @@ class PropertiesPanel(QScrollArea):
             from app.features.properties.action_page import ActionPage
 
             self._action = page = ActionPage(self.document, self.session, self._try, self)
-            empty = self.pages.widget(1)
             self.pages.insertWidget(1, page)
-            self.pages.removeWidget(empty)
-            empty.deleteLater()
+            self.pages.removeWidget(self._none)
+            self._none.deleteLater()
             self._furnish(page)
             page.fit(self.size())
             self._set_low(page, self.height())
