@@ -115,6 +115,7 @@ class Window(QMainWindow):
         self.keyboard = Keyboard(self, shell.actions)
         self.resize(1680, 1020)
         self.workspaces.restore()
+        self.places.proportions.follow()
         self._wire()  # now: each signal before would have everything shown once more
         self.restyle()
 
