@@ -197,6 +197,7 @@ class Places:
             )  # what stands beside them comes after all that take turns
             widget.setVisible(panel.when in ("any", self.session.onstage.mode))
         elif panel.place == "beside":
+            widget.hide()  # else what it stands beside would be narrow for a moment
             self.centre.addWidget(widget)
             widget.setVisible(self.shows(panel.id))
         else:
@@ -249,9 +250,9 @@ class Places:
         """Show a panel in front, or hide it. Raises LookupError where there is none."""
         dock = self.dock(ident)
         if self.panels[ident].place == "beside":
-            (self._beside.add if on else self._beside.discard)(ident)
             if on and self.ready:
                 self.panel(ident)
+            (self._beside.add if on else self._beside.discard)(ident)
             if ident in self._made:
                 self._made[ident].setVisible(self.shows(ident))
                 width = self.centre.width()
