@@ -102,13 +102,18 @@ def _with_arguments_of(function: FunctionType) -> FunctionType:
         given = taken = "*args, **kwargs"
     else:
         given = taken = names
+    room = {"f__": function, "t__": functools.partial(_told, function.__name__)}
+    return FunctionType(_calling(taken, given), room)
+
+
+@functools.cache
+def _calling(taken: str, given: str) -> CodeType:
+    """Return the code of a function that calls another: many methods take the same."""
     source = (
         f"def call({taken}):\n try:\n  return f__({given})\n except Exception as e__:\n  return t__(e__)\n"
     )
-    room: dict[str, Any] = {"f__": function, "t__": functools.partial(_told, function.__name__)}
-    exec(compile(source, "<guard>", "exec"), room)
-    call: FunctionType = room["call"]
-    return call
+    whole = compile(source, "<guard>", "exec")
+    return next(part for part in whole.co_consts if isinstance(part, CodeType))
 
 
 def _told(name: str, error: Exception) -> Any:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 import os
 import sys
 from collections.abc import Callable
@@ -14,11 +13,12 @@ from PySide6.QtCore import QCoreApplication, QLibraryInfo, QSettings, Qt, QTimer
 from PySide6.QtGui import QSurfaceFormat
 from PySide6.QtWidgets import QApplication
 
-from app.quick_imports import without_search, without_typing_extensions
+from app.quick_imports import without_array_help, without_search, without_typing_extensions
 from metagraph.uncollected import uncollected
 
 without_search()
 without_typing_extensions()
+without_array_help()
 
 if TYPE_CHECKING:
     from app.shell.window import Window
@@ -26,12 +26,14 @@ if TYPE_CHECKING:
 UNSEEN = 500  # milliseconds after which a project is opened though no picture was painted: it may be hidden
 
 
-@uncollected()
 def prepare() -> QApplication:
     """Return the application, its OpenGL format set; made once."""
     found = QApplication.instance()
-    if isinstance(found, QApplication):
-        return found
+    return found if isinstance(found, QApplication) else _application()
+
+
+@uncollected(lasting=True)
+def _application() -> QApplication:
     from app import translation
     from app.memory import frugal
     from preview.early_driver import load_soon
@@ -71,11 +73,11 @@ def make_window() -> Window:
 
 def open_window(path: Path | None, sample: bool = False, clip: str | None = None) -> Window:
     """Show a window on a project, the sample project, or nothing. clip: name or id of one to select then."""
-    from app.project.files import SAMPLE
+    with uncollected(lasting=True):
+        from app.project.files import SAMPLE
 
-    window = make_window()
-    gc.freeze()  # what was imported and made stays: nobody looks for circles in it again
-    window.show()
+        window = make_window()
+        window.show()
     files = window.shell.files
     if clip is not None:
         files.opened.connect(lambda: _select(window, clip), Qt.ConnectionType.SingleShotConnection)

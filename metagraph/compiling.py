@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import importlib
 import os
-import subprocess
 import sys
 import zlib
 from collections.abc import Callable, Mapping, Sequence
@@ -156,6 +155,8 @@ def _install() -> None:
             f'This needs numba, which is not installed. Install it: "{sys.executable}" -m pip install '
             f'"{NUMBA}"'
         )
+    import subprocess
+
     print(
         "Installing the compiler that new motion needs (60 MB to load, once) ...", file=sys.stderr, flush=True
     )

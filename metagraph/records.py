@@ -2,7 +2,8 @@
 
 `dataclasses.dataclass` writes each method of a class as text and compiles it at once: half a millisecond for
 a frozen class, and nearly two hundred are made before the window's first picture, few of which have a value
-by then. Here what has to be quick when it is called is compiled when it first is, and the rest is shared.
+by then, and most of those a single one. Here what has to be quick when it is called often is compiled when it
+is, and the rest is shared.
 The class is one of `dataclasses` all the same, to `fields`, `replace`, `asdict`, and to whoever checks types.
 What is rare (a base that is a dataclass, fields given by keyword alone or not given at all) is left to
 `dataclasses`.
@@ -18,6 +19,7 @@ import sys
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, cast
 
+FEW = 8  # values of a class that are made without anything compiled
 _FACTORY = dataclasses._HAS_DEFAULT_FACTORY  # type: ignore[attr-defined]  # what signatures show
 
 
@@ -58,13 +60,41 @@ def _tuple(of: str, names: list[str]) -> str:
     return f"({''.join(f'{of}.{name},' for name in names)})"
 
 
+def _fills(self: Any, fields: tuple[dataclasses.Field[Any], ...], given: Any, named: dict[str, Any]) -> bool:
+    """Give a new value its fields without anything compiled. Return whether that was possible: what is given
+    wrongly is not.
+    """
+    values = {f.name: value for f, value in zip(fields, given, strict=False)}
+    none = dataclasses.MISSING
+    lacking = [f for f in fields if f.name not in values and f.name not in named]
+    if (
+        len(given) > len(fields)
+        or values.keys() & named.keys()
+        or len(values) + len(named) + len(lacking) > len(fields)
+    ):
+        return False
+    if any(f.default is none and f.default_factory is none for f in lacking):
+        return False
+    values |= named
+    for f in fields:
+        if f.name in values:
+            value = values[f.name]
+        else:
+            value = f.default if f.default_factory is none else f.default_factory()
+        object.__setattr__(self, f.name, value)
+    if hasattr(self, "__post_init__"):
+        self.__post_init__()
+    return True
+
+
 def _waiting(cls: type, frozen: bool) -> dict[str, Any]:
     """Return what stands for the methods that are compiled: whichever is called first has all compiled."""
     stubs: dict[str, Any] = {}
+    fields = dataclasses.fields(cls)
+    made_by_hand = 0
 
     def compiled(name: str) -> Any:
         if vars(cls).get(name) is stubs[name]:
-            fields = dataclasses.fields(cls)
             made: dict[str, Any] = {}
             text = _text(fields, frozen, hasattr(cls, "__post_init__"))
             exec(text, vars(sys.modules[cls.__module__]), made)
@@ -77,7 +107,10 @@ def _waiting(cls: type, frozen: bool) -> dict[str, Any]:
         return getattr(cls, name)
 
     def __init__(self: Any, /, *given: Any, **named: Any) -> None:
-        compiled("__init__")(self, *given, **named)
+        nonlocal made_by_hand
+        made_by_hand += 1
+        if made_by_hand > FEW or not _fills(self, fields, given, named):
+            compiled("__init__")(self, *given, **named)
 
     def __eq__(self: Any, other: object) -> Any:
         return compiled("__eq__")(self, other)
@@ -86,7 +119,7 @@ def _waiting(cls: type, frozen: bool) -> dict[str, Any]:
         return compiled("__hash__")(self)
 
     stubs.update(__init__=__init__, __eq__=__eq__, __hash__=__hash__)
-    __init__.__annotations__ = {**{f.name: f.type for f in dataclasses.fields(cls)}, "return": None}
+    __init__.__annotations__ = {**{f.name: f.type for f in fields}, "return": None}
     return stubs
 
 

@@ -25,7 +25,7 @@ class Setup:
     def __init__(self, monkeypatch: pytest.MonkeyPatch, works: bool, said: str = "") -> None:
         self.started: list[list[str]] = []
         self.works, self.said, self.is_there = works, said, False
-        monkeypatch.setattr(compiling.subprocess, "run", self)
+        monkeypatch.setattr(subprocess, "run", self)
         monkeypatch.setattr(compiling, "there", lambda: self.is_there)
 
     def __call__(self, command: list[str], **more: Any) -> subprocess.CompletedProcess[str]:

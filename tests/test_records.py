@@ -160,3 +160,44 @@ def test_what_is_rare_is_left_to_dataclasses():
 
     assert Wider(1, c=2) == Wider(1, 0.5, c=2) and isinstance(Wider(1), Slotted)
     assert Derived(1).b == 3
+
+
+@pytest.mark.parametrize("options", [{"frozen": True}, {"frozen": True, "slots": True}, {}], ids=str)
+def test_the_first_values_are_made_without_anything_compiled_and_are_as_the_later_ones(options):
+    def finish(self) -> None:
+        told.append(self.a)
+
+    told: list[int] = []
+    body = {"a": int, "b": tuple[str, ...], "c": list[int]}
+    made = records.dataclass(**options)(
+        type(
+            "Made",
+            (),
+            {
+                "__annotations__": body,
+                "__module__": __name__,
+                "b": ("x",),
+                "c": field(default_factory=list),
+                "__post_init__": finish,
+            },
+        )
+    )
+    wrong = [((), {}), ((1,), {"a": 2}), ((1, (), [], 3), {}), ((1,), {"d": 2}), ((), {"b": ()})]
+    values, lists = [], set()
+    for n in range(records.FEW + 4):
+        values += [made(n), made(n, ("y",)), made(b=(), a=n), made(n, c=[4])]
+        lists.add(id(values[-4].c))
+    assert len(lists) == records.FEW + 4, "each has a list of its own"
+    assert told == [v.a for v in values]
+    for n in range(0, len(values), 4):
+        assert [(v.a - values[n].a, v.b, v.c) for v in values[n : n + 4]] == [
+            (0, ("x",), []),
+            (0, ("y",), []),
+            (0, (), []),
+            (0, ("x",), [4]),
+        ]
+    fresh = records.dataclass(**options)(type("Fresh", (), {"__annotations__": body, "__module__": __name__}))
+    for cls in (made, fresh):
+        for given, named in wrong:
+            with pytest.raises(TypeError):
+                cls(*given, **named)

@@ -39,3 +39,15 @@ def test_an_error_leaves_it_as_before() -> None:
     with pytest.raises(ZeroDivisionError), uncollected():
         raise ZeroDivisionError
     assert gc.isenabled()
+
+
+def test_what_lasts_is_not_looked_through_even_afterwards() -> None:
+    gc.enable()
+    try:
+        with uncollected(lasting=True):
+            kept = [[n] for n in range(2000)]
+            before = gc.get_stats()[0]["collections"]
+        assert gc.isenabled() and gc.get_freeze_count() >= len(kept)
+        assert gc.get_stats()[0]["collections"] == before
+    finally:
+        gc.unfreeze()

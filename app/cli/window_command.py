@@ -10,6 +10,7 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from metagraph.errors import FileError
+from metagraph.uncollected import uncollected
 
 
 def arguments(parser: ArgumentParser) -> None:
@@ -49,6 +50,7 @@ def run(options: Namespace) -> int:
                 project=options.project,
             )
         )
-    from app.main import run_window
+    with uncollected(lasting=True):
+        from app.main import run_window
 
     return run_window(options.project, options.sample, options.clip)

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from PySide6.QtWidgets import QFileDialog, QWidget
 
@@ -15,11 +16,13 @@ from app.project.files import Files
 from app.project.importing import FileDrop, Importing
 from app.project.jobs import Job, Jobs
 from app.translation import tr
-from metagraph.formats.action_labels import LabelRow, labelled, read_labels
 from metagraph.formats.clips import SUFFIXES
-from metagraph.formats.imports import Imported, import_files
+from metagraph.formats.imports import Imported
 from metagraph.graph.model import Project
 from metagraph.records import dataclass
+
+if TYPE_CHECKING:
+    from metagraph.formats.action_labels import LabelRow
 
 ENDING = ".labels.json"
 FILES = tr("Labels (*{ending});;JSON (*.json);;All files (*)", ending=ENDING)
@@ -36,6 +39,8 @@ class ReadLabels:
         """Return a project with both, how many rows were met, and why others were not."""
         project = self.clips.into(project)
         at = {(entry.path, entry.take): entry.id for entry in project.clips.values()}
+        from metagraph.formats.action_labels import labelled
+
         fresh = {clip.name: at[file, take] for file, take, _, clip in self.clips.loaded}
         return labelled(project, self.rows, fresh)
 
@@ -78,6 +83,9 @@ class LabelFiles:
         return [path for path in paths if path.name.lower().endswith(ENDING)]
 
     def _take(self, path: Path) -> None:
+        from metagraph.formats.action_labels import read_labels
+        from metagraph.formats.imports import import_files
+
         project, folder = self._document.project, self._document.folder
 
         def work(job: Job) -> ReadLabels:

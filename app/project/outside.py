@@ -14,12 +14,12 @@ from app.project.jobs import Job
 from app.project.opening import load_whole, with_motion_of
 from app.project.writing import FileChangedError, file_changed
 from app.translation import tr
-from metagraph.formats.merging import MergeError, merge
 from metagraph.formats.store import Opened
 from metagraph.graph.model import Project
 
 if TYPE_CHECKING:
     from app.project.files import Files
+    from metagraph.formats.merging import MergeError
 
 Merging = tuple[Opened, tuple[str, ...]]
 
@@ -101,6 +101,8 @@ class Outside(QObject):
         self._start(changed, lambda job: load_whole(theirs, changed.path.parent, job.tell), done)
 
     def _merge(self, changed: FileChangedError, common: Project, theirs: Project, digest: str) -> None:
+        from metagraph.formats.merging import MergeError, merge
+
         era, mine = self._era, self.document.project
 
         def work(job: Job) -> Merging | MergeError:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable
 from itertools import groupby
 from typing import Literal
 
+from PySide6.QtCore import QObject
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QMenu, QMenuBar, QWidget
 
@@ -93,10 +94,11 @@ class Actions:
         self._mode = mode
         self._soon = Soon(self.refresh, parent)
         self._made: dict[str, QAction] = {}
+        room = QObject(parent)  # the window is told of each child of its own
         for command in self.commands:
             if command.id in self._made:
                 raise ValueError(f"two commands are called {command.id!r}")
-            action = QAction(command.words, parent)
+            action = QAction(command.words, room)
             action.setObjectName(command.id)
             if command.keys:
                 # A platform's standard key may be the one that is given beside it; twice, it would be

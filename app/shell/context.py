@@ -79,8 +79,9 @@ class Shell(Protocol):
 @dataclass(frozen=True)
 class Panel:
     """A panel of the window. make: its widget. place: where it stands where all stand at once. late: made
-    after the first picture, for a fast start. when: in which mode it is shown. instead_of: the panel whose
-    place it takes then. study: whether it is shown while somebody works on a study's task.
+    when it is first seen or asked for, and not before the first picture. when: in which mode it is shown.
+    instead_of: the panel whose place it takes then. study: whether it is shown while somebody works on a
+    study's task. imports: modules that are imported on a thread before it is made because it is seen.
 
     where: by workspace the area in which it stands; the first is where it is at home. opens: by workspace
     the area in which it opens when it is asked for. rank: which of an area's panels is in front, the lowest.
@@ -99,6 +100,7 @@ class Panel:
     opens: Mapping[str, str] = field(default_factory=dict)
     rank: int = 5
     least: tuple[int, int] = (200, 90)
+    imports: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -113,15 +115,12 @@ class HeaderItem:
 
 @dataclass(frozen=True)
 class Contribution:
-    """What a feature adds to the window. late_imports: modules that are imported on a thread before the late
-    panels are made, in the background. close: called when the window closes.
-    """
+    """What a feature adds to the window. close: called when the window closes."""
 
     panels: tuple[Panel, ...] = ()
     commands: tuple[Command, ...] = ()
     header: tuple[HeaderItem, ...] = ()
     drops: tuple[FileDrop, ...] = ()
-    late_imports: tuple[str, ...] = ()
     close: Callable[[], object] | None = None
 
 

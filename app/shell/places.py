@@ -4,8 +4,11 @@ put back.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+import sys
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from functools import partial
+from importlib import import_module
 
 from PySide6.QtCore import QByteArray, QSize, Qt
 from PySide6.QtWidgets import (
@@ -23,6 +26,7 @@ from app.shell.context import Panel
 from app.shell.proportions import Proportions
 from app.shell.workspaces import ALL, Workspace
 from app.stage.session import Session
+from app.widgets.soon import Soon
 
 ARRANGED = (
     6  # how panels are put into docks; an arrangement that was saved when it was done otherwise is void
@@ -51,12 +55,21 @@ class Room(QScrollArea):
         return self._least
 
 
+def fetch_now(names: Iterable[str], then: Callable[[], object]) -> None:
+    """Import modules, and go on."""
+    for name in names:
+        import_module(name)
+    then()
+
+
 class Places:
-    """The panels' docks. A dock is empty until its panel is made, so that a window can be shown before all
-    are.
+    """The panels' docks. A dock is empty until its panel is made: those of the first picture before it is
+    painted, each other once its dock is seen in front of those it shares its place with, or somebody asks for
+    it. Many never are.
 
     docks: by the panel's id. centre: the panels that take turns in one dock, and what stands beside them.
-    workspace: the one whose areas the docks are in. ready: the late panels are made, too.
+    workspace: the one whose areas the docks are in. ready: the first picture is painted, panels are made when
+    they are seen. fetch: imports what a panel needs, and goes on then.
     """
 
     def __init__(self, window: QMainWindow, panels: Iterable[Panel], session: Session) -> None:
@@ -64,6 +77,9 @@ class Places:
         self.panels = {panel.id: panel for panel in panels}
         self.workspace = ALL
         self.ready = False
+        self.fetch = fetch_now
+        self._in_sight: dict[str, bool] = {}  # docks
+        self._soon = Soon(self._fill, window)
         self._made: dict[str, QWidget] = {}
         self._beside: set[str] = set()  # what is wanted beside the centre
         self._before: QByteArray | None = None  # how it was before one panel had the whole window
@@ -83,6 +99,8 @@ class Places:
             room = Room(panel.least, dock)
             room.setWidget(self.centre if panel.place == "centre" else QWidget(room))
             dock.setWidget(room)
+            self._in_sight[panel.id] = False
+            dock.visibilityChanged.connect(partial(self._seen, panel.id))
             window.addDockWidget(Qt.DockWidgetArea.LeftDockWidgetArea, dock)
         self.proportions = Proportions(window, self.docks)
         session.onstage.mode_changed.connect(self.follow_mode)
@@ -108,14 +126,53 @@ class Places:
                 self.panel(panel.id)
 
     def make_late(self) -> None:
-        """Make what was left out for a fast start; panels of another mode wait until it is entered."""
+        """Make what is seen by now and was left out for a fast start."""
         if self.ready:
             return
         self.ready = True
-        for panel in self.panels.values():
-            if panel.when in ("any", self.session.onstage.mode) or not panel.instead_of:
-                self.panel(panel.id)
+        for panel in self.lacking():
+            self.panel(panel.id)
         self.follow_mode()
+
+    def make_all(self) -> None:
+        """Make every panel, seen or not, of whatever mode."""
+        self.ready = True
+        for ident in self.panels:
+            self.panel(ident)
+        self.follow_mode()
+
+    def lacking(self) -> list[Panel]:
+        """Return the panels that are to be seen now and are not made yet."""
+        mode = self.session.onstage.mode
+        return [
+            panel
+            for panel in self.panels.values()
+            if panel.id not in self._made
+            and panel.when in ("any", mode)
+            and self._in_sight[self.dock(panel.id).objectName()]
+            and (panel.place != "beside" or self.shows(panel.id))
+        ]
+
+    def to_import(self) -> list[str]:
+        """Return the modules that those need and that are not imported yet."""
+        return [name for panel in self.lacking() for name in panel.imports if name not in sys.modules]
+
+    def _seen(self, ident: str, seen: bool) -> None:
+        """A dock came into sight or left it, perhaps only for as long as others take to come before it."""
+        self._in_sight[ident] = seen
+        if seen:
+            self._soon.ask()
+
+    def _fill(self) -> None:
+        """Make what is seen now and was not before."""
+        if not self.ready:
+            return
+        names = self.to_import()
+        if names:
+            self.fetch(names, self._fill)
+            return
+        for panel in self.lacking():
+            self.panel(panel.id)
 
     def panel(self, ident: str) -> QWidget:
         """Return a panel's widget, made now where it was not yet. Raises LookupError."""
@@ -140,6 +197,7 @@ class Places:
             )  # what stands beside them comes after all that take turns
             widget.setVisible(panel.when in ("any", self.session.onstage.mode))
         elif panel.place == "beside":
+            widget.hide()  # else what it stands beside would be narrow for a moment
             self.centre.addWidget(widget)
             widget.setVisible(self.shows(panel.id))
         else:
@@ -184,6 +242,7 @@ class Places:
                 stack = widget.parentWidget()
                 if isinstance(stack, QStackedWidget):
                     stack.setCurrentWidget(widget)
+        self._soon.ask()
 
     # --- showing
 
@@ -191,6 +250,8 @@ class Places:
         """Show a panel in front, or hide it. Raises LookupError where there is none."""
         dock = self.dock(ident)
         if self.panels[ident].place == "beside":
+            if on and self.ready:
+                self.panel(ident)
             (self._beside.add if on else self._beside.discard)(ident)
             if ident in self._made:
                 self._made[ident].setVisible(self.shows(ident))

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from PySide6.QtCore import QEvent, QObject, Qt, QTimer
 from PySide6.QtWidgets import QDockWidget, QMainWindow, QToolBar
 
+DIRECT = Qt.FindChildOption.FindDirectChildrenOnly  # the whole window is some thousand objects
 Shares = dict[str, tuple[float, float]]  # of the width and the height, by the dock's name
 
 
@@ -26,7 +27,12 @@ class Proportions(QObject):
         for dock in docks.values():
             dock.visibilityChanged.connect(self._changed)
             dock.topLevelChanged.connect(lambda _: self._soon.start())
-        window.installEventFilter(self)
+
+    def follow(self) -> None:
+        """Follow the window's size from now on, and what hands do: nothing of either comes while it is made,
+        but some hundred other events.
+        """
+        self.window.installEventFilter(self)
 
     def want(self, shares: Shares) -> None:
         """Hold to these shares from now on."""
@@ -71,8 +77,8 @@ class Proportions(QObject):
     def _room(self) -> tuple[int, int]:
         """Return width and height of the part of the window that docks share."""
         window = self.window
-        bars = [window.menuBar(), window.statusBar(), *window.findChildren(QToolBar)]
-        taken = sum(b.height() for b in bars if b.parent() is window and not b.isHidden())
+        bars = [window.menuBar(), window.statusBar(), *window.findChildren(QToolBar, options=DIRECT)]
+        taken = sum(b.height() for b in bars if not b.isHidden())
         return max(1, window.width()), max(1, window.height() - taken)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:

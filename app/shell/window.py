@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -101,6 +101,7 @@ class Window(QMainWindow):
         shell.importing.drops = tuple(drop for c in self.contributions for drop in c.drops)
         offered = (command for c in self.contributions for command in c.commands)
         shell.actions = Actions(self, offered, lambda: session.onstage.mode)
+        self.places.fetch = self._fetch
         self.places.make_early()
         self.menus = shell.actions.fill(self.menuBar())
         self._add_toggles()
@@ -114,6 +115,7 @@ class Window(QMainWindow):
         self.keyboard = Keyboard(self, shell.actions)
         self.resize(1680, 1020)
         self.workspaces.restore()
+        self.places.proportions.follow()
         self._wire()  # now: each signal before would have everything shown once more
         self.restyle()
 
@@ -177,11 +179,11 @@ class Window(QMainWindow):
         ):  # fmt: skip
             words.connect(shell.tell)
 
-    # --- the late panels
+    # --- the panels that are not in the first picture
 
     def load_late_panels_soon(self) -> None:
-        """Load them once the first picture is painted and the project is open, which must not wait for
-        them.
+        """Load those that are seen once the first picture is painted and the project is open, which must not
+        wait for them.
         """
         self.shell.stage.painted.connect(self._late_now)
         QTimer.singleShot(LATE, self.load_late_panels)  # the character may be hidden
@@ -192,22 +194,27 @@ class Window(QMainWindow):
             self.load_late_panels()
 
     def load_late_panels(self) -> None:
-        """Import what the late panels need on a thread, then make them."""
-        if self._loading:
-            return
-        self._loading = True
-        names = late_modules(self.contributions)
-        self.shell.jobs.start(
-            "panels",
-            lambda _: [import_module(name) for name in names],
-            lambda _: self.make_late_panels(),
-            quick=True,
-        )
+        """Import what the late panels that are seen need on a thread, then make them."""
+        if not self._loading:
+            self._loading = True
+            self._fetch(self.places.to_import(), self.make_late_panels)
 
     _loading = False
 
+    def _fetch(self, names: Iterable[str], then: Callable[[], object]) -> None:
+        """Import modules on a thread, and go on."""
+
+        def fetched(_: object) -> None:
+            then()
+
+        self.shell.jobs.start(
+            "panels", lambda _: [import_module(name) for name in names], fetched, quick=True
+        )
+
     def make_late_panels(self) -> None:
-        """Fill the docks that were left empty for a fast start."""
+        """Fill the docks that are seen and were left empty for a fast start; from now on each is filled when
+        it is first seen.
+        """
         if not self.places.ready:
             self.places.make_late()
             self.shell.compatibility.start()
@@ -294,11 +301,6 @@ class Window(QMainWindow):
 def dropped(event: QDropEvent) -> list[Path]:
     """Return the files that are dropped."""
     return [Path(u.toLocalFile()) for u in event.mimeData().urls() if u.isLocalFile()]
-
-
-def late_modules(contributions: Iterable[Contribution]) -> list[str]:
-    """Return what takes long to import and is not in the first picture."""
-    return [name for c in contributions for name in c.late_imports]
 
 
 def _application() -> QApplication:

@@ -123,7 +123,8 @@ class Workspaces(QObject):
         if focus.isVisible():
             focus.setFocus()
             return
-        large = self.places.made(self.places.large())
+        name = self.places.large()
+        large: QWidget | None = self.places.panel(name) if name and self.places.ready else None
         while large is not None and not large.focusPolicy().value:
             large = next((c for c in large.findChildren(QWidget) if c.focusPolicy().value), None)
         (large or window).setFocus()

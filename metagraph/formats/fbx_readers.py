@@ -8,9 +8,7 @@ from __future__ import annotations
 import json
 import os
 import struct
-import subprocess
 import sys
-import tempfile
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -39,6 +37,9 @@ class _Reader:
 
     def __init__(self) -> None:
         root = str(Path(__file__).resolve().parents[2])
+        import subprocess
+        import tempfile
+
         known = os.environ.get("PYTHONPATH")
         environment = {
             **os.environ,
@@ -92,6 +93,8 @@ class _Reader:
         raise ReaderError(None if late.is_set() else code, words[-1] if words else "")
 
     def close(self) -> None:
+        import subprocess
+
         for pipe in (self.process.stdin, self.process.stdout):
             if pipe is not None:
                 try:

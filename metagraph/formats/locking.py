@@ -11,11 +11,9 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
-import getpass
 import hashlib
 import os
-import socket
-import subprocess
+import platform
 import tempfile
 import time
 import uuid
@@ -50,13 +48,13 @@ class Owner(msgspec.Struct, frozen=True):
 def new_owner() -> Owner:
     """Return a new sitting of this process."""
     pid = os.getpid()
-    return Owner(
-        socket.gethostname(), _machine(), _user(), pid, _started(pid), uuid.uuid4().hex[:12], time.time()
-    )
+    return Owner(platform.node(), _machine(), _user(), pid, _started(pid), uuid.uuid4().hex[:12], time.time())
 
 
 def _user() -> str:
     try:
+        import getpass
+
         return getpass.getuser()
     except (OSError, KeyError, ImportError):  # a number without a name, as in containers
         return "somebody"
@@ -95,6 +93,8 @@ def _started(pid: int) -> str:
                 raise ProcessLookupError(pid)
             return fields[19].decode()
         return ""
+    import subprocess
+
     with contextlib.suppress(OSError, subprocess.SubprocessError):
         words = ["ps", "-o", "lstart=", "-p", str(pid)]
         return subprocess.run(words, capture_output=True, text=True, timeout=5, check=False).stdout.strip()
@@ -125,7 +125,7 @@ def _started_on_windows(pid: int) -> str:
 
 def is_here(owner: Owner) -> bool:
     """Return whether an owner is or was on this computer, where its process can be looked for."""
-    return (owner.host, owner.machine) == (socket.gethostname(), _machine())
+    return (owner.host, owner.machine) == (platform.node(), _machine())
 
 
 def is_gone(owner: Owner | None, file: Path) -> bool:
@@ -154,7 +154,7 @@ def _mark(pid: int) -> str:
 
 
 def _place() -> str:
-    return hashlib.sha256(f"{socket.gethostname()}\n{_machine()}".encode()).hexdigest()[:8]
+    return hashlib.sha256(f"{platform.node()}\n{_machine()}".encode()).hexdigest()[:8]
 
 
 def _plain(started: str) -> str:

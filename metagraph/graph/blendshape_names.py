@@ -6,7 +6,6 @@ The names are data, in `blendshape_names.toml` beside this module.
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
@@ -81,6 +80,8 @@ def _keys(name: str) -> list[str]:
 
 @cache
 def _data() -> dict[str, Any]:
+    import tomllib
+
     return tomllib.loads(TABLE.read_text(encoding="utf-8"))
 
 

@@ -99,8 +99,8 @@ def complete_window() -> Any:
     window.resize(1680, 1020)
     window.show()
     window.make_late_panels()
-    for ident in window.places.panels:
-        window.places.panel(ident)
+    window.places.make_all()
+    assert window.shell.panel("properties").action is not None
     return window
 
 

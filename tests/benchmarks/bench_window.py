@@ -34,10 +34,10 @@ ACTIONS, CLIPS, BEAT = 10_000, 1000, 5
 COLD = """
 import sys, time
 started = float(sys.argv[1])
-from app.main import prepare
+from metagraph.uncollected import uncollected
+with uncollected(lasting=True):
+    from app.main import open_window, prepare
 app = prepare()
-from app.main import open_window
-from app.project.files import SAMPLE
 window = open_window(None, sample=True)
 window.resize(1680, 1020)
 seen = []

@@ -84,6 +84,7 @@ def contribute(shell: Shell) -> Contribution:
                 least=(400, 222),
                 where={"talk": "below"},
                 rank=1,
+                imports=("app.features.conversation.conversation_panel",),
             ),
         ),
         commands=(
@@ -192,5 +193,4 @@ def contribute(shell: Shell) -> Contribution:
             ),
         ),
         drops=(FileDrop(SOUNDS, claim, take),),
-        late_imports=("app.features.conversation.conversation_panel",),
     )

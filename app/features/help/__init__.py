@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
+from typing import TYPE_CHECKING
 
 from PySide6.QtGui import QKeySequence
 from PySide6.QtWidgets import QMessageBox
 
-from app.features.help.command_finder import CommandFinder, Entry
 from app.look.theme import KIND_MARKS
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
 from app.shell.places import Places
 from app.translation import tr
 from metagraph.graph.model import KINDS
+
+if TYPE_CHECKING:
+    from app.features.help.command_finder import Entry
 
 TIMELINE = (  # and what the timeline does
     (tr("Add a marker"), "M"),
@@ -40,6 +43,8 @@ LANES = (  # what the lanes take for themselves
 def contribute(shell: Shell) -> Contribution:
     def entries(keyed: bool) -> Iterator[Entry]:
         """Return every command as it can be used now; keyed: only those with keys."""
+        from app.features.help.command_finder import Entry
+
         shell.actions.refresh()
         for command in shell.actions.commands:
             action = shell.actions[command.id]
@@ -63,11 +68,16 @@ def contribute(shell: Shell) -> Contribution:
         for ident, dock in places.docks.items():
             yield Entry(tr("Panels"), dock.windowTitle(), also="panel", run=partial(places.show, ident))
 
+    def find(title: str, keyed: bool) -> None:
+        from app.features.help.command_finder import CommandFinder
+
+        CommandFinder(title, entries(keyed), shell.widget).open()
+
     def keys() -> None:
-        CommandFinder(tr("Keyboard shortcuts"), entries(True), shell.widget).open()
+        find(tr("Keyboard shortcuts"), True)
 
     def palette() -> None:
-        CommandFinder(tr("Commands"), entries(False), shell.widget).open()
+        find(tr("Commands"), False)
 
     def about() -> None:
         from metagraph import __version__

@@ -12,7 +12,6 @@ from PySide6.QtWidgets import QInputDialog, QMenu, QWidget
 
 from app.features.library.clip_badges import HEART, label_icon
 from app.features.library.clip_columns import stars
-from app.features.library.reveal import reveal
 from app.look.domain_words import COLOR_LABELS
 from app.look.plural import many
 from app.project.document import Document
@@ -124,6 +123,8 @@ class ClipActs:
     def reveal(self, clip: str) -> None:
         """Show a clip's file in the system's file manager."""
         entry = self.document.project.clips[clip]
+        from app.features.library.reveal import reveal
+
         reveal((self.document.folder or Path()) / entry.path)
 
     def use_as_base(self, clip: str, frame: int) -> None:

@@ -16,7 +16,14 @@ def contribute(shell: Shell) -> Contribution:
 
     return Contribution(
         panels=(
-            Panel("life", tr("Life"), "right below", make, where={"perform": "side"}, opens={"talk": "side"}),
+            Panel(
+                "life",
+                tr("Life"),
+                "right below",
+                make,
+                where={"perform": "side"},
+                opens={"talk": "side"},
+                imports=("app.features.life.life_panel",),
+            ),
         ),
-        late_imports=("app.features.life.life_panel",),
     )

@@ -45,8 +45,8 @@ def contribute(shell: Shell) -> Contribution:
                 where={"perform": "side"},
                 opens={"talk": "side"},
                 rank=6,
+                imports=("app.features.lines.lines_panel",),
             ),
         ),
         drops=(FileDrop(SOUNDS, claim, take),),
-        late_imports=("app.features.lines.lines_panel",),
     )

@@ -29,7 +29,16 @@ def contribute(shell: Shell) -> Contribution:
         return out
 
     return Contribution(
-        panels=(Panel("machine", tr("Machine"), "beside", make, when="meta"),),
+        panels=(
+            Panel(
+                "machine",
+                tr("Machine"),
+                "beside",
+                make,
+                when="meta",
+                imports=("app.features.machine.machine_panel",),
+            ),
+        ),
         commands=(
             Command(
                 "machine",
@@ -45,5 +54,4 @@ def contribute(shell: Shell) -> Contribution:
             ),
         ),
         header=(HeaderItem("right", button),),
-        late_imports=("app.features.machine.machine_panel",),
     )

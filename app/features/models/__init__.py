@@ -44,6 +44,7 @@ def contribute(shell: Shell) -> Contribution:
                 make,
                 study=False,
                 opens={"talk": "below"},
+                imports=("app.features.models.models_panel",),
             ),
         ),
         commands=(
@@ -58,5 +59,4 @@ def contribute(shell: Shell) -> Contribution:
             ),
         ),
         drops=(FileDrop((ANNOTATIONS,), claim, take),),
-        late_imports=("app.features.models.models_panel", "app.features.models.annotation_dialog"),
     )

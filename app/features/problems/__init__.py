@@ -35,10 +35,10 @@ def contribute(shell: Shell) -> Contribution:
                 "bottom",
                 make,
                 opens={"graph": "below", "label": "below", "time": "below"},
+                imports=("app.features.problems.problems_panel",),
             ),
         ),
         header=(HeaderItem("right", lambda parent: ProblemButton(shell, watch, parent)),),
-        late_imports=("app.features.problems.problems_panel",),
     )
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from PySide6.QtWidgets import QWidget
 
 from app.shell.actions import Command
@@ -11,6 +13,9 @@ from app.shell.verbs import Verbs
 from app.stage.compatibility_state import Compatibility
 from app.stage.problem_watch import ProblemWatch
 from app.translation import tr
+
+if TYPE_CHECKING:
+    from app.features.properties.action_page import ActionPage
 
 
 def contribute(shell: Shell) -> Contribution:
@@ -24,13 +29,15 @@ def contribute(shell: Shell) -> Contribution:
         from app.features.properties.properties_panel import PropertiesPanel
 
         places = shell.services[Places]
-        panel = PropertiesPanel(shell.document, session, shell.widget)
-        problems.changed.connect(lambda: panel.action.set_misfits(problems.misfits))
-        panel.action.set_misfits(problems.misfits)
-        panel.action.plot.set_compatibility(compatibility)
-        panel.action.timing_elsewhere = lambda: places.workspace.id == "time" and "timing" in places.panels
-        panel.action.time_wanted.connect(lambda: shell.actions["workspace_3"].trigger())
-        return panel
+
+        def furnish(page: ActionPage) -> None:
+            problems.changed.connect(lambda: page.set_misfits(problems.misfits))
+            page.set_misfits(problems.misfits)
+            page.plot.set_compatibility(compatibility)
+            page.timing_elsewhere = lambda: places.workspace.id == "time" and "timing" in places.panels
+            page.time_wanted.connect(lambda: shell.actions["workspace_3"].trigger())
+
+        return PropertiesPanel(shell.document, session, places.fetch, furnish, shell.widget)
 
     def rename() -> None:
         shell.show("properties")
@@ -50,6 +57,7 @@ def contribute(shell: Shell) -> Contribution:
                 make,
                 where={"time": "list", "graph": "below", "label": "below"},
                 rank=1,
+                imports=("app.features.properties.properties_panel",),
             ),
         ),
         commands=(
@@ -65,5 +73,4 @@ def contribute(shell: Shell) -> Contribution:
                 study="labels",
             ),
         ),
-        late_imports=("app.features.properties.properties_panel",),
     )

@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QFormLayout, QVBoxLayout, QWidget
 
 # Makes an edit by its name, see `Document.edit`; False where it cannot be made, which is told.
 Edit = Callable[..., bool]
+ANY = 16_777_215  # Qt's largest height of a widget
 
 
 def page_box(page: QWidget) -> QVBoxLayout:

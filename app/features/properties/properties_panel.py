@@ -2,39 +2,57 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QScrollArea, QSizePolicy, QStackedWidget, QWidget
 
-from app.features.properties.action_page import ActionPage
 from app.features.properties.clip_page import ClipPage
 from app.features.properties.layer_page import LayerPage
-from app.features.properties.timing_plot import ANY
+from app.features.properties.page_form import ANY
 from app.project.document import Document
 from app.stage.session import Session
 from app.translation import tr_error
 from metagraph.graph import edits
 from metagraph.graph.model import Action, Project
 
+if TYPE_CHECKING:
+    from app.features.properties.action_page import ActionPage
+
 LOW = 240  # pixels of height below which the curves of a timing leave no room for anything else
 
 
-class PropertiesPanel(QScrollArea):
-    """What is shown is read back from the project. layer, action, clip: its pages."""
+PLOTS = "app.features.properties.action_page"  # takes long to import
 
-    def __init__(self, document: Document, session: Session, parent: QWidget | None = None) -> None:
+
+class PropertiesPanel(QScrollArea):
+    """What is shown is read back from the project. layer, action, clip: its pages. fetch: imports modules on
+    a thread, and goes on. furnish: gives the actions' page what else it shows, once it is made.
+    """
+
+    def __init__(
+        self,
+        document: Document,
+        session: Session,
+        fetch: Callable[[Iterable[str], Callable[[], object]], object],
+        furnish: Callable[[ActionPage], object],
+        parent: QWidget | None = None,
+    ) -> None:
         super().__init__(parent)
         self.document, self.session = document, session
+        self._fetch, self._furnish, self._fetching = fetch, furnish, False
+        self._action: ActionPage | None = None
         self.setWidgetResizable(True)
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # what is in it has the keyboard
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.pages = QStackedWidget(self)
         self.layer = LayerPage(document, session, self._try, self)
-        self.action = ActionPage(document, session, self._try, self)
         self.clip = ClipPage(document, session, self)
-        for page in (self.layer, self.action, self.clip):
+        self._none = QWidget(self)  # where the page of actions will be
+        for page in (self.layer, self._none, self.clip):
             self.pages.addWidget(page)
         self.setWidget(self.pages)
         document.changed.connect(self._edited)
@@ -44,21 +62,46 @@ class PropertiesPanel(QScrollArea):
             signal.connect(self._moved_on)
         self.show_selection()
 
+    # --- the page of actions, which is made when there are any to show
+
+    @property
+    def action(self) -> ActionPage:
+        """The page of actions; it is made now where it was not yet."""
+        if self._action is None:
+            from app.features.properties.action_page import ActionPage
+
+            self._action = page = ActionPage(self.document, self.session, self._try, self)
+            self.pages.insertWidget(1, page)
+            self.pages.removeWidget(self._none)
+            self._none.deleteLater()
+            self._furnish(page)
+            page.fit(self.size())
+            self._set_low(page, self.height())
+            self.show_selection()
+        return self._action
+
+    def _fetched(self) -> None:
+        self._fetching = False
+        self.show_selection()
+
     # --- its size
 
     def resizeEvent(self, event: QResizeEvent) -> None:
-        self.action.fit(event.size())
-        self._fit_height(event.size().height())
+        page = self._action
+        if page is not None:
+            page.fit(event.size())
+            if self._set_low(page, event.size().height()):
+                self.show_selection()
         super().resizeEvent(event)
         self._bound()
 
-    def _fit_height(self, height: int) -> None:
-        """Where it is low and not wide, the curves give way: what can be typed is in sight."""
-        low = self.action.timing_elsewhere() or (height < LOW and not self.action.beside)
-        if low == self.action.low:
-            return
-        self.action.low = low
-        self.show_selection()
+    def _set_low(self, page: ActionPage, height: int) -> bool:
+        """Where it is low and not wide, the curves give way: what can be typed is in sight. Return whether
+        that is different now.
+        """
+        low = page.timing_elsewhere() or (height < LOW and not page.beside)
+        page.low, was = low, page.low
+        return low != was
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if watched is self.pages and event.type() == QEvent.Type.LayoutRequest:
@@ -67,9 +110,12 @@ class PropertiesPanel(QScrollArea):
 
     def _bound(self) -> None:
         """Side by side, the halves are as high as what is seen of them: the second scrolls alone."""
-        beside = self.action.beside and self.pages.currentIndex() == 1
+        page = self._action
+        beside = page is not None and page.beside and self.pages.currentIndex() == 1
         self.pages.setMaximumHeight(
-            max(self.action.minimumSizeHint().height(), self.viewport().height()) if beside else ANY
+            max(page.minimumSizeHint().height(), self.viewport().height())
+            if page is not None and beside
+            else ANY
         )
 
     # --- showing
@@ -96,6 +142,11 @@ class PropertiesPanel(QScrollArea):
     def show_selection(self) -> None:
         actions = self.session.selection.selected_actions()
         clips = self.session.selection.clips
+        if actions and self._action is None and PLOTS not in sys.modules:
+            if not self._fetching:  # what was shown stays until it is there
+                self._fetching = True
+                self._fetch((PLOTS,), self._fetched)
+            return
         self._turn_to(1 if actions else 2 if clips else 0)
         if actions:
             self.action.show_actions(actions)

@@ -20,6 +20,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.properties.jump_strip import JumpStrip
+from app.features.properties.page_form import ANY
 from app.look.theme import Theme, theme
 from app.project.document import Document
 from app.stage.compatibility_state import Compatibility, proposed_fields
@@ -43,7 +44,6 @@ SNAP = 7  # pixels within which a handle comes to rest at a moment that does not
 
 
 LABEL, FIRST = 17.0, 12.0  # pixels of a row of words over the curves, and to the middle of the first
-ANY = 16_777_215  # Qt's largest height of a widget
 HEIGHT, LEAST = 132, 84  # pixels of the curves in a form; and where they have the room to themselves
 WORDED = 80.0  # pixels of height from which words over the curves leave something of them to be seen
 

@@ -13,7 +13,6 @@ from PySide6.QtWidgets import QLabel
 
 from app.features.study.operator_events import Hands
 from app.translation import tr
-from metagraph.study.klm import predicted
 
 if TYPE_CHECKING:
     from app.shell.context import Shell
@@ -43,6 +42,8 @@ class Counting(QObject):
     def show(self) -> None:
         """Show what there was so far."""
         self.total.update(self.hands.operators.take(monotonic()).operators)
+        from metagraph.study.klm import predicted
+
         seconds = predicted({k: self.total[k] for k in "KPBH"})
         counts = "   ".join(f"{k} {self.total[k]}" for k in "KPBDH")
         self.label.setText(f"{counts}   {seconds:.1f} s")

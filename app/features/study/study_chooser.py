@@ -63,7 +63,7 @@ def begin(shell: Shell, study: Study, participant: str, experimenter: bool = Fal
     """Lead a participant through; None, with words, when that cannot be."""
     if not shell.services[Files].may_leave():
         return None
-    shell.services[Places].make_late()
+    shell.services[Places].make_all()  # nobody is timed while a panel is made
     shell.document.undo_stack.setClean()  # what was there is saved or was declined
     try:
         guide = Guide(shell, study, participant, experimenter)

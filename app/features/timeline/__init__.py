@@ -59,6 +59,7 @@ def contribute(shell: Shell) -> Contribution:
                 least=(400, 236),
                 where={"perform": "below"},
                 opens={"talk": "below"},
+                imports=("app.features.timeline.timeline_panel",),
             ),
         ),
         commands=(
@@ -76,5 +77,4 @@ def contribute(shell: Shell) -> Contribution:
                 when="meta",
             ),
         ),
-        late_imports=("app.features.timeline.timeline_panel",),
     )

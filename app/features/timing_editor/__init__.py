@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from PySide6.QtWidgets import QWidget
 
+from app.features.timing_editor.since import Since
 from app.shell.context import Contribution, Panel, Shell
 from app.stage.compatibility_state import Compatibility
 from app.translation import tr
@@ -13,6 +14,7 @@ from app.translation import tr
 
 def contribute(shell: Shell) -> Contribution:
     stage, document = shell.stage, shell.document
+    since = Since(document, stage.session)
 
     def make() -> QWidget:
         from app.features.timing_editor.subject import Subject
@@ -25,6 +27,7 @@ def contribute(shell: Shell) -> Contribution:
             shell.services[Compatibility],
             stage.thumbnails,
             stage.sound,
+            since,
         )
         panel = TimingPanel(document, stage.session, subject, shell.widget)
         subject.setParent(panel)
@@ -41,7 +44,7 @@ def contribute(shell: Shell) -> Contribution:
                 opens={"label": "below", "graph": "below"},
                 least=(420, 200),
                 rank=0,
+                imports=("app.features.timing_editor.timing_panel",),
             ),
         ),
-        late_imports=("app.features.timing_editor.timing_panel",),
     )

@@ -13,6 +13,7 @@ from PySide6.QtGui import QImage
 
 from app.features.timing_editor.axis import Axis
 from app.features.timing_editor.line_heard import Said, Waves, line_of, said_in, said_with, stresses
+from app.features.timing_editor.since import Since
 from app.features.timing_editor.track import Facts, Track
 from app.project.document import Document
 from app.stage.compatibility_state import Compatibility
@@ -70,11 +71,13 @@ class Subject(QObject):
         compatibility: Compatibility,
         thumbnails: Thumbnails,
         sound: Sound,
+        since: Since,
         parent: QObject | None = None,
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.performance = document, session, performance
         self.compatibility, self.thumbnails, self.sound = compatibility, thumbnails, sound
+        self.since = since
         self.shows = Shows()
         self.idents: tuple[str, ...] = ()
         self.said: Said | None = None
@@ -109,7 +112,7 @@ class Subject(QObject):
         chosen = self.session.selection.actions[:MOST]
         if chosen != self.idents:
             self.idents = chosen
-            self.marked = self.document.project
+            self.marked = self.since.project
             self._compare(None)
             self._hear()
         self.changed.emit()
