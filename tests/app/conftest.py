@@ -53,7 +53,7 @@ PASSED = pytest.StashKey[bool]()
 def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) -> Iterator[None]:
     report = yield
     if call.when == "call":
-        item.stash[PASSED] = report.passed
+        item.stash[PASSED] = report.passed or report.skipped
     return report
 
 
