@@ -99,11 +99,14 @@ def targets_between(track: Track, start: float, end: float) -> list[GazeTarget]:
     """
     changes = [(x.start, LOOK, n) for n, x in enumerate(track.looks)]
     changes += [(x.end, OVER, n) for n, x in enumerate(track.looks)]
-    changes += [(p.start, PLACE, n) for n, p in enumerate(track.places)]
+    changes += [(p.start, PLACE, n) for n, p in enumerate(track.places) if p.start >= start]
     changes.append((start, BEGIN, 0))
     changes = sorted(changes, key=lambda c: (c[0], c[1]))
     looks: list[int] = []  # places of looks, the most important first; those beneath are older or lesser
     places: dict[str, Point] = {}
+    for place in track.places:  # of a point that is told again and again there are thousands
+        if place.start < start:
+            places[place.name] = place.point
     chosen = -1
     since = 0.0
     out: list[GazeTarget] = []

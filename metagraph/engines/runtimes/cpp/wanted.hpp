@@ -161,7 +161,9 @@ inline List<Ref<GazeTarget>> targets_between(const Ref<Track>& track, double sta
     List<std::tuple<double, int, int>> found2;
     for (int n4 = 0; n4 < lang::len(track->places); n4++) {
         const auto& p = lang::at(track->places, n4);
-        found2.push_back(std::tuple<double, int, int>{p->start, wanted::PLACE, n4});
+        if (p->start >= start) {
+            found2.push_back(std::tuple<double, int, int>{p->start, wanted::PLACE, n4});
+        }
     }
     lang::extend(changes, found2);
     changes.push_back(std::tuple<double, int, int>{start, wanted::BEGIN, 0});
@@ -172,6 +174,11 @@ inline List<Ref<GazeTarget>> targets_between(const Ref<Track>& track, double sta
     changes = lang::ordered(changes, keys);
     List<int> looks; // places of looks, the most important first; those beneath are older or lesser
     Map<std::string, List<double>> places;
+    for (const auto& place : track->places) { // of a point that is told again and again there are thousands
+        if (place->start < start) {
+            places[place->name] = place->point;
+        }
+    }
     int chosen = -1;
     double since = 0.0;
     List<Ref<GazeTarget>> out;

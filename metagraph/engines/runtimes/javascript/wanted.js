@@ -132,11 +132,16 @@ export function waysIn(ways, mood) {
 export function targetsBetween(track, start, end) {
   let changes = track.looks.map((x, n) => [x.start, LOOK, n]);
   changes.push(...track.looks.map((x, n) => [x.end, OVER, n]));
-  changes.push(...track.places.map((p, n) => [p.start, PLACE, n]));
+  changes.push(...[...track.places.entries()].filter(([n, p]) => p.start >= start).map(([n, p]) => [p.start, PLACE, n]));
   changes.push([start, BEGIN, 0]);
   changes = sortedBy(changes, (c) => [c[0], c[1]]);
   let looks = []; // places of looks, the most important first; those beneath are older or lesser
   const places = new Map();
+  for (const place of track.places) { // of a point that is told again and again there are thousands
+    if (place.start < start) {
+      places.set(place.name, place.point);
+    }
+  }
   let chosen = -1;
   let since = 0;
   const out = [];

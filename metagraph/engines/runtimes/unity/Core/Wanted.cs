@@ -120,11 +120,22 @@ namespace Metagraph
         {
             var changes = track.Looks.Select((x, n) => (x.Start, Look, n)).ToList();
             changes.AddRange(track.Looks.Select((x, n) => (x.End, Over, n)).ToList());
-            changes.AddRange(track.Places.Select((p, n) => (p.Start, Place, n)).ToList());
+            changes.AddRange(track.Places.Select((item, n) => (n, item)).Where(pair => pair.Item2.Start >= start).Select(pair => (
+                pair.Item2.Start,
+                Place,
+                pair.Item1
+            )).ToList());
             changes.Add((start, Begin, 0));
             changes = changes.OrderBy(c => c.Item1).ThenBy(c => c.Item2).ToList();
             var looks = new List<int>(); // places of looks, the most important first; those beneath are older or lesser
             var places = new Dictionary<string, List<double>>();
+            foreach (PlaceFrom place in track.Places) // of a point that is told again and again there are thousands
+            {
+                if (place.Start < start)
+                {
+                    places[place.Name] = place.Point;
+                }
+            }
             var chosen = -1;
             var since = 0.0;
             var out_ = new List<GazeTarget>();

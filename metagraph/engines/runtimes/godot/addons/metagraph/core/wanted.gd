@@ -115,7 +115,8 @@ static func targets_between(track, start, end):
 	var found2 = []
 	for n4 in range(track.places.size()):
 		var p = track.places[n4]
-		found2.append([p.start, PLACE, n4])
+		if p.start >= start:
+			found2.append([p.start, PLACE, n4])
 	Util.extend(changes, found2)
 	changes.append([start, BEGIN, 0])
 	var keys = []
@@ -124,6 +125,9 @@ static func targets_between(track, start, end):
 	changes = Util.ordered(changes, keys)
 	var looks = []  # places of looks, the most important first; those beneath are older or lesser
 	var places = {}
+	for place in track.places:  # of a point that is told again and again there are thousands
+		if place.start < start:
+			places[place.name] = place.point
 	var chosen = -1
 	var since = 0.0
 	var out = []
