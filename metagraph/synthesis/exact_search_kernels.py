@@ -1,8 +1,7 @@
 """Compiled loops of the exact search of a motion graph. Importing this imports numba.
 
 States fall into classes: what a frame asks of a state, beside which one it is, is the same for a whole class.
-Transitions lie by their targets' classes and nearly by their costs, so that those nobody may take at a frame
-are never looked at.
+Somewhere is a state, with or without the event met that is waited for: a number, state + F where it was met.
 """
 
 from __future__ import annotations
@@ -11,115 +10,74 @@ from typing import Any
 
 import numpy as np
 
-from metagraph.synthesis.kernels import compiled, compiled_exactly
+from metagraph.synthesis.kernels import compiled_exactly
 
 Array = Any
 
-STEPS = 4  # of costs
+
+@compiled_exactly
+def foresee(codes: Array, costs: Array, crossing: Any, otherwise: Any, ahead: Array) -> Any:
+    """Write to ahead `[2 F]` what it costs at least to go on from where one lands, found backwards for where
+    codes say: `otherwise` is what it costs elsewhere. Return the least. crossing: whether the event that is
+    waited for before is waited for after, too.
+    """
+    states, least = len(ahead) // 2, otherwise
+    for n in range(len(codes)):
+        met = codes[n] >= states
+        state = 2 * states - 1 - codes[n] if met else states - 1 - codes[n]
+        ahead[state + states] = min(ahead[state + states], costs[n])
+        if met or not crossing:
+            ahead[state] = min(ahead[state], costs[n])
+        least = min(least, costs[n])
+    return least
 
 
-@compiled
-def arranged(starts: Array, targets: Array, costs: Array, classes: Array, count: Any, bound: Any) -> Any:
-    """Return the transitions that cost no more than `bound`, by source, class of target and step of cost:
-    firsts `[F count + 1]`, where those of each source and class begin; targets; costs.
+@compiled_exactly
+def forget(codes: Array, otherwise: Any, ahead: Array) -> None:
+    """Undo what `foresee` wrote."""
+    states = len(ahead) // 2
+    for n in range(len(codes)):
+        state = (2 * states - 1 - codes[n]) % states
+        ahead[state] = ahead[state + states] = otherwise
 
-    classes `[F]`: of each state, -1 for one nobody may be in.
+
+@compiled_exactly
+def with_paid(cost: Array, alive: Array, paid: Array, bound: Any, whole: Array) -> Any:
+    """Write to whole `[2 F]` what ways cost with what they paid along their takes `[F]`, and leave only those
+    alive that are within the bound; return how many.
+    """
+    states, number = len(paid), 0
+    for n in range(len(alive)):
+        code = alive[n]
+        total = cost[code] + np.float32(paid[code % states])
+        if total <= bound:
+            whole[code] = total
+            alive[number] = code
+            number += 1
+        else:
+            cost[code] = np.inf
+    return number
+
+
+@compiled_exactly
+def weigh(cost: Array, alive: Array, starts: Array, reach: Any, width: Any) -> Any:
+    """Return how many transitions leave those who cost no more than `reach`, and how many of these have
+    transitions and cost hardly more than the cheapest of them: less than `width`.
     """
     states = len(starts) - 1
-    per = STEPS / bound if bound > 0 else 0.0
-    firsts = np.zeros(states * count + 1, np.int64)
-    total = 0
-    for state in range(states):
-        for place in range(starts[state], starts[state + 1]):
-            total += costs[place] <= bound and classes[targets[place]] >= 0
-    out, prices = np.empty(total, np.int32), np.empty(total, np.float32)
-    sizes = np.zeros(count * STEPS + 1, np.int64)
-    at = 0
-    for state in range(states):
-        sizes[:] = 0
-        for place in range(starts[state], starts[state + 1]):
-            kind = classes[targets[place]]
-            if costs[place] <= bound and kind >= 0:
-                sizes[kind * STEPS + min(STEPS - 1, int(costs[place] * per)) + 1] += 1
-        sizes[0] = at
-        for n in range(count * STEPS):
-            sizes[n + 1] += sizes[n]
-        for kind in range(count):
-            firsts[state * count + kind] = sizes[kind * STEPS]
-        at = sizes[count * STEPS]
-        for place in range(starts[state], starts[state + 1]):
-            kind = classes[targets[place]]
-            if costs[place] <= bound and kind >= 0:
-                row = kind * STEPS + min(STEPS - 1, int(costs[place] * per))
-                out[sizes[row]], prices[sizes[row]] = targets[place], costs[place]
-                sizes[row] += 1
-    firsts[states * count] = at
-    return firsts, out, prices
-
-
-@compiled
-def look_ahead(
-    after: Array, fits: Array, only: Array, classes: Array, first: Array, most: Any, out: Array
-) -> None:
-    """Write for how many frames, at most so many, a state's take fits from a frame on, to out `[F]`. after
-    `[F]`: the same a frame later. fits `[C]`: which classes fit at the frame. only `[F]`: the states that
-    alone do, empty for all. first `[F]`: whether a state is the first of its take.
-    """
-    states = len(classes)
-    for state in range(states):
-        ahead = 0
-        if classes[state] >= 0 and fits[classes[state]] and (len(only) == 0 or only[state]):
-            ahead = 1
-            if state + 1 < states and not first[state + 1]:
-                ahead += after[state + 1]
-        out[state] = min(ahead, most)
-
-
-@compiled_exactly
-def follow(
-    cost: Array, back: Array, ahead: Array, meets: Array, classes: Array, first: Array, bound: Any
-) -> None:
-    """Go one frame on along the takes. cost `[2, F]`: what the cheapest way to a state costs, without and
-    with the event of the open window met; afterwards that of the next frame. back `[2, F]`: where it comes
-    from, 2 state + met. ahead `[F]`: 0 where a state does not fit. meets `[C]`: which classes are that event.
-    bound: what no way may cost more than.
-    """
-    for state in range(cost.shape[1] - 1, -1, -1):
-        none = ahead[state] == 0 or first[state]
-        without = np.float32(np.inf) if none else cost[0, state - 1]
-        having = np.float32(np.inf) if none else cost[1, state - 1]
-        if not without <= bound:
-            without = np.float32(np.inf)
-        if not having <= bound:
-            having = np.float32(np.inf)
-        cost[0, state] = cost[1, state] = np.inf
-        if without < np.inf or having < np.inf:
-            if meets[classes[state]]:
-                cost[1, state] = min(without, having)
-                back[1, state] = 2 * (state - 1) + (0 if without <= having else 1)
-            else:
-                cost[0, state], cost[1, state] = without, having
-                back[0, state], back[1, state] = 2 * (state - 1), 2 * (state - 1) + 1
-
-
-@compiled_exactly
-def living(cost: Array, firsts: Array, count: Any, bound: Any, out: Array) -> Any:
-    """Write who costs no more than the bound to out `[2 F]`, state + met F; return how many there are, and
-    after how many of them half of their transitions have come.
-    """
-    states, number, total = cost.shape[1], 0, 0
-    for met in range(2):
-        for state in range(states):
-            if cost[met, state] <= bound and cost[met, state] < np.inf:
-                out[number] = state + met * states
-                number += 1
-                total += firsts[(state + 1) * count] - firsts[state * count]
-    half, some = 0, 0
-    while half < number and 2 * some < total:
-        state = out[half] % states
-        some += firsts[(state + 1) * count] - firsts[state * count]
-        half += 1
-    return number, half
+    total, low, least = 0, 0, np.float32(np.inf)
+    for n in range(len(alive)):
+        code = alive[n]
+        state = code - states if code >= states else code
+        some = starts[state + 1] - starts[state]
+        if some > 0 and cost[code] <= reach:
+            total += some
+            least = min(least, cost[code])
+    for n in range(len(alive)):
+        code = alive[n]
+        state = code - states if code >= states else code
+        low += cost[code] <= least + width and starts[state + 1] > starts[state]
+    return total, low
 
 
 @compiled_exactly
@@ -128,88 +86,235 @@ def leap(
     alive: Array,
     landed: Array,
     sources: Array,
+    reached: Array,
     firsts: Array,
     targets: Array,
     costs: Array,
     fitting: Array,
     count: Any,
-    ahead: Array,
+    fits: Array,
     least: Any,
+    ahead: Array,
+    foreseen: Any,
+    reach: Any,
     bound: Any,
     width: Any,
-) -> None:
-    """Jump from states that are alive: landed `[2, F]` what the cheapest way to jump into a state costs,
-    without and with the event met that was waited for before; sources `[2, F]`: where it comes from, 2 state
-    + met. firsts, targets, costs: as `arranged` returns them, of so many classes; fitting: those of which
-    states fit. ahead, least: for how many frames a take goes on to fit, and has to. width: of a step of
-    costs.
+) -> Any:
+    """Jump from where somebody is: landed `[2 F]` what the cheapest way to jump there costs, sources `[2 F]`
+    where it comes from. Where nobody landed before it is infinite; reached gets those that are not any more.
+    Return how many there are, and what the cheapest way all through costs that was seen to go on from one.
+
+    firsts, targets, costs: as `arranged` writes them, of so many classes, in steps of such a width; fitting:
+    those of which states fit. fits `[F]`, least: for how many frames a take goes on to fit, and has to. ahead
+    `[2 F + 1]`: what going on costs at least, known where it is below its last one; foreseen: whether any is.
+    reach: what nobody may cost more than by then, with the jump; bound: with what is ahead.
     """
-    landed[:] = np.inf
-    states = cost.shape[1]
+    states, number, through = len(fits), 0, np.float32(np.inf)
+    unknown = ahead[2 * states]
     for n in range(len(alive)):
-        met, state = alive[n] // states, alive[n] % states
-        so_far = cost[met, state]
-        left = bound - so_far
+        code = alive[n]
+        so_far = cost[code]
+        left = reach - so_far
+        if not left >= 0:
+            continue
+        side = states if code >= states else 0
+        own = (code - side) * (count + 1)
         for kind in fitting:
-            for place in range(firsts[state * count + kind], firsts[state * count + kind + 1]):
-                if costs[place] > left:
-                    if costs[place] > left + width:
+            for place in range(firsts[own + kind], firsts[own + kind + 1]):
+                price = costs[place]
+                if price > left:
+                    if price > left + width:
                         break
                     continue
-                target = targets[place]
-                total = so_far + costs[place]
-                if ahead[target] >= least and total < landed[met, target]:
-                    landed[met, target] = total
-                    sources[met, target] = 2 * state + met
+                target = side + targets[place]
+                total = so_far + price
+                if total > landed[target] or fits[target - side] < least:
+                    continue
+                if foreseen:
+                    rest = ahead[target]
+                    if rest < unknown:
+                        through = min(through, total + rest)
+                    if total + rest > bound:
+                        continue
+                if total < landed[target]:
+                    if landed[target] == np.inf:
+                        reached[number] = target
+                        number += 1
+                    landed[target], sources[target] = total, code
+                elif code < sources[target]:
+                    sources[target] = code
+    return number, through
 
 
 @compiled_exactly
-def merge(landed: Array, sources: Array, others: Array, theirs: Array) -> None:
-    """Take what others `[2, F]` reached more cheaply."""
-    for met in range(2):
-        for state in range(landed.shape[1]):
-            if others[met, state] < landed[met, state]:
-                landed[met, state] = others[met, state]
-                sources[met, state] = theirs[met, state]
+def draw(
+    cost: Array,
+    lowest: Any,
+    landed: Array,
+    sources: Array,
+    reached: Array,
+    entered: Array,
+    firsts: Array,
+    targets: Array,
+    costs: Array,
+    leaving: Array,
+    count: Any,
+    fits: Array,
+    first: Array,
+    least: Any,
+    ahead: Array,
+    bound: Any,
+    width: Any,
+    cheapest: Any,
+) -> Any:
+    """Return and write what `leap` does, looking from where one may land for the cheapest way there: sooner
+    where many cost the least.
+
+    cost `[2 F]`: infinite where nobody is. lowest `[2]`: what nobody is below, without and with the event
+    met. entered: states that jumps lead to. firsts, targets, costs: as `arranged` writes the transitions
+    turned round; leaving: the classes of states that fitted a frame before. first `[F]`: whether a state is
+    the first of its take. cheapest: what a transition costs at least. Whoever comes along the take no dearer
+    needs no jump.
+    """
+    states, number, through = len(fits), 0, np.float32(np.inf)
+    unknown = ahead[2 * states]
+    for state in entered:
+        if fits[state] < least:
+            continue
+        own = (states - 1 - state) * (count + 1)
+        for met in range(2):
+            floor = lowest[met]
+            target = state + met * states
+            rest = ahead[target]
+            follows = np.float32(np.inf) if first[state] else cost[target - 1]
+            if floor + cheapest >= follows or not floor + cheapest + rest <= bound:
+                continue
+            best, source = min(follows, bound - rest), -1
+            for kind in leaving:
+                for place in range(firsts[own + kind], firsts[own + kind + 1]):
+                    price = costs[place]
+                    if floor + price > best:
+                        if floor + price > best + width:
+                            break
+                        continue
+                    code = target - state + states - 1 - targets[place]
+                    total = cost[code] + price
+                    if total < best or (total == best and total < follows and (source < 0 or code < source)):
+                        best, source = total, code
+            if source >= 0:
+                landed[target], sources[target] = best, source
+                reached[number] = target
+                number += 1
+                if rest < unknown:
+                    through = min(through, best + rest)
+    return number, through
+
+
+@compiled_exactly
+def land(landed: Array, reached: Array, before: Array) -> None:
+    """Take off what was paid before by who came along the take `[F]`."""
+    for n in range(len(reached)):
+        landed[reached[n]] -= np.float32(before[reached[n] % len(before)])
+
+
+@compiled_exactly
+def follow(
+    cost: Array,
+    alive: Array,
+    then: Array,
+    living: Array,
+    back: Array,
+    fits: Array,
+    meets: Array,
+    classes: Array,
+    first: Array,
+    bound: Any,
+) -> Any:
+    """Go one frame on along the takes: cost `[2 F]`, what the cheapest way costs to where somebody is, goes
+    to then `[2 F]` and is infinite again, as then is before; who is alive to living. Return how many are.
+
+    back `[2 F]`: where a way comes from. fits `[F]`: 0 where a state does not. meets `[C]`: which classes
+    are the event of the open window. bound: what no way may cost more than.
+    """
+    states, number = len(fits), 0
+    for n in range(len(alive)):
+        code = alive[n]
+        total, met = cost[code], code >= states
+        cost[code] = np.inf
+        state = code % states + 1
+        if state == states or first[state] or fits[state] == 0 or not total <= bound:
+            continue
+        into = state + states if met or meets[classes[state]] else state
+        if total < then[into] or (total == then[into] and not met):
+            if then[into] == np.inf:
+                living[number] = into
+                number += 1
+            then[into], back[into] = total, code
+    return number
 
 
 @compiled_exactly
 def arrive(
     landed: Array,
     sources: Array,
+    reached: Array,
     frames: Any,
     cost: Array,
+    alive: Array,
+    number: Any,
     back: Array,
     runs: Array,
     pieces: Array,
     upcoming: Array,
-) -> None:
-    """Bring those who jumped `frames` frames ago to where they are now: they may jump again.
+) -> Any:
+    """Bring those who jumped `frames` frames ago to where they are now: they may jump again. Return how many
+    are alive.
 
-    cost, back `[2, F]` as `follow` has them, back here -1 - (2 state + met) of where the jump came from, and
-    runs `[2, F]` how many frames ago it landed there. pieces `[n, 4]`: of each window among these frames the
-    first and the last, counted from the landing, its row of upcoming `[2, F]` (the next state that is such an
-    event, from each on), and whether it was open before.
+    landed, sources, reached: as `leap` writes them; cost, alive, back as `follow` does, back here -1 - where
+    the jump came from, and runs `[2 F]` how many frames ago it landed there. pieces `[n, 4]`: of each window
+    among these frames the first and the last, counted from the landing, its row of upcoming `[2, F]` (the
+    next state that is such an event, from each on), and whether it was open before.
     """
-    for state in range(landed.shape[1] - frames + 1):
-        if not (landed[0, state] < np.inf or landed[1, state] < np.inf):
-            continue
-        end = state + frames - 1
-        for before in range(2):
-            total = landed[before, state]
-            if not total < np.inf:
+    states = len(cost) // 2
+    for before in range(2):  # in this order: the first of those that cost the same counts
+        for n in range(len(reached)):
+            code = reached[n]
+            state = code % states
+            end = state + frames - 1
+            if (code >= states) != before or end >= states:
                 continue
             met, dead = before == 1, False
-            for n in range(len(pieces)):
-                hit = upcoming[pieces[n, 2], state + pieces[n, 0]] <= state + pieces[n, 1]
-                met = hit or (met and pieces[n, 3] == 1)
-                if pieces[n, 1] < frames - 1:  # it closes on the way
+            for m in range(len(pieces)):
+                hit = upcoming[pieces[m, 2], state + pieces[m, 0]] <= state + pieces[m, 1]
+                met = hit or (met and pieces[m, 3] == 1)
+                if pieces[m, 1] < frames - 1:  # it closes on the way
                     dead = dead or not met
                     met = False
-            if len(pieces) == 0:
-                met = False
-            into = 1 if met else 0
-            if not dead and total < cost[into, end]:
-                cost[into, end] = total
-                back[into, end] = -1 - sources[before, state]
-                runs[into, end] = frames
+            into = end + states if met and len(pieces) > 0 else end
+            total = landed[code]
+            if not dead and total < cost[into]:
+                if cost[into] == np.inf:
+                    alive[number] = into
+                    number += 1
+                cost[into], back[into], runs[into] = total, -1 - sources[code], frames
+    return number
+
+
+@compiled_exactly
+def close(cost: Array, alive: Array, back: Array, runs: Array) -> Any:
+    """Forget ways on which the event was not met whose window ends; the others begin anew. Return how many
+    are alive.
+    """
+    states, number = len(cost) // 2, 0
+    for n in range(len(alive)):
+        if alive[n] < states:
+            cost[alive[n]] = np.inf
+    for n in range(len(alive)):
+        code = alive[n]
+        if code >= states:
+            into = code - states
+            cost[into], cost[code] = cost[code], np.inf
+            back[into], runs[into] = back[code], runs[code]
+            alive[number] = into
+            number += 1
+    return number

@@ -253,17 +253,60 @@ def test_the_best_path_is_the_same_whatever_bound_it_is_searched_within() -> Non
     assert found >= 4
 
 
-def test_two_threads_find_what_one_does(monkeypatch: pytest.MonkeyPatch) -> None:
-    chance = np.random.default_rng(5)
-    pairs = {(int(a), int(b)) for a, b in chance.integers(0, 400, (8000, 2)) if b != a + 1}
-    graph = graph_of(400, [0, 150, 400], {e: float(chance.uniform(0.1, 2)) for e in pairs})
-    sound = HeardStates(chance.choice([IDLE, CLAUSE], 400).astype(np.uint8), chance.random(400) < 0.3)
-    want = WantedSegment(chance.choice([IDLE, CLAUSE, ALL], 25).astype(np.uint8), np.full(25, -1, np.int32))
-    paths = []
-    for shared in (0, 10**9):
-        monkeypatch.setattr("metagraph.synthesis.exact_search.SHARED", shared)
-        paths.append(best(graph, sound, want, run=2))
-    assert paths[0].states.tolist() == paths[1].states.tolist() and len(paths[0].jumps) > 3
+@pytest.mark.parametrize("charged", [False, True])
+def test_the_best_path_is_the_same_from_whichever_side_jumps_are_looked_for_and_wherever_the_halves_meet(
+    monkeypatch: pytest.MonkeyPatch, charged: bool
+) -> None:
+    module = "metagraph.synthesis.exact_search"
+    found = 0
+    for seed in range(6):
+        chance = np.random.default_rng(seed)
+        pairs = {(int(a), int(b)) for a, b in chance.integers(0, 400, (8000, 2)) if b != a + 1}
+        graph = graph_of(400, [0, 150, 400], {e: float(chance.integers(1, 20)) / 8 for e in pairs})
+        sound = HeardStates(chance.choice([IDLE, CLAUSE], 400).astype(np.uint8), chance.random(400) < 0.3)
+        want = WantedSegment(
+            chance.choice([IDLE, CLAUSE, ALL], 25).astype(np.uint8), np.repeat([-1, 0, -1, 1, -1], 5)
+        )
+        rows = chance.integers(0, 4, (3, 400)).astype(np.float32) / 16
+        costs = together([FrameCost("a", np.arange(25, dtype=np.int32) // 9, rows)]) if charged else None
+        paths = []
+        for drawn, half in ((0, 0.45), (10**9, 0.45), (0, 0.0), (10**9, 0.9), (8, 1.5)):
+            monkeypatch.setattr(f"{module}_sweep.DRAWN", drawn)
+            monkeypatch.setattr(f"{module}.HALF", half)
+            try:
+                paths.append(best(graph, sound, want, run=1 + seed % 3, charged=costs))
+            except SynthesisError:
+                assert not paths
+                break
+        found += len(paths) > 0
+        for path in paths:
+            check(graph, sound, want, path, 1 + seed % 3, costs)
+            assert path.cost == paths[0].cost
+            assert charged or path.states.tolist() == paths[0].states.tolist()
+    assert found >= 3
+
+
+def test_a_second_search_goes_by_the_transitions_of_the_first_where_the_same_was_heard() -> None:
+    chance = np.random.default_rng(3)
+    pairs = {(int(a), int(b)) for a, b in chance.integers(0, 90, (900, 2)) if b != a + 1}
+    graph = graph_of(90, [0, 40, 90], {e: float(chance.uniform(0.1, 2)) for e in pairs})
+    want = WantedSegment(np.full(30, CLAUSE, np.uint8), np.full(30, -1, np.int32))
+    sounds = [
+        HeardStates(chance.choice([IDLE, CLAUSE], 90, p=[0.2, 0.8]).astype(np.uint8), np.zeros(90, bool))
+        for _ in range(2)
+    ]
+    for sound in (sounds[0], sounds[0], sounds[1], sounds[0]):
+        fresh = graph_of(90, [0, 40, 90], dict(_links(graph)))
+        path = best(graph, sound, want)
+        check(graph, sound, want, path)
+        assert path.states.tolist() == best(fresh, sound, want).states.tolist()
+
+
+def _links(graph: MotionGraph) -> list[tuple[tuple[int, int], float]]:
+    sources = np.repeat(np.arange(len(graph.states)), np.diff(graph.starts)).tolist()
+    return [
+        ((s, t), c) for s, t, c in zip(sources, graph.targets.tolist(), graph.costs.tolist(), strict=True)
+    ]
 
 
 @pytest.mark.parametrize("exact", [True, False])
