@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import json
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -83,13 +84,22 @@ def module(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ModuleType]:
         del sys.modules[NAME]
 
 
-@pytest.fixture
-def file(module: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The file that the loops are kept in."""
+@pytest.fixture(scope="module")
+def kept(module: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder that the loops are kept in: made once, and copied for each test."""
     from metagraph.object_making import make
 
-    monkeypatch.setenv("METAGRAPH_LOOP_CACHE", str(tmp_path / "cache"))
-    assert make(module, ("several", "nothing", "count", "fails"), ())
+    folder = tmp_path_factory.mktemp("kept") / "cache"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("METAGRAPH_LOOP_CACHE", str(folder))
+        assert make(module, ("several", "nothing", "count", "fails"), ())
+    return folder
+
+
+@pytest.fixture
+def file(kept: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The file that the loops are kept in."""
+    monkeypatch.setenv("METAGRAPH_LOOP_CACHE", str(shutil.copytree(kept, tmp_path / "cache")))
     found = object_code.path(NAME)
     assert found is not None and found.exists()
     return found

@@ -278,7 +278,7 @@ def _members(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int]
     doc = gltf.json
     skinned: set[int] = set()
     for s, skin in enumerate(doc.skins):
-        for joint in skin.joints:
+        for joint in dict.fromkeys(skin.joints):
             if joint >= len(nodes):
                 gltf.fail(told("joint {joint} does not exist", joint=joint), told("skin {s}", s=s))
             skinned.add(joint)
@@ -374,7 +374,8 @@ def _without_skin(nodes: list[Node], parents: list[int], order: list[int], anima
 
 def _in_order(gltf: Gltf, members: set[int], parents: list[int], order: list[int]) -> list[int]:
     """Return the joints, parents first, otherwise in the order the skins list them, then as in the scene."""
-    wanted = [j for skin in gltf.json.skins for j in skin.joints] + [i for i in order if i in members]
+    listed = (joint for skin in gltf.json.skins for joint in skin.joints)
+    wanted = dict.fromkeys([*listed, *(i for i in order if i in members)])
     out: list[int] = []
     seen: set[int] = set()
     for joint in wanted:

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import shutil
+import subprocess
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from metagraph.graph.model import Project
+from tests.engines import csharp_runtime, javascript_runtime
 from tests.made_once import made_once
+from tests.processes import started
 from tests.thorough import many
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -49,3 +54,34 @@ def cpp_probe(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Path
 def single(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Where folders with the vectors of single cases are made."""
     return tmp_path_factory.mktemp("single")
+
+
+@pytest.fixture(scope="module")
+def host(tmp_path_factory: pytest.TempPathFactory) -> Iterator[csharp_runtime.Host]:
+    program = csharp_runtime.compiled(
+        tmp_path_factory.mktemp("host") / "host.exe", Path(__file__).parent / "run" / "Host.cs"
+    )
+    with started("mono", program, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        yield csharp_runtime.Host(process)
+
+
+@pytest.fixture(scope="session")
+def csharp_core(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The C# runtime as a library, for all programs that use it."""
+
+    def make(folder: Path) -> None:
+        csharp_runtime.compiled(folder / "metagraph.dll", *csharp_runtime.CORE)
+
+    return made_once(tmp_path_factory, "csharp", make) / "metagraph.dll"
+
+
+@pytest.fixture(scope="module")
+def core(csharp_core: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The library in a folder of one's own, since programs lie beside it."""
+    return Path(shutil.copy(csharp_core, tmp_path_factory.mktemp("unity")))
+
+
+@pytest.fixture(scope="session")
+def rare(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with an export and vectors of what few exports need."""
+    return made_once(tmp_path_factory, "rare", javascript_runtime.make_rare)

@@ -17,7 +17,7 @@ from metagraph.engines.targets import registry, web, web_tools
 from metagraph.engines.vectors import check_vectors, every_case, write_vectors
 from metagraph.graph.model import Project
 from tests.browsing import MODULES, Browser
-from tests.engines import cpp_program, test_runtime_godot, test_runtime_unity
+from tests.engines import cpp_program, csharp_runtime, test_runtime_godot
 from tests.engines.test_runtime_godot import game, needs_godot
 from tests.formats.test_gltf_packed import BODY, parts, rewritten
 
@@ -145,15 +145,15 @@ def test_views_are_unpacked_as_the_extensions_own_library_does(packed: Path) -> 
     assert all(off <= (kind == "QUATERNION") for _, kind, off in found), found
 
 
-@test_runtime_unity.pytestmark
+@csharp_runtime.needs_mono
 def test_it_plays_the_same_in_c_sharp_and_a_damaged_one_is_refused(
-    packed: Path, damaged: list[Path], tmp_path: Path
+    packed: Path, damaged: list[Path], core: Path
 ) -> None:
-    runner = test_runtime_unity.RUNTIME / "Conformance" / "Conformance.cs"
-    program = test_runtime_unity.compiled(tmp_path / "packed.exe", runner, *test_runtime_unity.CORE)
-    done = test_runtime_unity.mono(program, packed)
+    runner = csharp_runtime.RUNTIME / "Conformance" / "Conformance.cs"
+    program = csharp_runtime.compiled(core.with_name("packed.exe"), runner, references=(core,))
+    done = csharp_runtime.mono(program, packed)
     assert done.returncode == 0, done.stdout[:2000] + done.stderr[:2000]
-    done = test_runtime_unity.mono(program, *damaged)
+    done = csharp_runtime.mono(program, *damaged)
     lines = done.stdout.splitlines()
     assert done.returncode == 1 and len(lines) == len(damaged) + 1, done.stdout + done.stderr
     assert all("sample.glb" in line for line in lines[:-1]), lines

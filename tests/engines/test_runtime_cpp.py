@@ -23,7 +23,7 @@ from metagraph.playback.life.voice import voice_from_text
 from metagraph.playback.plan import Plan
 from tests.engines.cpp_program import MUTANTS, needs_compiler, ran
 from tests.engines.mutants import PLAYED, folders_to_try
-from tests.engines.test_runtime_unity import ASKED, SENSELESS
+from tests.engines.requests_asked import ASKED, SENSELESS
 
 ROOT = Path(__file__).resolve().parents[2]
 VECTORS = sorted(p.parent for p in (ROOT / "metagraph" / "engines" / "conformance").glob("*/vectors.json"))

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from metagraph.engines.translation.gesture_word_lists import CPP, GODOT, JAVASCRIPT, UNITY, gesture_word_lists
-from tests.engines import cpp_program, test_runtime_godot, test_runtime_unity
+from tests.engines import cpp_program, csharp_runtime, test_runtime_godot
 from tests.engines.test_runtime_godot import game, needs_godot
 from tests.speech.test_text_gestures import SPOKEN, TEXTS
 
@@ -272,27 +272,29 @@ def test_what_is_said_gestures_and_what_cannot_be_read_is_refused(wanted: Any) -
     assert len(states) > 40 and states.count("refused") < 0.2 * len(states)
 
 
-@test_runtime_unity.pytestmark
-def test_c_sharp_says_what_javascript_says(wanted: Any, sample_export: Path, tmp_path: Path) -> None:
+@csharp_runtime.needs_mono
+def test_c_sharp_says_what_javascript_says(
+    wanted: Any, sample_export: Path, core: Path, tmp_path: Path
+) -> None:
     source = tmp_path / "program.cs"
     source.write_text(CSHARP)
-    program = test_runtime_unity.compiled(tmp_path / "program.exe", source, *test_runtime_unity.CORE)
+    program = csharp_runtime.compiled(core.with_name("program.exe"), source, references=(core,))
     (tmp_path / "asked.json").write_text(json.dumps(asked(sample_export)))
-    done = test_runtime_unity.mono(program, tmp_path / "asked.json", LANG="tr_TR.UTF-8", LC_ALL="tr_TR.UTF-8")
+    done = csharp_runtime.mono(program, tmp_path / "asked.json", LANG="tr_TR.UTF-8", LC_ALL="tr_TR.UTF-8")
     assert done.returncode == 0, done.stderr
     same(json.loads(done.stdout), wanted)
 
 
-@test_runtime_unity.pytestmark
-def test_a_lexicon_that_is_none_is_an_error_with_a_remedy_in_c_sharp(tmp_path: Path) -> None:
+@csharp_runtime.needs_mono
+def test_a_lexicon_that_is_none_is_an_error_with_a_remedy_in_c_sharp(core: Path, tmp_path: Path) -> None:
     source = tmp_path / "none.cs"
     source.write_text(
         "using System; using Metagraph; public static class None { public static void Main() { try {"
         ' Talk.LexiconOf("en", "{\\"rules\\": 3}"); } catch (MetagraphException error)'
         " { Console.Write(error.Message); } } }"
     )
-    program = test_runtime_unity.compiled(tmp_path / "none.exe", source, *test_runtime_unity.CORE)
-    told = test_runtime_unity.mono(program).stdout
+    program = csharp_runtime.compiled(core.with_name("none.exe"), source, references=(core,))
+    told = csharp_runtime.mono(program).stdout
     assert "'rules' should be a list" in told and "docs/live.md" in told
 
 

@@ -1,0 +1,292 @@
+"""The C# runtime fits Unity's types: compiled against these by name, and moved by hand; never run in the engine."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.engines.csharp_runtime import CORE, RUNTIME, STICK, compiled, mono, needs_mono
+
+pytestmark = needs_mono
+
+
+ENGINE = r"""
+using System;
+using System.Collections.Generic;
+
+namespace UnityEngine
+{
+    public struct Vector3 { public float x, y, z; public Vector3(float x, float y, float z) { this.x = x; this.y = y; this.z = z; } }
+    public struct Quaternion
+    {
+        public float x, y, z, w;
+        public Quaternion(float x, float y, float z, float w) { this.x = x; this.y = y; this.z = z; this.w = w; }
+    }
+    public class Object
+    {
+        public string name = "";
+        public static bool operator ==(Object a, Object b) { return ReferenceEquals(a, b); }
+        public static bool operator !=(Object a, Object b) { return !ReferenceEquals(a, b); }
+        public override bool Equals(object other) { return ReferenceEquals(this, other); }
+        public override int GetHashCode() { return 0; }
+    }
+    public class TextAsset : Object { public string text = ""; public byte[] bytes = new byte[0]; }
+    public class Mesh : Object
+    {
+        public List<string> shapes = new List<string>();
+        public int GetBlendShapeIndex(string name) { return shapes.IndexOf(name); }
+        public int GetBlendShapeFrameCount(int shape) { return 1; }
+        public float GetBlendShapeFrameWeight(int shape, int frame) { return 100f; }
+    }
+    public class Component : Object
+    {
+        public static List<Component> all = new List<Component>();
+        public Transform transform;
+        public T[] GetComponentsInChildren<T>(bool inactive) { return all.FindAll(c => c is T).ConvertAll(c => (T)(object)c).ToArray(); }
+    }
+    public class Transform : Component
+    {
+        public Quaternion localRotation;
+        public Vector3 localPosition;
+        public Vector3 InverseTransformPoint(Vector3 world) { return world; }
+    }
+    public class SkinnedMeshRenderer : Component
+    {
+        public Mesh sharedMesh;
+        public Dictionary<int, float> weights = new Dictionary<int, float>();
+        public void SetBlendShapeWeight(int index, float value) { weights[index] = value; }
+    }
+    public class Behaviour : Component { public bool enabled = true; }
+    public class MonoBehaviour : Behaviour { }
+    public static class Time { public static float deltaTime; }
+    public static class Application { public static string streamingAssetsPath = ""; }
+    public static class Debug
+    {
+        public static void Log(object message) { Console.WriteLine(message); }
+        public static void LogWarning(object message, Object context) { Console.WriteLine("warning: " + message); }
+        public static void LogError(object message, Object context) { Console.WriteLine("error: " + message); }
+    }
+    public sealed class TooltipAttribute : Attribute { public TooltipAttribute(string text) { } }
+    public enum RuntimeInitializeLoadType { SubsystemRegistration }
+    public sealed class RuntimeInitializeOnLoadMethodAttribute : Attribute
+    {
+        public RuntimeInitializeOnLoadMethodAttribute(RuntimeInitializeLoadType when) { }
+    }
+    public sealed class DisallowMultipleComponent : Attribute { }
+    public sealed class AddComponentMenu : Attribute { public AddComponentMenu(string name) { } }
+}
+
+namespace UnityEngine.Events
+{
+    public abstract class UnityEvent<A, B, C>
+    {
+        private Action<A, B, C> listeners = (a, b, c) => { };
+        public void AddListener(Action<A, B, C> listener) { listeners += listener; }
+        public void Invoke(A a, B b, C c) { listeners(a, b, c); }
+    }
+}
+"""
+
+SCENE = r"""
+using System;
+using System.Globalization;
+using System.IO;
+using System.Linq;
+using System.Reflection;
+using Metagraph;
+using UnityEngine;
+
+public static class Scene
+{
+    public static void Main(string[] args)
+    {
+        var actor = new MetagraphCharacter { seed = 3, transform = new Transform() };
+        if (args.Length > 0)
+        {
+            actor.export = new TextAsset { name = "stick", text = File.ReadAllText(args[0] + ".json") };
+            actor.glb = new TextAsset { bytes = File.ReadAllBytes(args[0] + ".glb") };
+        }
+        Graph graph = args.Length > 0 ? Graph.Load(actor.export.text, actor.glb.bytes) : null;
+        foreach (JointInfo joint in graph != null ? graph.Joints : new JointInfo[0])
+        {
+            Component.all.Add(new Transform { name = joint.Name });
+        }
+        Component.all.Add(new SkinnedMeshRenderer { sharedMesh = new Mesh() });
+        actor.begin.AddListener((layer, action, meta) => Console.WriteLine("begin " + layer + " " + meta));
+        Call(actor, "Awake");
+        Call(actor, "LateUpdate");
+        string id = actor.Gesture("no such tag");
+        string[] asked =
+        {
+            actor.Gesture(), actor.Look(new Vector3(1, 1.5f, 2)), actor.Place("door", new Vector3(1, 1, 1)), actor.Look("door"),
+            actor.Say("a \"few\" words\n"), actor.Go("nowhere"), actor.Ask("nonsense"),
+        };
+        for (int frame = 0; frame < 150; frame++)
+        {
+            Time.deltaTime = 0.02f;
+            Call(actor, "LateUpdate");
+        }
+        Answer unknown = actor.AnswerTo(id);
+        Console.WriteLine("pieces " + actor.SayPiece("Hello").Count + " " + string.Join(" ", actor.SayPiece(" there! No", true).ToArray()));
+        actor.gestures = false;
+        Console.WriteLine("plain " + (actor.Say("Hello there!") ?? "nothing"));
+        if (graph == null)
+        {
+            Console.WriteLine(actor.enabled + " " + (id ?? "nothing") + " " + (unknown == null ? "nothing" : unknown.State));
+            return;
+        }
+        Console.WriteLine(string.Join(" ", asked.Select(one => actor.AnswerTo(one).State).ToArray()));
+        Console.WriteLine(actor.Character.Plan.Track.Looks[0].To.Point[0]);
+        // Forward kinematics by what Unity shows; mirrored, it must be where the pose is.
+        var positions = new double[3 * graph.Joints.Length];
+        actor.Character.Pose().Positions(graph, positions);
+        var turned = new Quat[graph.Joints.Length];
+        var at = new Vec[turned.Length];
+        double far = 0;
+        for (int j = 0; j < turned.Length; j++)
+        {
+            var shown = (Transform)Component.all[j];
+            int parent = graph.Joints[j].Parent;
+            Quat above = parent < 0 ? Quat.Identity : turned[parent];
+            Quaternion q = shown.localRotation;
+            turned[j] = above * new Quat(q.x, q.y, q.z, q.w);
+            at[j] = above.Rotate(new Vec(shown.localPosition.x, shown.localPosition.y, shown.localPosition.z));
+            at[j] = parent < 0 ? at[j] : at[j] + at[parent];
+            Vec apart = at[j] - new Vec(-positions[3 * j], positions[3 * j + 1], positions[3 * j + 2]);
+            far = Math.Max(far, Math.Sqrt(Vec.Dot(apart, apart)));
+        }
+        Console.WriteLine(far < 1e-5 ? "mirrored" : "apart by " + far.ToString(CultureInfo.InvariantCulture));
+    }
+
+    private static void Call(object actor, string method)
+    {
+        actor.GetType().GetMethod(method, BindingFlags.Instance | BindingFlags.NonPublic).Invoke(actor, null);
+    }
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def scene(core: Path) -> Path:
+    """The component, compiled against Unity's names, and a program that does to it what the engine would."""
+    engine, program = core.with_name("engine.cs"), core.with_name("scene.cs")
+    engine.write_text(ENGINE)
+    program.write_text(SCENE)
+    types = compiled(core.with_name("UnityEngine.dll"), engine)
+    component = compiled(
+        core.with_name("component.dll"), RUNTIME / "Unity" / "MetagraphCharacter.cs", references=(core, types)
+    )
+    return compiled(core.with_name("scene.exe"), program, references=(core, types, component))
+
+
+def test_the_component_moves_joints_as_unity_shows_them(scene: Path) -> None:
+    done = mono(scene, STICK / "stick")
+    assert done.returncode == 0, done.stdout + done.stderr
+    lines = done.stdout.splitlines()
+    states = lines[-3].split()
+    assert set(states[:5]) <= {"planned", "late", "done"}
+    assert states[5:] == ["refused", "refused"]
+    assert float(lines[-2]) == -1  # to the right in Unity is to the left in glTF
+    assert lines[-1] == "mirrored"
+    assert any(line.startswith("begin arms") for line in lines)
+    assert "pieces 0 said#2 said#3" in lines, "said#1 was said whole; a sentence is said once it is whole"
+    assert any(line.startswith("plain #") for line in lines), "without gestures it is a request as any other"
+
+
+def test_a_component_without_its_files_says_so_and_stays_quiet(scene: Path) -> None:
+    done = mono(scene)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout.startswith("error: ")
+    assert done.stdout.splitlines()[-3:] == ["pieces 0 ", "plain nothing", "False nothing nothing"]
+
+
+SHARING = r"""
+using System;
+using System.IO;
+using System.Reflection;
+using Metagraph;
+using UnityEngine;
+
+public static class Sharing
+{
+    private static TextAsset text, bytes;
+
+    private static MetagraphCharacter Made(TextAsset glb)
+    {
+        var actor = new MetagraphCharacter { seed = 3, transform = new Transform(), export = text, glb = glb };
+        Call(actor, "Awake");
+        return actor;
+    }
+
+    private static void Call(MetagraphCharacter actor, string name)
+    {
+        BindingFlags any = BindingFlags.Instance | BindingFlags.Static | BindingFlags.NonPublic;
+        typeof(MetagraphCharacter).GetMethod(name, any).Invoke(actor, null);
+    }
+
+    public static void Main(string[] args)
+    {
+        text = new TextAsset { name = "stick", text = File.ReadAllText(args[0] + ".json") };
+        bytes = new TextAsset { bytes = File.ReadAllBytes(args[0] + ".glb") };
+        MetagraphCharacter broken = Made(new TextAsset { bytes = new byte[3] });
+        MetagraphCharacter first = Made(bytes), second = Made(bytes), other = Made(new TextAsset { bytes = bytes.bytes });
+        Console.WriteLine(broken.Character == null);
+        Console.WriteLine(ReferenceEquals(first.Character.Graph, second.Character.Graph));
+        Console.WriteLine(ReferenceEquals(first.Character.Graph, other.Character.Graph));
+        Console.WriteLine(ReferenceEquals(first.Character, second.Character));
+        Call(null, "Forget");
+        Console.WriteLine(ReferenceEquals(first.Character.Graph, Made(bytes).Character.Graph));
+        GC.KeepAlive(first);
+    }
+}
+"""
+
+
+def test_characters_of_the_same_assets_read_them_once(scene: Path) -> None:
+    source = scene.with_name("sharing.cs")
+    source.write_text(SHARING)
+    references = tuple(
+        scene.with_name(name) for name in ("metagraph.dll", "UnityEngine.dll", "component.dll")
+    )
+    program = compiled(scene.with_name("sharing.exe"), source, references=references)
+    done = subprocess.run(
+        ["mono", str(program), str(STICK / "stick")], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    lines = done.stdout.splitlines()
+    broken, shared, other, one, after = (line == "True" for line in lines if line in ("True", "False"))
+    assert broken and shared and not (other or one or after)
+    assert sum(line.startswith("error") for line in lines) == 1
+
+
+def test_what_the_readme_shows_compiles(scene: Path) -> None:
+    shown = [block.split("```")[0] for block in (RUNTIME / "README.md").read_text().split("```csharp")[1:]]
+    assert len(shown) == 5
+    source = scene.with_name("readme.cs")
+    inner = (
+        "public static class Shown { public static void Main() { float seconds = 0; "
+        + shown[1]
+        + shown[2]
+        + shown[3]
+        + shown[4]
+        + " System.Console.Write(pose); } }"
+    )
+    source.write_text("using UnityEngine; using System.IO; using Metagraph;\n" + shown[0] + inner)
+    references = tuple(
+        scene.with_name(name) for name in ("metagraph.dll", "UnityEngine.dll", "component.dll")
+    )
+    compiled(scene.with_name("readme.exe"), source, references=references)
+
+
+def test_the_package_is_one_that_unity_can_take() -> None:
+    package = json.loads((RUNTIME / "package.json").read_bytes())
+    assert package["unity"] == "2019.4"
+    core, unity = (
+        json.loads(next((RUNTIME / part).glob("*.asmdef")).read_bytes()) for part in ("Core", "Unity")
+    )
+    assert core["noEngineReferences"]
+    assert unity["references"] == [core["name"]]
+    assert not any("UnityEngine" in path.read_text() for path in CORE)
