@@ -28,6 +28,7 @@ from metagraph.errors import FileError
 from metagraph.files import check_file, guarded, is_file, opened
 from metagraph.playback.life.mouth import MouthPiece
 from metagraph.records import dataclass
+from metagraph.speech.quantile import percentile
 from metagraph.wording import told
 
 Array = NDArray[Any]
@@ -348,7 +349,7 @@ def hear(samples: Array, rate: int) -> HeardSound:
             centres[row, now] = (amplitude @ hertz[some]) / np.maximum(amplitude.sum(1), 1e-12)
     speech, high, forward, back, low = energies
     level = _smooth(10 * np.log10(speech + 1e-12), SMOOTH / HOP)
-    floor, top = float(np.percentile(level, 8)), float(np.percentile(level, 97))
+    floor, top = percentile(level, 8), percentile(level, 97)
     if top < _HUSH or top - floor < _LEAST_RANGE:
         loud = (
             np.zeros(count)
@@ -359,7 +360,7 @@ def hear(samples: Array, rate: int) -> HeardSound:
         softest = max(floor + 0.3 * (top - floor), top - BELOW)
         loud = np.clip((level - softest) / (top - softest), 0, 1)
     high_level = 10 * np.log10(high + 1e-12)
-    bursts = (high_level > np.percentile(high_level, 20) + _BURST) & (
+    bursts = (high_level > percentile(high_level, 20) + _BURST) & (
         high_level > _HUSH
     )  # a hiss that never stops is noise
     # The first formant rises as the mouth opens, the second as the tongue comes forward.
@@ -480,7 +481,7 @@ def _relative(values: Array, spoken: Array, low: float, high: float) -> Array:
     absolute = (values - low) / (high - low)
     if spoken.sum() < 8:
         return np.asarray(np.clip(absolute, 0, 1))
-    least, most = np.percentile(values[spoken], (10, 90))
+    least, most = (percentile(values[spoken], share) for share in (10, 90))
     own = (values - least) / max(most - least, 0.25 * (high - low))
     return np.asarray(np.clip(0.5 * absolute + 0.5 * own, 0, 1))
 
