@@ -119,7 +119,7 @@ def pieces(mesh: Mesh, length: float, margin: float) -> tuple[Array, Array]:
     which, vertex, slot = place // 12, place // 4, place % 4
     matrix = mesh.vertices["bones"][mesh.triangles.reshape(-1)[vertex], slot].astype(np.int64)
     low, high = np.minimum(np.minimum(a, b), c)[which], np.maximum(np.maximum(a, b), c)[which]
-    bones, of, of_low, of_high = _bounds(matrix, low, high)
+    _, of, of_low, of_high = _bounds(matrix, low, high)
     axis = np.argmax(of_high - of_low, 1)[of]
     row = np.arange(len(axis))
     middle = (low[row, axis] + high[row, axis]) / 2
@@ -137,8 +137,8 @@ def pieces(mesh: Mesh, length: float, margin: float) -> tuple[Array, Array]:
 
 
 def _bounds(key: Array, low: Array, high: Array) -> tuple[Array, Array, Array, Array]:
-    """Return each key there is `[B]`, which of them each row's is `[N]`, and the least `low` and largest `high`
-    of its rows `[B, 3]`.
+    """Return each key there is `[B]`, which of them each row's is `[N]`, and the least `low` and the largest
+    `high` of its rows `[B, 3]`.
     """
     small = key.astype(np.uint16) if key.max() < 1 << 16 else key  # sorted five times as fast
     order = np.argsort(small, kind="stable")
