@@ -47,8 +47,8 @@ stated = os.fstat
 
 
 def not_waiting(handle: int) -> None:
-    """Stand in for `os.fsync`: nobody pulls the plug on tests, so that what is written need not have reached the
-    disk, which takes some milliseconds thousands of times. A handle that is none is an error still.
+    """Stand in for `os.fsync`: nobody pulls the plug on tests, so that what is written need not have reached
+    the disk, which takes some milliseconds thousands of times. A handle that is none is an error still.
     """
     stated(handle)
 
