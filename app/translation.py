@@ -21,6 +21,9 @@ ENGLISH = "en"
 NAMES = {"en": "English", "de": "Deutsch"}  # languages by what they call themselves
 
 REMEMBERED = 2048  # texts
+# Between thousands where English has a comma, which elsewhere stands before parts of one: a narrow space, as
+# ISO 80000-1 has it.
+THOUSANDS = "\u202f"
 
 _words: Mapping[str, str] = {}
 _english: OrderedDict[str, str] = OrderedDict()  # what was lately shown, and what that is in English
@@ -53,11 +56,25 @@ def in_english(text: str) -> str:
     return str(_english.get(text, text))
 
 
+class _Grouped(int):
+    """A whole number in another language than English."""
+
+    def __format__(self, form: str) -> str:
+        return format(int(self), form).replace(",", THOUSANDS)
+
+
+def grouped(count: int) -> str:
+    """Return a whole number as it stands in the language that was chosen: "2,328"."""
+    return f"{_said(count):,}"
+
+
 def _said(value: object) -> object:
     """Return a value as it stands in a text: what the domain says in the same language."""
     if isinstance(value, BaseException):
         return tr_error(value)
-    return tr_told(value) if isinstance(value, str) else value
+    if isinstance(value, str):
+        return tr_told(value)
+    return _Grouped(value) if _words and type(value) is int else value
 
 
 def _in_english(value: object) -> object:
@@ -68,7 +85,7 @@ def tr_told(words: str) -> str:
     """Return what the domain says in the language that was chosen, where it knows how it was made."""
     if not _words or not isinstance(words, Told):
         return words
-    shown = reworded(words, lambda template: _words.get(template, template))
+    shown = reworded(words, lambda template: _words.get(template, template), _said)
     _remember(shown, str(words))
     return shown
 

@@ -45,14 +45,14 @@ def filled(template: str, values: Mapping[str, Any]) -> str:
     return template.format(**values) if values else template
 
 
-def reworded(words: str, look_up: Callable[[str], str]) -> str:
+def reworded(words: str, look_up: Callable[[str], str], said: Callable[[Any], Any] = lambda v: v) -> str:
     """Return words with each template they were made of replaced by what `look_up` finds for it; words that
-    do not know their template as they are.
+    do not know their template as they are. said: gives what stands for a value that is no text.
     """
     if not isinstance(words, Told):
         return words
     values = {
-        name: reworded(value, look_up) if isinstance(value, str) else value
+        name: reworded(value, look_up, said) if isinstance(value, str) else said(value)
         for name, value in words.values.items()
     }
     return filled(look_up(words.template), values)

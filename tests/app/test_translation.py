@@ -226,3 +226,18 @@ def test_the_environment_wins_over_the_settings(english: None, monkeypatch: pyte
     monkeypatch.setenv("METAGRAPH_LANGUAGE", "en")
     translation.choose_as_told(Settings())
     assert translation.language() == "en"
+
+
+def test_thousands_are_parted_by_a_space_where_a_comma_would_begin_the_parts_of_one(english: None) -> None:
+    translation.choose("de")
+    assert (
+        many(3220, "connection") == "3\u202f220 Verbindungen"
+        and many(220, "connection") == "220 Verbindungen"
+    )
+    assert translation.grouped(1234567) == "1\u202f234\u202f567"
+    assert tr_told(told("{count:,} clips", count=1200)) == "1\u202f200 Clips"
+    assert tr("{shown} clips", shown=1200) == "1200 clips"  # as it is asked for
+
+
+def test_thousands_are_parted_by_a_comma_in_english() -> None:
+    assert many(3220, "connection") == "3,220 connections" and translation.grouped(3220) == "3,220"

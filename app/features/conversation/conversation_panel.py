@@ -16,7 +16,7 @@ from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.performance import Performance
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import grouped, tr
 from app.widgets.making import make_widget
 from app.widgets.mime import sounds_of
 from app.widgets.more_button import MoreButton
@@ -124,7 +124,7 @@ class ConversationPanel(QWidget):
             mark = (
                 f"<span style='background:{t.sounds[k]}; color:#17181b'>&nbsp;{SOUND_MARKS[k]}&nbsp;</span>"
             )
-            parts.append(f"{mark} <span style='color:{t.dim}'>{counts[k]:,}{words}</span>")
+            parts.append(f"{mark} <span style='color:{t.dim}'>{grouped(counts[k])}{words}</span>")
         self.legend.setText("&nbsp;&nbsp; ".join(parts))
         if self.session.onstage.mode == "manual":
             self.title.say(

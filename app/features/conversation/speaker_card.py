@@ -21,7 +21,7 @@ from app.features.conversation.segment_lanes import KINDS, PLURALS
 from app.features.conversation.word_lists import language_name
 from app.look.plural import many
 from app.look.theme import SOUND_MARKS
-from app.translation import tr
+from app.translation import grouped, tr
 from app.widgets.making import make_widget
 from metagraph.graph.conversation import SPOKEN, Side
 
@@ -92,7 +92,8 @@ class Card(QFrame):
         counts = {k: sum(s.kind == k for s in side.segments) for k in SPOKEN}
         self.segments.setText(
             "   ".join(
-                f"{SOUND_MARKS[k]} {n:,} {KINDS[k] if n == 1 else PLURALS[k]}" for k, n in counts.items()
+                f"{SOUND_MARKS[k]} {grouped(n)} {KINDS[k] if n == 1 else PLURALS[k]}"
+                for k, n in counts.items()
             )
         )
 

@@ -34,7 +34,7 @@ from app.look.theme import KIND_MARKS, strengthen, theme
 from app.project.annotation_reading import Reading, begin, into, told
 from app.project.document import Document
 from app.stage.session import Session
-from app.translation import tr, tr_error, tr_noop
+from app.translation import grouped, tr, tr_error, tr_noop
 from app.widgets.act_strip import Strip, clock
 from app.widgets.form_fields import Seconds
 from app.widgets.making import make_widget
@@ -306,7 +306,7 @@ class AnnotateDialog(QDialog):
             tip = f"{of}: {some}" if some else tr("{of}: nothing in it", of=of)
             rows.append(
                 MeaningRow(
-                    (tier.name, f"{len(tier.intervals):,}"), tr(role.capitalize()), role == IGNORE, tip
+                    (tier.name, grouped(len(tier.intervals))), tr(role.capitalize()), role == IGNORE, tip
                 )
             )
         self.tiers.show_rows(rows, tr("There is no tier in this annotation."))
@@ -314,7 +314,7 @@ class AnnotateDialog(QDialog):
     def _show_labels(self) -> None:
         rows = [
             MeaningRow(
-                (x.text or tr("(empty)"), tr(x.layer), f"{x.count:,}"),
+                (x.text or tr("(empty)"), tr(x.layer), grouped(x.count)),
                 meaning_words(x.meaning),
                 x.meaning == IGNORE,
                 x.text,

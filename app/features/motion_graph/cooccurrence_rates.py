@@ -22,7 +22,7 @@ from PySide6.QtWidgets import (
 
 from app.look.theme import strengthen
 from app.project.document import Document
-from app.translation import tr, tr_noop
+from app.translation import grouped, tr, tr_noop
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph.conversation import Rates
 from metagraph.graph.conversation_edits import set_rates
@@ -85,8 +85,8 @@ class RatesDialog(QDialog):
             seen = row.total > 0
             texts = (
                 tr(row.hypothesis)[:1].upper() + tr(row.hypothesis)[1:],
-                f"{row.matched:,}",
-                f"{row.total:,}",
+                grouped(row.matched),
+                grouped(row.total),
                 _share(row.rate) if seen else "–",
                 f"{_share(row.low)} – {_share(row.high)}" if seen else "–",
                 _share(row.chance) if seen else "–",

@@ -39,7 +39,7 @@ from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.project.new_clips import pieces, save
 from app.stage.session import Session
-from app.translation import tr, tr_error
+from app.translation import grouped, tr, tr_error
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import DoubleSpinBox, SpinBox
 from metagraph.compiling import there
@@ -359,7 +359,7 @@ class MotionGraphDialog(QDialog):
     def _show_table(self, rows: Any) -> None:
         for row, k in enumerate(KS):
             found = rows.get(k)
-            texts = [str(k), *(("–",) * 4 if found is None else (f"{x:,}" for x in found))]
+            texts = [str(k), *(("–",) * 4 if found is None else map(grouped, found))]
             if found is not None and found[0]:
                 texts[3] += f"  ({found[2] / found[0]:.0%})".replace("%", " %")
             for column, text in enumerate(texts):
