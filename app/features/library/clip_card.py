@@ -102,7 +102,7 @@ def draw_card(
     draw_badges(painter, rect.adjusted(10, 5, -6, 0), mark, look)
     line.moveTop(rect.bottom() - 20)
     right = draw_kinds(painter, line, kinds_of(facts, entry), look)
-    base = "base" if facts.project.base.clip == entry.id else ""
+    base = tr("base") if facts.project.base.clip == entry.id else ""
     length = f"{entry.duration:.1f} s"
     stars = f"★{mark.rating}" if mark.rating else ""
     painter.setPen(QColor(look.dim))
