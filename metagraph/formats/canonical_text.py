@@ -38,6 +38,7 @@ _TOKEN = re.compile(
     r'|"[^"\\\n]*(?:\\.[^"\\\n]*)*"'
     r"|:(?=[^ \n]))"
 )
+_CONTROL = re.compile("[\x00-\x09\x0b-\x1f]")  # also in a comment, YAML has none
 _BETWEEN = frozenset("{}[],: -\n")  # what stands between tokens
 _STRANGE = re.compile(r"\\/|\\u(?:[dD][89a-fA-F]|0000)")  # said otherwise in YAML than in JSON
 _FIELD = re.compile(r'( *)("(?:[^"\\]|\\.)*"):(?: (.+))?\Z')
@@ -52,7 +53,7 @@ class _OtherTextError(Exception):
 
 def canonical(text: str) -> Data | None:
     """Return the data of a canonical text; None for any other, whatever it is."""
-    if "\t" in text or "\r" in text or ODD.search(text) or ("\\" in text and _STRANGE.search(text)):
+    if _CONTROL.search(text) or ODD.search(text) or ("\\" in text and _STRANGE.search(text)):
         return None
     try:
         parts = _TOKEN.split(text[_header(text) :])

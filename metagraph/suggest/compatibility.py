@@ -24,6 +24,7 @@ from metagraph.graph.words import Layer
 from metagraph.motion.clip import Clip
 from metagraph.suggest.johnson import JohnsonSB, fit
 from metagraph.suggest.tracks import RATE, rig_of, times_of, track_of, velocity_of
+from metagraph.wording import told
 
 Array = NDArray[Any]
 
@@ -326,16 +327,26 @@ def times(
     last = out.leave[-1][0] if out.leave else end
     earliest = max(last, middle) if away and leave and max(last, middle) < end - blend_out else None
     if enter and leave:
-        reason = (
-            f"moves from {moving[0]:.2f} to {moving[-1]:.2f} s, and looks like its stance before and after"
+        reason = told(
+            "moves from {first:.2f} to {last:.2f} s, and looks like its stance before and after",
+            first=moving[0],
+            last=moving[-1],
+        )
+    elif enter:
+        reason = told(
+            "leaving costs {cost:.1f} times what is usual: a jump would be seen", cost=out.leave_cost
+        )
+    elif leave:
+        reason = told(
+            "entering costs {cost:.1f} times what is usual: a jump would be seen", cost=into.enter_cost
         )
     else:
-        worst = [
-            f"{what} costs {cost:.1f} times what is usual"
-            for what, cost, good in (("entering", into.enter_cost, enter), ("leaving", out.leave_cost, leave))
-            if not good
-        ]
-        reason = " and ".join(worst) + ": a jump would be seen"
+        reason = told(
+            "entering costs {cost:.1f} times what is usual and leaving costs {more:.1f} times what is usual: "
+            "a jump would be seen",
+            cost=into.enter_cost,
+            more=out.leave_cost,
+        )
     return Times(
         start, end, min(blend_in, room), min(blend_out, room), earliest, bool(enter and leave), reason
     )
@@ -358,7 +369,7 @@ def loop_times(stats: Statistics, clip: Clip, roles: Mapping[str, int] | None = 
         0.0,
         None,
         good,
-        f"its seam costs {seam:.2f} times what is usual between frames",
+        told("its seam costs {seam:.2f} times what is usual between frames", seam=seam),
     )
 
 

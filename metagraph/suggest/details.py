@@ -89,7 +89,7 @@ def _with_times(p: Proposal, motion: Clip, times: compatibility.Times) -> Propos
         "loop": loop,
     }
     sure = 0.9 if times.good else 0.5
-    reasons = dict.fromkeys(timing, times.reason)
+    reasons = dict.fromkeys(timing, str(times.reason))
     reasons["loop"] = "a stance goes on until it is left" if loop else f"a {p.kind.value} plays once"
     if times.earliest_exit is None:
         reasons["earliest_exit"] = (
@@ -104,7 +104,7 @@ def _with_times(p: Proposal, motion: Clip, times: compatibility.Times) -> Propos
         for key, value in timing.items()
     }
     return replace(
-        p, timing=timing, timing_reason=times.reason, good=times.good, details={**p.details, **details}
+        p, timing=timing, timing_reason=str(times.reason), good=times.good, details={**p.details, **details}
     )
 
 

@@ -89,12 +89,24 @@ def words_at(project: Project, action: Action, seen: Seen, seconds: float) -> st
     cost = seen.cost("start" if entering else "end", seconds)
     blend = action.timing.blend_in if entering or seen.loops else action.timing.blend_out
     stance = project.stance(action.stance if entering or action.end_stance is None else action.end_stance)
-    name = f"'{stance.name}'" if stance is not None else "its stance"
-    what = "repeats from" if seen.loops else "enters from" if entering else "leaves to"
-    to = "" if seen.loops else f" {name}"
-    how = f", blended over {blend:.2f} s" if blend > 0 else ""
-    verdict = f"{cost:.1f} of what shows as a jump" if cost <= 1 else f"{cost:.1f} times what shows as a jump"
-    return f"At {seconds:.2f} s it {what}{to}{' here' if seen.loops else ''}: {verdict}{how}"
+    name = told("'{name}'", name=stance.name) if stance is not None else told("its stance")
+    if cost <= 1:
+        verdict = told("{cost:.1f} of what shows as a jump", cost=cost)
+    else:
+        verdict = told("{cost:.1f} times what shows as a jump", cost=cost)
+    if blend > 0:
+        verdict = told("{verdict}, blended over {blend:.2f} s", verdict=verdict, blend=blend)
+    if seen.loops:
+        return told("At {seconds:.2f} s it repeats from here: {verdict}", seconds=seconds, verdict=verdict)
+    if entering:
+        said = told(
+            "At {seconds:.2f} s it enters from {name}: {verdict}", seconds=seconds, name=name, verdict=verdict
+        )
+    else:
+        said = told(
+            "At {seconds:.2f} s it leaves to {name}: {verdict}", seconds=seconds, name=name, verdict=verdict
+        )
+    return said
 
 
 def verdict(costs: Mapping[str, float], far: Mapping[str, str] | None = None) -> str:
@@ -148,9 +160,13 @@ def times_words(seen: Seen) -> str:
     """Say proposed times."""
     p = seen.proposed
     if seen.loops:
-        return (
-            f"All of it, its seam blended over {p.blend_in:.2f} s"
-            if p.blend_in > 0
-            else "All of it, without a blend"
-        )
-    return f"{p.start:.2f} to {p.end:.2f} s, blended over {p.blend_in:.2f} and {p.blend_out:.2f} s"
+        if p.blend_in > 0:
+            return told("All of it, its seam blended over {blend:.2f} s", blend=p.blend_in)
+        return told("All of it, without a blend")
+    return told(
+        "{start:.2f} to {end:.2f} s, blended over {blend_in:.2f} and {blend_out:.2f} s",
+        start=p.start,
+        end=p.end,
+        blend_in=p.blend_in,
+        blend_out=p.blend_out,
+    )

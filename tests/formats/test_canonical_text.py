@@ -58,7 +58,7 @@ PIECES = [
         "+1",
     ),
     *("1234567890123456", "? ", "---\n", "...\n", "\n  ", "\n    ", "\n- ", "# c", "a: b", "{k:v}", "[a b]"),
-    *("\\u0041", "\\x41", "\\ud83d", "\u2028", "\x7f", "\ufeff"),
+    *("\\u0041", "\\x41", "\\ud83d", "\u2028", "\x7f", "\x01", "\ufeff"),
 ]
 PROJECTS = sorted((ROOT / "sample_clips").rglob("*.metagraph.yaml"))
 

@@ -155,7 +155,8 @@ class TimingPlot(QWidget):
         self.verdict.setText(tr_told(verdict(costs, far)))
         fine = max(costs.values()) <= 1 and not far
         set_sheet(self.verdict, f"color: {t.dim if fine else t.warning}")
-        self.use.setToolTip(tr("{times}: it {reason}", times=times_words(seen), reason=seen.proposed.reason))
+        times, reason = times_words(seen), seen.proposed.reason
+        self.use.setToolTip(tr("{times}: it {reason}", times=times, reason=reason))
 
     def _proposed(self) -> dict[str, Any]:
         """Return the Timing fields that the proposed times would change."""
