@@ -263,7 +263,11 @@ class Gltf:
         or of another buffer.
         """
         return [
-            (v.byte_offset, -1 if v.buffer or v.packed is not None else v.byte_length, v.byte_stride)
+            (
+                v.byte_offset,
+                -1 if v.buffer or (v.extensions is not None and v.packed is not None) else v.byte_length,
+                v.byte_stride,
+            )
             for v in self.json.buffer_views
         ]
 
