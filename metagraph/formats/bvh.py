@@ -498,7 +498,7 @@ def _clip(
     clip = Clip(path.stem, skeleton, fps, rotations, translations, tuple(moving), notes=tuple(notes))
     for repair in repairs:
         clip = repaired(clip, repair)
-    return without_stray_poses(clip, as_is)
+    return without_stray_poses([clip], as_is)[0]
 
 
 def write_bvh(clip: Clip, path: str | Path) -> None:

@@ -13,7 +13,7 @@ from metagraph.errors import FileError
 from metagraph.files import check_file
 from metagraph.formats import fbx_child
 from metagraph.formats.fbx_readers import ReaderError, convert
-from metagraph.formats.gltf_clips import read_clip
+from metagraph.formats.gltf_clips import read_clips
 from metagraph.formats.gltf_file import parse_gltf
 from metagraph.formats.gltf_skeleton import build_rig
 from metagraph.formats.takes import unique_takes
@@ -49,12 +49,7 @@ def read_fbx_clips(path: str | Path, timeout: float = TIMEOUT, as_is: Collection
             told("Export it with its animation baked."),
         )
     with np.errstate(all="ignore"):
-        rig = build_rig(gltf, as_is)
-        clips = [
-            clip
-            for i in range(len(gltf.json.animations))
-            if (clip := read_clip(gltf, rig, i, as_is)) is not None
-        ]
+        clips = read_clips(gltf, build_rig(gltf, as_is), as_is)
     if not clips:
         raise FileError(
             path,

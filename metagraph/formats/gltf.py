@@ -12,8 +12,9 @@ import numpy as np
 from metagraph.errors import FileError
 from metagraph.files import guarded
 from metagraph.formats.gltf_character import character_of
-from metagraph.formats.gltf_clips import morph_names, read_clip
+from metagraph.formats.gltf_clips import read_clips
 from metagraph.formats.gltf_file import extras, open_gltf
+from metagraph.formats.gltf_morphs import morph_names
 from metagraph.formats.gltf_skeleton import build_rig
 from metagraph.formats.gltf_writer import write_glb
 from metagraph.formats.takes import unique_takes
@@ -46,9 +47,7 @@ def read_gltf_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]
             told("Export it with its animation, or open it as a character."),
         )
     rig = build_rig(gltf, as_is)
-    clips = [
-        clip for i in range(len(gltf.json.animations)) if (clip := read_clip(gltf, rig, i, as_is)) is not None
-    ]
+    clips = read_clips(gltf, rig, as_is)
     if not clips:
         raise FileError(
             path,

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from metagraph.budgets import PICTURE_PIXELS, VERTICES
 from metagraph.errors import FileError
-from metagraph.formats.gltf_clips import morph_names
 from metagraph.formats.gltf_file import Gltf
+from metagraph.formats.gltf_morphs import morph_names
 from metagraph.formats.gltf_skeleton import GltfRig
 from metagraph.formats.gltf_values import Primitive
 from metagraph.motion.character_mesh import Character, Material, Surface

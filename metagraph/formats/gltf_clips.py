@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Collection
-from typing import Any
+from collections.abc import Collection, Iterator, Sequence
+from functools import cached_property
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.budgets import CLIP_SECONDS
 from metagraph.formats.gltf_file import Gltf, extras
+from metagraph.formats.gltf_morphs import morph_weights
+from metagraph.formats.gltf_sampling import Grid, KeyGroup, KeyTable, sample, sample_turns
 from metagraph.formats.gltf_skeleton import GltfRig
 from metagraph.formats.gltf_values import Animation
-from metagraph.formats.takes import frame_rate, repaired, take_name, take_repair, without_stray_poses
+from metagraph.formats.takes import frame_rate, noted, take_name, take_repair, without_stray_poses
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
@@ -23,20 +26,69 @@ from metagraph.wording import told
 Array = NDArray[Any]
 
 STILL = 1e-5  # metres: a translation channel that moves less than this from the rest pose is dropped
+AT_ONCE = 1 << 18  # joints times frames of takes that are made together
+
+_Group = tuple[int, str, str]  # key times' accessor, interpolation, path
+
+
+def read_clips(gltf: Gltf, rig: GltfRig, as_is: Collection[str] = ()) -> list[Clip]:
+    """Return all animations that move something of the skeleton. Raises FileError; for takes that are longer
+    together than the file's size warrants before any of them is made.
+
+    as_is: repairs (`takes.REPAIRS`) not to make.
+    """
+    keys: dict[int, Array] = {}
+    numbers = range(len(gltf.json.animations))
+    plans = [plan for n in numbers if (plan := _planned(gltf, rig, n, keys)) is not None]
+    still = _Still(rig)
+    return [
+        clip
+        for batch in _batches(plans, len(rig.nodes))
+        for clip in _clips(gltf, rig, still, batch, keys, as_is)
+    ]
 
 
 @dataclass(frozen=True, eq=False)
-class _Grid:
-    """Frame times in seconds, and how each array of key times maps onto them."""
+class _Plan:
+    """What an animation asks for. groups: of channels that share key times, with their joints and outputs.
+    morphs: channels of weights: input, mode, node, output.
+    """
 
-    times: Array
-    fps: float
+    name: str
+    where: str
+    groups: dict[_Group, list[tuple[int, int]]]
+    morphs: list[tuple[int, str, int, int]]
+    notes: list[str]
+    grid: Grid
 
 
-def read_clip(gltf: Gltf, rig: GltfRig, number: int, as_is: Collection[str] = ()) -> Clip | None:
-    """Return animation `number` as a clip, or None when it moves nothing of the skeleton. Raises FileError.
+class _Still:
+    """What a skeleton does that no channel moves. places `[J, 3]`: translations. apart: the joints of which
+    these are not those of the rest pose. turned: joints whose file values are turned. lengths `[J, 3]`: what
+    translations are multiplied by, axis by axis, None where axes are turned or mixed.
+    """
 
-    as_is: repairs (`takes.REPAIRS`) not to make.
+    def __init__(self, rig: GltfRig) -> None:
+        self.rest = np.asarray(rig.skeleton.rest_translations)
+        self.places = np.einsum("jab,jb->ja", rig.lift, rig.still_translations) + rig.shift
+        diagonal = np.einsum("jaa->ja", rig.lift)
+        straight = np.count_nonzero(diagonal) == np.count_nonzero(rig.lift)
+        self.lengths = diagonal if straight else None
+        self.values = rig.still_translations  # in the file's terms
+        self.apart = np.flatnonzero(np.abs(self.places - self.rest).max(-1) > STILL).tolist()
+        self.turned = np.flatnonzero(rotation.angle_between(rig.turn, rotation.IDENTITY) > 0)
+        self.turns = rig.turn[self.turned].astype(np.float32)
+        self._rig = rig
+
+    @cached_property
+    def pose(self) -> Pose:
+        """The pose of the nodes as they are saved."""
+        return Pose(rotation.multiply(self._rig.turn, self._rig.still_rotations), self.places)
+
+
+def _planned(gltf: Gltf, rig: GltfRig, number: int, keys: dict[int, Array]) -> _Plan | None:
+    """Return what animation `number` asks for, None when it moves nothing of the skeleton. keys: key times by
+    accessor, as they were read.
     """
     animation = gltf.json.animations[number]
     where = f"animation {number} '{animation.name}'"
@@ -44,98 +96,221 @@ def read_clip(gltf: Gltf, rig: GltfRig, number: int, as_is: Collection[str] = ()
     if not groups and not morph_channels:
         return None
     inputs = {key[0] for key in groups} | {channel[0] for channel in morph_channels}
-    keys = {i: _key_times(gltf, i, where) for i in sorted(inputs)}
-    start, end = min(float(k[0]) for k in keys.values()), max(float(k[-1]) for k in keys.values())
+    for i in sorted(inputs - keys.keys()):
+        keys[i] = _key_times(gltf, i, where)
+    own = [keys[i] for i in sorted(inputs)]
+    _spend_keys(gltf, 8 * sum(map(len, own)), where)
+    start, end = min(float(k[0]) for k in own), max(float(k[-1]) for k in own)
     if not end - start <= CLIP_SECONDS:
         gltf.fail(told("it lasts {value:.3g} s", value=end - start), where)
     wanted = extras(animation.extras).get("fps")
-    fps = frame_rate(
-        list(keys.values()),
-        float(wanted) if isinstance(wanted, int | float) and 1 <= wanted <= 1000 else None,
-    )
+    fps = frame_rate(own, float(wanted) if isinstance(wanted, int | float) and 1 <= wanted <= 1000 else None)
     frames = max(1, round((end - start) * fps) + 1)
-    joints = len(rig.nodes)
-    gltf.spend(frames * joints * 32, where)
+    gltf.spend(frames * len(rig.nodes) * 32, where)
     if start * fps > 0.5:
         notes.append(f"it starts at {start:.3f} s in the file; that moment is now 0")
-    grid = _Grid(np.minimum(start + np.arange(frames) / fps, end), fps)
+    grid = Grid(np.minimum(start + np.arange(frames) / fps, end), fps)
+    return _Plan(animation.name, where, groups, morph_channels, notes, grid)
 
-    rotations = np.empty((frames, joints, 4), np.float32)
-    rotations[:] = rig.still_rotations
-    rest = np.asarray(rig.skeleton.rest_translations)
-    still = np.einsum("jab,jb->ja", rig.lift, rig.still_translations) + rig.shift
-    moved = {
-        j: np.broadcast_to(still[j], (frames, 3))
-        for j in np.flatnonzero(np.abs(still - rest).max(-1) > STILL).tolist()
-    }
-    scaled = 0
-    for (source, mode, path), targets in groups.items():
-        again = len(targets) - len({joint for joint, _ in targets})
-        gltf.spend(again * frames * 192, where)  # others were counted with the clip
-        places = np.array([t[0] for t in targets])
-        width = 4 if path == "rotation" else 3
-        values = _stack(
-            gltf,
-            [t[1] for t in targets],
-            len(keys[source]) * (3 if mode == "CUBICSPLINE" else 1),
-            width,
-            where,
-        )
-        if path == "rotation":
-            rotations[:, places] = _sample(keys[source], values, grid, mode, True).transpose(1, 0, 2)
-        elif path == "translation":
-            values = values.astype(np.float64) if values.dtype.kind != "f" else values
-            lifted = np.einsum("cab,ckb->cka", rig.lift[places], values)
-            own = slice(1, None, 3) if mode == "CUBICSPLINE" else slice(None)
-            lifted[:, own] += rig.shift[places, None]
-            loose = np.abs(lifted[:, own] - rest[places, None]).max((-1, -2)) > STILL
-            for j in places[~loose].tolist():
-                moved.pop(j, None)
-            if loose.any():
-                sampled = _sample(keys[source], lifted[loose], grid, mode, False)
-                moved.update(zip(places[loose].tolist(), sampled, strict=True))
-        else:
-            own = slice(1, None, 3) if mode == "CUBICSPLINE" else slice(None)
-            away = np.abs(values[:, own] - rig.still_scales[places, None]).max((-1, -2))
-            scaled += int((away > 0.01 * np.abs(rig.still_scales[places]).max(-1)).sum())
-    if scaled:
-        notes.append(f"the scale of {scaled} joints is animated; clips hold no scale, so it was left out")
-    turned = np.flatnonzero(rotation.angle_between(rig.turn, rotation.IDENTITY) > 0)
-    if len(turned):
-        rotations[:, turned] = rotation.multiply(rig.turn[turned].astype(np.float32), rotations[:, turned])
+
+def _batches(plans: Sequence[_Plan], joints: int) -> Iterator[list[_Plan]]:
+    """Yield takes that are made together: numbers of many short ones are reckoned as quickly as one's."""
+    batch: list[_Plan] = []
+    for plan in plans:
+        if batch and joints * sum(len(p.grid.times) for p in (*batch, plan)) > AT_ONCE:
+            yield batch
+            batch = []
+        batch.append(plan)
+    if batch:
+        yield batch
+
+
+def _clips(
+    gltf: Gltf,
+    rig: GltfRig,
+    still: _Still,
+    plans: Sequence[_Plan],
+    keys: dict[int, Array],
+    as_is: Collection[str],
+) -> list[Clip]:
+    frames = [len(plan.grid.times) for plan in plans]
+    begins = np.cumsum(frames) - frames
+    for plan, count in zip(plans, frames, strict=True):
+        for targets in plan.groups.values():
+            again = len(targets) - len({joint for joint, _ in targets})
+            if again:
+                gltf.spend(again * count * 192, plan.where)  # others were counted with the clip
+    rotations = _turned(gltf, rig, plans, keys, begins, sum(frames))
+    if len(still.turned):
+        rotations[:, still.turned] = rotation.multiply(still.turns, rotations[:, still.turned])
+    if not np.isfinite(rotations).all():
+        frame, joint = (int(place[0]) for place in np.nonzero(~np.isfinite(rotations).all(-1)))
+        _not_finite(gltf, rig, plans[int(np.searchsorted(begins, frame, "right")) - 1], joint)
+    rotations = rotation.normalize(rotations)
+    scaled = _scaled(gltf, rig, plans, keys)
+    out = []
+    for number, (plan, moved) in enumerate(zip(plans, _moved(gltf, rig, still, plans, keys), strict=True)):
+        if scaled[number]:
+            plan.notes.append(
+                f"the scale of {scaled[number]} joints is animated; clips hold no scale, so it was left out"
+            )
+        own = rotation.continuous(rotations[begins[number] : begins[number] + frames[number]])
+        out.append(_clip(gltf, rig, still, plan, keys, own, moved, as_is))
+    return without_stray_poses(out, as_is, [still.pose])
+
+
+def _not_finite(gltf: Gltf, rig: GltfRig, plan: _Plan, joint: int) -> NoReturn:
+    name = rig.skeleton.names[joint]
+    gltf.fail(told("a key is not a number"), told("{where}, node '{name}'", where=plan.where, name=name))
+
+
+def _clip(
+    gltf: Gltf,
+    rig: GltfRig,
+    still: _Still,
+    plan: _Plan,
+    keys: dict[int, Array],
+    rotations: Array,
+    moved: dict[int, Array],
+    as_is: Collection[str],
+) -> Clip:
+    """rotations `[F, J, 4]`; moved: as `_moved` has it."""
     translated = tuple(sorted({0, *moved}))
-    translations = np.stack([moved.get(j, np.broadcast_to(rest[j], (frames, 3))) for j in translated], 1)
-    if not (np.isfinite(rotations).all() and np.isfinite(translations).all()):
-        bad = np.flatnonzero(~np.isfinite(rotations).all((0, 2)))
-        name = (
-            rig.skeleton.names[int(bad[0])]
-            if len(bad)
-            else rig.skeleton.names[next(j for j in moved if not np.isfinite(moved[j]).all())]
-        )
-        gltf.fail(told("a key is not a number"), told("{where}, node '{name}'", where=where, name=name))
+    translations = np.empty((len(rotations), len(translated), 3))
+    for n, j in enumerate(translated):
+        known = moved.get(j)
+        translations[:, n] = still.rest[j] if known is None else known if len(known) else still.places[j]
+    if not np.isfinite(translations).all():
+        bad = np.flatnonzero(~np.isfinite(translations).all((0, 2)))
+        _not_finite(gltf, rig, plan, translated[int(bad[0])])
     if np.abs(translations).max() > 1e7:
-        gltf.fail(told("a translation is out of range"), where)
-    morphs, weights = _morphs(gltf, morph_channels, keys, grid, where)
+        gltf.fail(told("a translation is out of range"), plan.where)
+    morphs, weights = morph_weights(gltf, plan.morphs, keys, plan.grid, plan.where)
     stem = gltf.path.stem
-    name, renaming = take_repair(animation.name, take_name(animation.name, stem), stem, as_is)
-    clip = Clip(
+    name, renaming = take_repair(plan.name, take_name(plan.name, stem), stem, as_is)
+    repairs = tuple(repair for repair in (*rig.repairs, renaming) if repair is not None)
+    return Clip(
         name,
         rig.skeleton,
-        fps,
-        rotation.continuous(rotation.normalize(rotations)),
+        plan.grid.fps,
+        rotations,
         translations,
         translated,
         morphs,
         weights,
-        (*rig.notes, *notes),
+        (*rig.notes, *plan.notes, *map(noted, repairs)),
+        repairs,
     )
-    for repair in (*rig.repairs, renaming):
-        clip = repaired(clip, repair)
-    nodes = Pose(rotation.multiply(rig.turn, rig.still_rotations), still)
-    return without_stray_poses(clip, as_is, [nodes])
 
 
-_Group = tuple[int, str, str]
+def _turned(
+    gltf: Gltf, rig: GltfRig, plans: Sequence[_Plan], keys: dict[int, Array], begins: Array, frames: int
+) -> Array:
+    """Return rotations `[F, J, 4]` of several takes, one after another, in the file's terms. begins: the
+    first frame of each.
+    """
+    rotations = np.empty((frames, len(rig.nodes), 4), np.float32)
+    rotations[:] = rig.still_rotations
+    table, others = _sorted(gltf, plans, keys, "rotation")
+    if table is not None:
+        sample_turns(table, [plan.grid for plan in plans], begins, rotations)
+    for number, (source, mode, _), targets in others:
+        plan = plans[number]
+        values = _stack(gltf, [t[1] for t in targets], len(keys[source]), mode, 4, plan.where)
+        sampled = sample(keys[source], values, plan.grid, mode, True)
+        own = rotations[begins[number] : begins[number] + len(plan.grid.times)]
+        own[:, [t[0] for t in targets]] = sampled.transpose(1, 0, 2)
+    return rotations
+
+
+def _moved(
+    gltf: Gltf, rig: GltfRig, still: _Still, plans: Sequence[_Plan], keys: dict[int, Array]
+) -> list[dict[int, Array]]:
+    """Return of each take where the joints are that are not where the rest pose has them: `[F, 3]`, empty for
+    those that stay where their nodes are saved.
+    """
+    moved = [dict.fromkeys(still.apart, np.empty(0)) for _ in plans]
+    table, others = _sorted(gltf, plans, keys, "translation")
+    if table is not None and not still.apart:
+        away = (table.values != table.along(still.values[table.joints])).any(1)
+        table = table.only(np.logical_or.reduceat(away, table.begins))
+    if table is not None:
+        if still.lengths is None:
+            lifted = np.einsum("kab,kb->ka", table.along(rig.lift[table.joints]), table.values)
+        else:
+            lifted = table.along(still.lengths[table.joints]) * table.values
+        lifted += table.along(rig.shift[table.joints])
+        loose = table.most(np.abs(lifted - table.along(still.rest[table.joints]))) > STILL
+        for take, j in zip(
+            table.takes[table.groups[~loose]].tolist(), table.joints[~loose].tolist(), strict=True
+        ):
+            moved[take].pop(j, None)
+        for group in np.unique(table.groups[loose]).tolist():
+            channels, places = table.some(group)
+            times, take, some = table.times[group], int(table.takes[group]), loose[channels]
+            own = lifted[places].reshape(-1, len(times), 3)[some]
+            sampled = sample(times, own, plans[take].grid, "LINEAR", False)
+            moved[take].update(zip(table.joints[channels][some].tolist(), sampled, strict=True))
+    for take, (source, mode, _), targets in others:
+        joints = np.array([t[0] for t in targets])
+        values = _stack(gltf, [t[1] for t in targets], len(keys[source]), mode, 3, plans[take].where)
+        values = values.astype(np.float64) if values.dtype.kind != "f" else values
+        lifted = np.einsum("cab,ckb->cka", rig.lift[joints], values)
+        own = lifted[:, 1::3] if mode == "CUBICSPLINE" else lifted
+        own += rig.shift[joints, None]
+        loose = np.abs(own - still.rest[joints, None]).max((-1, -2)) > STILL
+        for j in joints[~loose].tolist():
+            moved[take].pop(j, None)
+        if loose.any():
+            sampled = sample(keys[source], lifted[loose], plans[take].grid, mode, False)
+            moved[take].update(zip(joints[loose].tolist(), sampled, strict=True))
+    return moved
+
+
+def _scaled(gltf: Gltf, rig: GltfRig, plans: Sequence[_Plan], keys: dict[int, Array]) -> list[int]:
+    """Return of each take how many joints' scales are animated."""
+    table, others = _sorted(gltf, plans, keys, "scale")
+    scales, scaled = rig.still_scales, np.zeros(len(plans), int)
+    most = 0.01 * np.abs(scales).max(-1)
+    if table is not None:
+        away = table.most(np.abs(table.values - table.along(scales[table.joints]))) > most[table.joints]
+        scaled += np.bincount(table.takes[table.groups[away]], minlength=len(plans))
+    for take, (source, mode, _), targets in others:
+        joints = [t[0] for t in targets]
+        values = _stack(gltf, [t[1] for t in targets], len(keys[source]), mode, 3, plans[take].where)
+        own = values[:, 1::3] if mode == "CUBICSPLINE" else values
+        scaled[take] += int((np.abs(own - scales[joints, None]).max((-1, -2)) > most[joints]).sum())
+    return [int(count) for count in scaled]
+
+
+_Targets = list[tuple[int, int]]  # joints and outputs
+
+
+def _sorted(
+    gltf: Gltf, plans: Sequence[_Plan], keys: dict[int, Array], path: str
+) -> tuple[KeyTable | None, list[tuple[int, _Group, _Targets]]]:
+    """Return the keys of a path's channels that can be read and looked at together, and the groups of the
+    others with the number of their take: splines and steps, what lies otherwise in the file, and all of a
+    take where two move the same joint, of which the last one counts.
+    """
+    width = 4 if path == "rotation" else 3
+    others: list[tuple[int, _Group, _Targets]] = []
+    together: list[KeyGroup] = []
+    for number, plan in enumerate(plans):
+        groups = {group: targets for group, targets in plan.groups.items() if group[2] == path}
+        joints = [joint for targets in groups.values() for joint, _ in targets]
+        alone = len(joints) == len(set(joints))
+        for group, targets in groups.items():
+            times, outputs = keys[group[0]], [t[1] for t in targets]
+            starts = None
+            if alone and group[1] == "LINEAR":
+                starts = gltf.starts(outputs, len(times), width, plan.where)
+            if starts is None:
+                others.append((number, group, targets))
+                continue
+            _spend_keys(gltf, len(outputs) * len(times) * width * 4, plan.where)
+            together.append(KeyGroup(number, times, [t[0] for t in targets], starts))
+    return KeyTable.read(gltf.numbers(plans[0].where), together, width) if together else None, others
 
 
 def _channels(
@@ -181,14 +356,21 @@ def _key_times(gltf: Gltf, accessor: int, where: str) -> Array:
     return times
 
 
-def _stack(gltf: Gltf, outputs: list[int], count: int, width: int, where: str) -> Array:
-    """Return key values `[C, count, width]` of several accessors."""
-    size = len(outputs) * count * width * 4
+def _spend_keys(gltf: Gltf, size: int, where: str) -> None:
     if size > 1 << 20:
         gltf.spend(size, where)
-    together = gltf.floats(outputs, count, width, where)
-    if together is not None:
-        return together
+
+
+def _stack(gltf: Gltf, outputs: list[int], count: int, mode: str, width: int, where: str) -> Array:
+    """Return key values `[C, count, width]` of several accessors, three for each of `count` keys of a
+    spline.
+    """
+    count *= 3 if mode == "CUBICSPLINE" else 1
+    _spend_keys(gltf, len(outputs) * count * width * 4, where)
+    starts = gltf.starts(outputs, count, width, where)
+    if starts is not None:
+        together = gltf.numbers(where)[np.array(starts)[:, None] + np.arange(count * width)]
+        return np.asarray(together.reshape(-1, count, width))
     arrays = []
     for output in outputs:
         values = gltf.array(output, where)
@@ -205,105 +387,3 @@ def _stack(gltf: Gltf, outputs: list[int], count: int, width: int, where: str) -
             )
         arrays.append(values if len(values) == count else values[:count])
     return np.stack(arrays)
-
-
-def _sample(times: Array, values: Array, grid: _Grid, mode: str, turning: bool) -> Array:
-    """Evaluate channels with common key times at the grid: `[C, K, n]` (3 K for splines) -> `[C, F, n]`."""
-    at, count = grid.times, len(times)
-    spline = mode == "CUBICSPLINE"
-    keys = values[:, 1::3] if spline else values
-    if count == 1 or (not spline and (keys == keys[:, :1]).all()):
-        return np.broadcast_to(keys[:, :1], (len(keys), len(at), keys.shape[-1]))
-    near = 1e-3 / grid.fps
-    if not spline and count == len(at) and np.abs(times - at).max() < near:
-        return keys
-    low = np.clip(np.searchsorted(times, at + near, "right") - 1, 0, count - 1)
-    if mode == "STEP":
-        return keys[:, low]
-    low = np.minimum(low, count - 2)
-    gap = times[low + 1] - times[low]
-    part = np.clip((at - times[low]) / np.where(gap > 1e-9, gap, 1), 0, 1)
-    a, b = keys[:, low], keys[:, low + 1]
-    u = part[None, :, None]
-    if spline:
-        gap, u2, u3 = gap[None, :, None], u * u, u * u * u
-        leave, arrive = values[:, 2::3][:, low], values[:, 0::3][:, low + 1]
-        out = (
-            (2 * u3 - 3 * u2 + 1) * a
-            + gap * (u3 - 2 * u2 + u) * leave
-            + (3 * u2 - 2 * u3) * b
-            + gap * (u3 - u2) * arrive
-        )
-        return np.asarray(rotation.normalize(out) if turning else out)
-    if not turning:
-        return np.asarray(a + (b - a) * u)
-    # Slerp: keys may be far apart after a tool has thinned them out.
-    dot = np.einsum("cfi,cfi->cf", a, b, dtype=np.float64)[..., None]
-    b = np.where(dot < 0, -b, b)
-    angle = np.arccos(np.clip(np.abs(dot), 0, 1))
-    sine = np.sin(angle)
-    close = sine < 1e-3
-    sine = np.where(close, 1, sine)
-    return np.asarray(
-        a * np.where(close, 1 - u, np.sin((1 - u) * angle) / sine)
-        + b * np.where(close, u, np.sin(u * angle) / sine)
-    )
-
-
-def morph_names(gltf: Gltf, node: int) -> tuple[str, ...]:
-    """Return the names of the morph targets of a node's mesh: from `targetNames`, else made from the mesh's
-    name.
-    """
-    mesh_index = gltf.json.nodes[node].mesh
-    if mesh_index is None:
-        return ()
-    mesh = gltf.item(gltf.json.meshes, mesh_index, "mesh", f"node {node}")
-    count = max((len(p.targets) for p in mesh.primitives), default=0)
-    if not count:
-        return ()
-    first = mesh.primitives[0]
-    for raw in (mesh.extras, gltf.json.nodes[node].extras, first.extras):
-        names = extras(raw).get("targetNames")
-        if (
-            isinstance(names, list)
-            and len(names) >= count
-            and all(isinstance(n, str) and n for n in names[:count])
-        ):
-            return tuple(names[:count])
-    return tuple(f"{mesh.name or 'mesh'}_morph_{k}" for k in range(count))
-
-
-def _morphs(
-    gltf: Gltf, channels: list[tuple[int, str, int, int]], keys: dict[int, Array], grid: _Grid, where: str
-) -> tuple[tuple[str, ...], Array | None]:
-    """Return morph names and weights `[F, K]`; meshes that share a target's name share its weight."""
-    columns: dict[str, Array] = {}
-    for source, mode, node, output in channels:
-        if node >= len(gltf.json.nodes):
-            gltf.fail(told("its target node {node} does not exist", node=node), where)
-        names = morph_names(gltf, node)
-        values = gltf.array(output, where, "SCALAR")
-        count = len(keys[source]) * (3 if mode == "CUBICSPLINE" else 1)
-        if not names:
-            continue
-        if len(values) != count * len(names):
-            gltf.fail(
-                told(
-                    "accessor {output} holds {count} weights, expected {count2} x {count3}",
-                    output=output,
-                    count=len(values),
-                    count2=count,
-                    count3=len(names),
-                ),
-                where,
-            )
-        gltf.spend(len(grid.times) * len(names) * 8, where)
-        tracks = np.asarray(values, np.float64).reshape(count, len(names)).T[..., None]
-        for name, track in zip(names, _sample(keys[source], tracks, grid, mode, False)[..., 0], strict=True):
-            columns.setdefault(name, track)
-    if not columns:
-        return (), None
-    weights = np.stack(list(columns.values()), 1)
-    if not np.isfinite(weights).all() or np.abs(weights).max() > 1e6:
-        gltf.fail(told("a morph weight is not a sensible number"), where)
-    return tuple(columns), weights

@@ -10,6 +10,7 @@ import base64
 import binascii
 import struct
 from collections.abc import Sequence
+from functools import cached_property
 from pathlib import Path
 from typing import Any, NoReturn
 from urllib.parse import unquote
@@ -227,14 +228,18 @@ class Gltf:
             out = np.maximum(out.astype(np.float32) / np.float32(np.iinfo(dtype).max), np.float32(-1))
         return out[:, 0] if width == 1 else out
 
-    def floats(self, indices: Sequence[int], count: int, width: int, where: str) -> Array | None:
-        """Return the first `count` elements of several accessors at once, float32 `[C, count, width]`, where
-        each is just such numbers one after another in the first buffer; else None, and `array` reads them one
-        by one or says what is wrong.
+    def numbers(self, where: str) -> Array:
+        """Return the first buffer as float32 numbers, what is over left out."""
+        data = self.buffer(0, where)
+        return np.frombuffer(data, "<f4", len(data) // 4)
+
+    def starts(self, indices: Sequence[int], count: int, width: int, where: str) -> list[int] | None:
+        """Return where among `numbers` several accessors begin, where each is float32 numbers one after
+        another in the first buffer, `count` elements or more; else None.
         """
-        accessors, views = self.json.accessors, self.json.buffer_views
-        item, data = width * 4, self.buffer(0, where)
-        starts, last = [], len(data) - count * item
+        accessors, views = self.json.accessors, self._plain_views
+        item, last = width * 4, len(self.buffer(0, where)) - count * width * 4
+        starts = []
         for index in indices:
             if index >= len(accessors):
                 return None
@@ -243,21 +248,28 @@ class Gltf:
                 return None
             if a.buffer_view >= len(views) or _WIDTHS.get(a.type) != width or a.count < count:
                 return None
-            view = views[a.buffer_view]
-            start = view.byte_offset + a.byte_offset
-            if (
-                view.packed is not None
-                or view.buffer
-                or (view.byte_stride and view.byte_stride != item)
-                or start > last
-                or start & 3
-            ):
+            offset, length, stride = views[a.buffer_view]
+            start = offset + a.byte_offset
+            if (stride and stride != item) or start > last or start & 3:
                 return None
-            if a.byte_offset + item * a.count > view.byte_length:
+            if a.byte_offset + item * a.count > length:
                 return None
             starts.append(start // 4)
-        numbers = np.frombuffer(data, "<f4", len(data) // 4)
-        return numbers[np.array(starts)[:, None] + np.arange(count * width)].reshape(-1, count, width)
+        return starts
+
+    @cached_property
+    def _plain_views(self) -> list[tuple[int, int, int]]:
+        """Where each view of the first buffer begins, its bytes and its stride; no bytes where it is packed,
+        or of another buffer.
+        """
+        return [
+            (
+                v.byte_offset,
+                -1 if v.buffer or (v.extensions is not None and v.packed is not None) else v.byte_length,
+                v.byte_stride,
+            )
+            for v in self.json.buffer_views
+        ]
 
     def _strided(self, accessor: Accessor, index: int, dtype: np.dtype[Any], width: int, where: str) -> Array:
         assert accessor.buffer_view is not None

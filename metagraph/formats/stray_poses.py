@@ -7,8 +7,9 @@ T- or A-pose) and is left by a step unlike the take's own motion; either alone i
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
-from metagraph.motion.skeleton import Pose
+from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.records import dataclass
 
 Array = NDArray[Any]
@@ -40,6 +41,7 @@ FEWEST = 5  # frames: a shorter take is a pose with what it is told from, or too
 BROKEN = 0.75  # how much a step that breaks off counts against one that is only quick
 SOON = 0.3  # the same for one that only the next three steps fall short of
 STILL = 5e-4  # of the spread: less is noise
+AT_ONCE = 1 << 20  # numbers of rotations of clips that are worked out together
 
 
 @dataclass(frozen=True)
@@ -56,29 +58,40 @@ class StrayPoses:
 class _Take:
     """A clip's poses as places `[F, J, 3]`, of any origin."""
 
-    def __init__(self, clip: Clip, bound: Sequence[Pose]) -> None:
-        self.clip = clip
-        skeleton = clip.skeleton
-        lengths = np.linalg.norm(skeleton.rest_translations, axis=-1)
-        inner = np.flatnonzero(skeleton.parents >= 0)
-        lengths[skeleton.parents < 0] = 0
-        below = np.ones(len(skeleton))
-        for joint in reversed(inner.tolist()):
-            below[skeleton.parents[joint]] += below[joint]
-        moved = list(clip.translated)  # the way from a root on the ground to the hips is no part of the body
-        lengths[moved] *= below[moved] <= len(skeleton) / 2
-        np.add.at(lengths, skeleton.parents[inner], lengths[inner].copy())
-        total = float(lengths.sum())
-        self.weights = lengths / total if total > 0 else np.full(len(lengths), 1 / len(lengths))
-        _, places = skeleton.globals(clip.poses())
-        self.middles = np.einsum("fji,j->fi", places, self.weights, dtype=np.float64)
-        self.places = places - self.middles[:, None].astype(places.dtype)
-        self.spread = max(1e-6, float(np.median(self.size(self.places))))
-        turned = self.size(np.diff(self.places, axis=0)) / self.spread
-        gone = np.linalg.norm(np.diff(self.middles, axis=0), axis=-1) / self.spread
-        self.steps = (turned, np.hypot(turned, gone))
-        self._bound = bound
+    def __init__(
+        self, clip: Clip, bound: Sequence[Pose], weights: Array, places: Array, sizes: Array
+    ) -> None:
+        """weights `[J]`: how much joints count. places: from their middle; sizes `[F]`: of the poses."""
+        self.clip, self.weights, self.places, self._bound = clip, weights, places, bound
+        middle = np.sort(sizes)[(len(sizes) - 1) // 2 : len(sizes) // 2 + 1]
+        self.spread = max(1e-6, float(middle.sum()) / len(middle))
         self.roles: dict[str, int] | None = None
+        self.steps = (np.zeros(0), np.zeros(0))
+
+    @classmethod
+    def alike(cls, clips: Sequence[Clip], bound: Sequence[Pose]) -> list[_Take]:
+        """Return takes of one skeleton of which the same joints are translated, worked out together."""
+        skeleton, moved = clips[0].skeleton, list(clips[0].translated)
+        weights = _weights(skeleton, moved)
+        frames = [clip.frames for clip in clips]
+        locals_ = np.empty((sum(frames), len(skeleton), 3), np.float32)
+        locals_[:] = skeleton.rest_translations
+        locals_[:, moved] = np.concatenate([clip.translations for clip in clips])
+        _, places = skeleton.globals(Pose(np.concatenate([clip.rotations for clip in clips]), locals_))
+        middles = np.einsum("fji,j->fi", places, weights, dtype=np.float64)
+        places -= middles[:, None].astype(places.dtype)
+        sizes = _size(places, weights)
+        turned = _size(np.diff(places, axis=0), weights)
+        gone = np.linalg.norm(np.diff(middles, axis=0), axis=-1)
+        out, begin = [], 0
+        for clip in clips:
+            end = begin + clip.frames
+            take = cls(clip, bound, weights, places[begin:end], sizes[begin:end])
+            step = turned[begin : end - 1] / take.spread
+            take.steps = (step, np.hypot(step, gone[begin : end - 1] / take.spread))
+            out.append(take)
+            begin = end
+        return out
 
     @cached_property
     def bound(self) -> list[Array]:
@@ -88,7 +101,7 @@ class _Take:
 
     def size(self, ways: Array) -> Array:
         """Return the weighted root mean square `[...]` of ways `[..., J, 3]`."""
-        return np.asarray(np.sqrt(np.einsum("...ji,...ji,j->...", ways, ways, self.weights)))
+        return _size(ways, self.weights)
 
     def centred(self, places: Array) -> Array:
         return np.asarray(places - np.einsum("ji,j->i", places, self.weights))
@@ -144,24 +157,65 @@ class _Take:
         return bool(arms[0] @ arms[1] > 0.966)
 
 
-def stray_poses(clip: Clip, bound: Sequence[Pose] = ()) -> StrayPoses:
-    """Return which of a clip's frames do not belong to it. bound: poses besides the rest pose that a tool may
-    have left there.
+def _size(ways: Array, weights: Array) -> Array:
+    return np.asarray(np.sqrt(np.einsum("...ji,...ji,j->...", ways, ways, weights)))
+
+
+def _weights(skeleton: Skeleton, moved: Sequence[int]) -> Array:
+    """Return how much joints count `[J]` in clips in which some are translated."""
+    lengths = np.linalg.norm(skeleton.rest_translations, axis=-1)
+    inner = np.flatnonzero(skeleton.parents >= 0)
+    lengths[skeleton.parents < 0] = 0
+    # the way from a root on the ground to the hips is no part of the body
+    lengths[moved] *= skeleton.below[moved] <= len(skeleton) / 2
+    np.add.at(lengths, skeleton.parents[inner], lengths[inner].copy())
+    total = float(lengths.sum())
+    return lengths / total if total > 0 else np.full(len(lengths), 1 / len(lengths))
+
+
+def stray_poses(clips: Sequence[Clip], bound: Sequence[Pose] = ()) -> list[StrayPoses]:
+    """Return which of each clip's frames do not belong to it. bound: poses besides the rest pose that a tool
+    may have left there.
     """
-    if clip.frames < FEWEST:
-        return StrayPoses()
-    take = _Take(clip, bound)
+    out = [StrayPoses()] * len(clips)
+    for numbers in _alike(clips):
+        for number, take in zip(numbers, _Take.alike([clips[n] for n in numbers], bound), strict=True):
+            out[number] = _stray(take)
+    return out
+
+
+def _alike(clips: Sequence[Clip]) -> Iterator[list[int]]:
+    """Yield the numbers of clips that can be worked out together, those too short for stray poses left
+    out.
+    """
+    groups: dict[tuple[int, tuple[int, ...]], list[int]] = {}
+    for number, clip in enumerate(clips):
+        if clip.frames >= FEWEST:
+            groups.setdefault((id(clip.skeleton), clip.translated), []).append(number)
+    for numbers in groups.values():
+        some, size = [numbers[0]], clips[numbers[0]].rotations.size
+        for number in numbers[1:]:
+            size += clips[number].rotations.size
+            if size > AT_ONCE:
+                yield some
+                some, size = [], clips[number].rotations.size
+            some.append(number)
+        yield some
+
+
+def _stray(take: _Take) -> StrayPoses:
+    frames = take.clip.frames
     last = _leading(take, True)
     first = _leading(take, False)
-    if first + last > clip.frames - 2:
+    if first + last > frames - 2:
         return StrayPoses()
-    lone = _lone(take, first, clip.frames - last) if clip.fps >= SLOWEST else ()
+    lone = _lone(take, first, frames - last) if take.clip.fps >= SLOWEST else ()
     return StrayPoses(first, last, lone)
 
 
 def is_bind_pose(clip: Clip) -> bool:
     """Whether a clip's first frame is the rest pose, a T- or an A-pose."""
-    return bool(np.isfinite(_Take(clip, ()).factor(0)))
+    return bool(np.isfinite(_Take.alike([clip], ())[0].factor(0)))
 
 
 def _leading(take: _Take, backwards: bool) -> int:
@@ -172,11 +226,13 @@ def _leading(take: _Take, backwards: bool) -> int:
 
 
 def _run(take: _Take, steps: Array, way: slice, fps: float, frames: int) -> int:
-    count = len(steps)
+    count, numbers = len(steps), steps.tolist()  # of a few numbers Python finds the largest sooner
     held = 0  # steps of a pose that is held
     most = min(round(HOLD * fps), frames // 4)
     while (
-        held < most and held + 1 < count and steps[held] < max(STILL, 0.02 * steps[held + 1 : held + 3].max())
+        held < most
+        and held + 1 < count
+        and numbers[held] < max(STILL, 0.02 * max(numbers[held + 1 : held + 3]))
     ):
         held += 1
     window = max(3, round(AFTER * fps))
@@ -184,24 +240,27 @@ def _run(take: _Take, steps: Array, way: slice, fps: float, frames: int) -> int:
     for start in dict.fromkeys((held, 0)):
         for length in range(min(longest, count - 1 - start), 0, -1):
             end = start + length
-            peak = float(steps[start:end].max())
+            peak = max(numbers[start:end])
             if peak < VISIBLE:
                 continue
-            following = steps[end : end + window]
-            after = max(STILL, float(following.max()))
+            following = numbers[end : end + window]
+            after = max(STILL, *following)
             if peak < OWN * after:
                 continue
             own = float(np.quantile(steps[end:], 0.95)) if count - end > 8 else 0.0
             # Either much quicker than what follows, or broken off as nothing after it is.
-            smooth = max(STILL, float(np.abs(np.diff(following)).max(initial=0)))
-            next_ones = max(STILL, float(following[:3].max()))
-            odds = max(peak / after, BROKEN * (peak - float(steps[end])) / smooth, SOON * peak / next_ones)
+            smooth = max((STILL, *(abs(b - a) for a, b in pairwise(following))))
+            next_ones = max(STILL, *following[:3])
+            odds = max(peak / after, BROKEN * (peak - numbers[end]) / smooth, SOON * peak / next_ones)
             if odds < (LIKENESS[0][1] if peak > OWN * own else CERTAIN):
                 continue
             # A ramp runs at one speed from its first frame on and stops short; its last step may be a part.
-            if steps[end - 1] < max(min(2.5 * after, 0.7 * peak), 0.03 * peak) or steps[start] < 0.7 * peak:
+            if (
+                numbers[end - 1] < max(min(2.5 * after, 0.7 * peak), 0.03 * peak)
+                or numbers[start] < 0.7 * peak
+            ):
                 continue
-            if length > 2 and steps[start : end - 1].min() < 0.7 * peak:
+            if length > 2 and min(numbers[start : end - 1]) < 0.7 * peak:
                 continue
             inner = steps[end : count - longest]
             beside = np.maximum(inner[2:], inner[:-2]) if len(inner) > 2 else np.zeros(0)

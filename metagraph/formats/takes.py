@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.formats.stray_poses import stray_poses
+from metagraph.formats.stray_poses import StrayPoses, stray_poses
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip, Repair
 from metagraph.motion.skeleton import Pose
@@ -78,8 +78,12 @@ def repaired(clip: Clip, repair: Repair | None) -> Clip:
     """Return the clip saying that a repair was made, or was not."""
     if repair is None:
         return clip
-    note = repair.words if repair.made else f"left as it is in the file, without this: {repair.words}"
-    return replace(clip, notes=(*clip.notes, note), repairs=(*clip.repairs, repair))
+    return replace(clip, notes=(*clip.notes, noted(repair)), repairs=(*clip.repairs, repair))
+
+
+def noted(repair: Repair) -> str:
+    """Return the note of a repair that was made, or was not."""
+    return repair.words if repair.made else f"left as it is in the file, without this: {repair.words}"
 
 
 def frame_rate(keys: Sequence[Array], wanted: float | None = None) -> float:
@@ -106,13 +110,19 @@ def frame_rate(keys: Sequence[Array], wanted: float | None = None) -> float:
     return rate if even else 60.0 if rate > 45 else 30.0
 
 
-def without_stray_poses(clip: Clip, as_is: Collection[str] = (), bound: Sequence[Pose] = ()) -> Clip:
-    """Drop bind poses that a tool left at the clip's ends, mend frames unlike both their neighbours, and say
+def without_stray_poses(
+    clips: Sequence[Clip], as_is: Collection[str] = (), bound: Sequence[Pose] = ()
+) -> list[Clip]:
+    """Drop bind poses that a tool left at the clips' ends, mend frames unlike both their neighbours, and say
     so; only say so where `as_is` names it.
 
     bound: poses besides the rest pose that a tool may have left there.
     """
-    found = stray_poses(clip, bound)
+    found = stray_poses(clips, bound)
+    return [_without(clip, some, as_is) for clip, some in zip(clips, found, strict=True)]
+
+
+def _without(clip: Clip, found: StrayPoses, as_is: Collection[str]) -> Clip:
     if found.first or found.last:
         made = BIND_POSE not in as_is
         told = [

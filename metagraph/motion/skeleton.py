@@ -120,6 +120,14 @@ class Skeleton:
                 out[parent].append(i)
         return tuple(tuple(c) for c in out)
 
+    @cached_property
+    def below(self) -> Array:
+        """`[J]` how many joints hang on each, it among them."""
+        out = np.ones(len(self))
+        for joint in reversed(np.flatnonzero(self.parents >= 0).tolist()):
+            out[self.parents[joint]] += out[joint]
+        return out
+
     def descendants(self, joint: int) -> tuple[int, ...]:
         """Return `joint` and everything below it."""
         inside = {joint}

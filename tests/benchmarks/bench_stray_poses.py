@@ -275,7 +275,7 @@ def seen(case: Case) -> bool:
 
 
 def found(clip: Clip) -> tuple[int, int, tuple[int, ...]]:
-    poses = stray_poses(clip)
+    [poses] = stray_poses([clip])
     return poses.first, poses.last, poses.lone
 
 

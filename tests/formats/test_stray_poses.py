@@ -80,7 +80,7 @@ def bound(clip: Clip, first: bool = True, last: bool = False) -> Clip:
 def test_a_pose_of_a_frame_or_two_is_no_take_to_clean(takes: list[Clip]) -> None:
     for frames in (1, 2, 3):
         clip = bound(takes[0].trimmed(0, frames))
-        assert without_stray_poses(clip) is clip
+        assert without_stray_poses([clip])[0] is clip
 
 
 def test_a_take_made_of_held_poses_keeps_the_one_at_rest(takes: list[Clip]) -> None:
@@ -102,12 +102,12 @@ def test_fingers_that_shiver_do_not_hide_a_bind_pose(takes: list[Clip]) -> None:
 
 def test_what_is_dropped_at_both_ends_is_one_repair_that_can_be_left_out(takes: list[Clip]) -> None:
     clip = bound(takes[0], last=True)
-    clean = without_stray_poses(clip)
+    [clean] = without_stray_poses([clip])
     assert clean.frames == takes[0].frames
     (repair,) = clean.repairs
     assert repair.name == BIND_POSE and repair.made
     assert "first frame" in repair.words and "last frame" in repair.words and repair.words in clean.notes
-    left = without_stray_poses(clip, (BIND_POSE,))
+    [left] = without_stray_poses([clip], (BIND_POSE,))
     assert left.frames == clip.frames and not left.repairs[0].made and "left as it is" in left.notes[-1]
 
 
@@ -116,14 +116,14 @@ def test_a_lone_frame_is_made_anew_between_its_neighbours_and_can_be_left(takes:
     middle = clip.frames // 2
     one, two = made.whole(clip.trimmed(0, middle)), made.whole(clip.trimmed(middle))
     broken = made.joined(clip, [one, made.row(clip, clip.skeleton.rest, False, middle), two])
-    mended = without_stray_poses(broken)
+    [mended] = without_stray_poses([broken])
     assert mended.frames == broken.frames and [r.name for r in mended.repairs] == [LONE_FRAME]
     assert f"frame {middle + 1} " in mended.repairs[0].words
     near = rotation.angle_between(
         mended.rotations[middle].astype(float), clip.rotations[middle].astype(float)
     )
     assert near.max() < np.radians(10)
-    left = without_stray_poses(broken, (LONE_FRAME,))
+    [left] = without_stray_poses([broken], (LONE_FRAME,))
     np.testing.assert_array_equal(left.rotations, broken.rotations)
 
 
@@ -136,5 +136,5 @@ def test_a_pose_that_the_nodes_hold_counts_as_a_bind_pose_where_the_reader_knows
     axes = rotation.normalize(rng.normal(size=(len(clip.skeleton), 4)) * 0.3 + [0, 0, 0, 1.0])
     odd = replace(rest, rotations=rotation.multiply(rest.rotations, axes))
     take = made.joined(clip, [made.row(clip, odd, False, 0), made.whole(clip)])
-    assert stray_poses(take).first == 0
-    assert stray_poses(take, [odd]).first == 1
+    assert stray_poses([take])[0].first == 0
+    assert stray_poses([take], [odd])[0].first == 1

@@ -264,6 +264,22 @@ def test_a_small_file_cannot_ask_for_the_world(tmp_path: Path, name: str) -> Non
         assert peak(reader, path) < MEMORY + 100 * path.stat().st_size
 
 
+def test_takes_that_are_too_long_together_are_refused_before_any_is_made(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def made(*_: Any) -> None:
+        raise AssertionError("a take was made")
+
+    monkeypatch.setattr("metagraph.formats.gltf_clips._clips", made)
+    body = np.array([0, 21000, *[0, 0, 0, 1] * 2], "<f4").tobytes()
+    document = hostile_documents()["many takes of six hours"]
+    document["buffers"] = [{"byteLength": len(body)}]
+    path = tmp_path / "bomb.glb"
+    path.write_bytes(packed(document, body))
+    with pytest.raises(FileError, match="far more memory than its size warrants"):
+        read_gltf_clips(path)
+
+
 def test_deeply_nested_json_is_refused(tmp_path: Path) -> None:
     for inner in (b"[" * 100_000, b'{"a":' * 100_000):
         check(tmp_path, ".gltf", b'{"asset":{"version":"2.0"},"nodes":' + inner)

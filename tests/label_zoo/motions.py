@@ -79,7 +79,7 @@ def with_bind(clip: Clip, how: Recording) -> Clip:
     if "after" in how.bind:
         turns, places = np.concatenate([turns, pose]), np.concatenate([places, rest[None]])
     turns = rotation.continuous(np.asarray(turns, np.float64))
-    return without_stray_poses(replace(clip, rotations=turns, translations=places, weights=None))
+    return without_stray_poses([replace(clip, rotations=turns, translations=places, weights=None)])[0]
 
 
 def scaled(clip: Clip, size: float) -> Clip:
