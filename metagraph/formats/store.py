@@ -248,8 +248,15 @@ def absolute(project: Project, folder: Path) -> Project:
     file.
     """
 
+    folders: dict[Path, Path] = {}  # many clips lie in one: each is looked for once
+
     def renew(text: str) -> str:
-        return (folder / text).resolve().as_posix()
+        place = folder / text
+        if place.name in ("", "..") or place.is_symlink():
+            return place.resolve().as_posix()
+        if place.parent not in folders:
+            folders[place.parent] = place.parent.resolve()
+        return (folders[place.parent] / place.name).as_posix()
 
     return _with_paths(project, renew)
 

@@ -538,3 +538,29 @@ def test_relative_paths_use_slashes_and_go_up(tmp_path: Path) -> None:
 def test_any_project_is_saved_and_opened(tmp_path: Path, project: Project) -> None:
     save_project(project, tmp_path / PATH)
     assert read_project(tmp_path / PATH) == project
+
+
+def test_paths_are_made_absolute_as_each_by_itself_would_be(tmp_path: Path) -> None:
+    there = tmp_path / "there"
+    (there / "clips").mkdir(parents=True)
+    (there / "clips" / "a.bvh").write_text("")
+    try:
+        (tmp_path / "linked").symlink_to(there, target_is_directory=True)
+        (there / "clips" / "b.bvh").symlink_to(there / "clips" / "a.bvh")
+    except OSError:  # where links are not for everybody
+        pass
+    folder = tmp_path / "linked"
+    names = [
+        "clips/a.bvh",
+        "clips/b.bvh",
+        "clips/../clips/a.bvh",
+        "../x.bvh",
+        "gone/c.bvh",
+        "clips/..",
+        ".",
+        "a/",
+    ]
+    names += [(there / "clips" / "a.bvh").as_posix(), "/top.bvh", "clips//a.bvh", "./clips/a.bvh"]
+    clips = {str(n): ClipEntry(str(n), "", name) for n, name in enumerate(names)}
+    found = absolute(Project(clips=clips), folder)
+    assert [e.path for e in found.clips.values()] == [(folder / n).resolve().as_posix() for n in names]
