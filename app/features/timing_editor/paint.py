@@ -93,10 +93,10 @@ def names(painter: QPainter, look: Look, rows: TrackRows, facts: Facts) -> None:
         if y + line > speed.bottom():
             break
         painter.setPen(QPen(t.kind(facts.action.kind), 1.6, LINES[n % 2]))
-        painter.drawLine(QPointF(10, y + line / 2), QPointF(24, y + line / 2))
+        painter.drawLine(QPointF(10, y + line / 2), QPointF(22, y + line / 2))
         painter.setPen(QColor(t.dim))
         painter.drawText(
-            QRectF(29, y, GUTTER - 31, line), MIDDLE, look.elided(word(curve.name), GUTTER - 31, True)
+            QRectF(26, y, GUTTER - 28, line), MIDDLE, look.elided(word(curve.name), GUTTER - 28, True)
         )
         y += line
 

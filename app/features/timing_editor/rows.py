@@ -10,7 +10,7 @@ from PySide6.QtCore import QRectF
 from app.translation import tr
 
 RULER, TITLE = 22.0, 20.0
-GUTTER = 78.0  # pixels at the left in which rows are named
+GUTTER = 86.0  # pixels at the left in which rows are named
 RIGHT = 12.0  # pixels at the right that stay free
 GAP = 4.0
 
