@@ -28,7 +28,7 @@ WORDS = {
     "nan",
     "inf",
 }  # YAML 1.1 readers take them for values
-ODD = re.compile("[\x7f-\x9f\u2028\u2029\ud800-\udfff\ufeff\ufffe\uffff]")
+ODD = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufeff\ufffe\uffff]")
 
 _BARE = frozenset(("true", "false", "null"))
 # A plain word, which may hold spaces; a number; quoted text; a colon that YAML takes for a part of a word.

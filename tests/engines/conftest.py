@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from metagraph.graph.model import Project
-from tests.engines import csharp_runtime, javascript_runtime
+from tests.engines import csharp_runtime, godot_runtime, javascript_runtime
 from tests.made_once import made_once
 from tests.processes import started
 from tests.thorough import many
@@ -85,3 +85,12 @@ def core(csharp_core: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def rare(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with an export and vectors of what few exports need."""
     return made_once(tmp_path_factory, "rare", javascript_runtime.make_rare)
+
+
+@pytest.fixture
+def game(tmp_path: Path) -> Path:
+    """A Godot project with the addon."""
+    folder = tmp_path / "game"
+    shutil.copytree(godot_runtime.ADDON, folder / "addons")
+    (folder / "project.godot").write_text('config_version=4\n\n[application]\n\nconfig/name="test"\n')
+    return folder

@@ -43,6 +43,7 @@ from metagraph.playback.planner import make_plan
 from metagraph.playback.player import ease, pose_at
 from sample_clips.make.conformance_projects import stick
 from tests.projects import clip, projects
+from tests.thorough import many
 
 ROOT = Path(__file__).resolve().parents[2]
 SCHEMA = ROOT / "metagraph" / "engines" / "metagraph.schema.json"
@@ -267,7 +268,7 @@ def document_of(project: Project, expanded: bool = False) -> bytes:
 
 # Many random projects have no clips yet, and are passed over.
 @settings(
-    max_examples=60,
+    max_examples=many(30, 1000),
     deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.filter_too_much],
 )
@@ -475,7 +476,9 @@ JUNK = st.one_of(
 )
 
 
-@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=many(80, 1000), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 @given(st.randoms(use_true_random=False), JUNK)
 def test_whatever_stands_in_a_field_an_export_is_read_or_refused(
     plain: Path, chance: random.Random, junk: Any

@@ -17,11 +17,9 @@ from metagraph.engines.targets import registry, web, web_tools
 from metagraph.engines.vectors import check_vectors, every_case, write_vectors
 from metagraph.graph.model import Project
 from tests.browsing import MODULES, Browser
-from tests.engines import cpp_program, csharp_runtime, test_runtime_godot
-from tests.engines.test_runtime_godot import game, needs_godot
+from tests.engines import cpp_program, csharp_runtime, godot_runtime
+from tests.engines.godot_runtime import needs_godot
 from tests.formats.test_gltf_packed import BODY, parts, rewritten
-
-__all__ = ["game"]
 
 ROOT = Path(__file__).resolve().parents[2]
 RUNTIMES = ROOT / "metagraph" / "engines" / "runtimes"
@@ -173,7 +171,7 @@ def test_it_plays_the_same_in_cpp_and_a_damaged_one_is_refused(
 
 @needs_godot
 def test_gdscript_says_that_it_does_not_read_it(packed: Path, game: Path) -> None:
-    code, told = test_runtime_godot.godot(game, "addons/metagraph/conformance.gd", packed)
+    code, told = godot_runtime.godot(game, "addons/metagraph/conformance.gd", packed)
     assert code == 1 and "without --compress" in told
 
 

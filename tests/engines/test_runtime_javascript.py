@@ -166,7 +166,7 @@ def test_whatever_is_changed_in_an_export_is_refused_or_plays() -> None:
           } catch (error) { thrown.push(`${path}: ${error.stack.split("\\n").slice(0, 2).join("")}`); }
         }
         say({ names: [...names].sort(), thrown });
-        """.replace("%d", str(many(150, 400))),
+        """.replace("%d", str(many(80, 400))),
         VARIED,
     )
     assert found["names"] == ["MetagraphError", "loaded"]

@@ -13,11 +13,9 @@ from typing import Any
 import pytest
 
 from metagraph.engines.translation.gesture_word_lists import CPP, GODOT, JAVASCRIPT, UNITY, gesture_word_lists
-from tests.engines import cpp_program, csharp_runtime, test_runtime_godot
-from tests.engines.test_runtime_godot import game, needs_godot
+from tests.engines import cpp_program, csharp_runtime, godot_runtime
+from tests.engines.godot_runtime import needs_godot
 from tests.speech.test_text_gestures import SPOKEN, TEXTS
-
-__all__ = ["game"]
 
 ROOT = Path(__file__).resolve().parents[2]
 RUNTIMES = ROOT / "metagraph" / "engines" / "runtimes"
@@ -331,7 +329,7 @@ def test_small_letters_are_pythons_in_cpp(cpp_probe: Path) -> None:
 def test_gdscript_says_what_javascript_says(wanted: Any, sample_export: Path, game: Path) -> None:
     (game / "asked.json").write_text(json.dumps(asked(sample_export)))
     (game / "talk.gd").write_text(GDSCRIPT)
-    code, told = test_runtime_godot.godot(game, "talk.gd")
+    code, told = godot_runtime.godot(game, "talk.gd")
     assert code == 0, told
     same(json.loads(next(line for line in told.splitlines() if line.startswith("OUT "))[4:]), wanted)
 

@@ -20,6 +20,7 @@ from metagraph.graph.conversation_edits import add_conversation
 from metagraph.graph.manual import ANY
 from metagraph.graph.model import LAYERS, Project
 from tests.projects import SKELETON, clip, projects
+from tests.thorough import many
 
 
 def small() -> Project:
@@ -302,7 +303,7 @@ JUNK = st.one_of(
 )
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=many(120, 1000), deadline=None)
 @given(st.randoms(use_true_random=False), JUNK)
 def test_whatever_stands_in_a_field_the_error_says_where(chance: random.Random, junk: Any) -> None:
     data = copy.deepcopy(to_data(small()))
