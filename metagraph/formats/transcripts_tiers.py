@@ -213,6 +213,8 @@ def _segments(out: Collected, tier: _Tier, tiers: Sequence[_Tier]) -> tuple[Segm
             over += 1
             continue
         peak = next((p for p in peaks if start - 1e-3 <= p <= end + 1e-3), None) if kind == "clause" else None
+        if peak is not None:
+            peaks.remove(peak)  # where one clause ends and the next begins it is of one of them
         spoken: Spoken = next(k for k in SPOKEN if k == kind)
         found.append(
             Segment(

@@ -49,6 +49,17 @@ TALK = Conversation(name="A talk", length=8.5, sides=(ANN, BEN))
 
 
 @pytest.mark.parametrize("suffix", WRITERS)
+def test_a_peak_where_one_clause_ends_is_not_the_nexts(tmp_path: Path, suffix: str) -> None:
+    found = (Segment("clause", 0.0, 1.0, 1.0), Segment("clause", 1.0, 2.0, 1.4))
+    WRITERS[suffix](
+        Conversation(name="x", length=2.0, sides=(Side(name="A", segments=found), Side(name="B"))),
+        tmp_path / f"a{suffix}",
+    )
+    back = read_transcript(tmp_path / f"a{suffix}").segments["A"]
+    assert [s.peak for s in back] == [1.0, 1.4]
+
+
+@pytest.mark.parametrize("suffix", WRITERS)
 def test_what_is_written_is_read_back(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"a{suffix}"
     WRITERS[suffix](TALK, path)
