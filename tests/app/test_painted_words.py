@@ -117,7 +117,7 @@ def test_on_a_screen_twice_as_fine_and_in_another_language_words_are_as_whole(sc
         "PYTHONPATH": str(ROOT),
     }
     done = subprocess.run(
-        [sys.executable, "-m", "tests.app.painted_words_twice"],
+        [sys.executable, "-X", "faulthandler", "-m", "tests.app.painted_words_twice"],
         env=environment,
         cwd=ROOT,
         capture_output=True,
