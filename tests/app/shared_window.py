@@ -113,7 +113,10 @@ def close(window: Any) -> None:
 
 
 def empty(window: Any) -> None:
-    """Close what lies over a window, end what goes on in it, and let go of its project."""
+    """Close what lies over a window, end what goes on in it, and let go of its project. It is not painted
+    until it is reset.
+    """
+    window.setUpdatesEnabled(False)
     shell = window.shell
     while QApplication.activePopupWidget() is not None:
         QApplication.activePopupWidget().close()
@@ -191,6 +194,7 @@ def reset(window: Any, stood: Stand | None = None) -> None:
     """Take a window back to how it begins, on a new project. stood: how its docks stood then; where they still
     do, they are not put there once more, which takes as long as all the rest.
     """
+    window.setUpdatesEnabled(False)
     shell = window.shell
     services, session = shell.services, shell.stage.session
     services[Files].closed = ""
@@ -226,6 +230,8 @@ def reset(window: Any, stood: Stand | None = None) -> None:
     QSettings().clear()
     window.setFocus()
     window.refresh()
+    window.setUpdatesEnabled(True)
+    window.repaint()  # Qt drops what became of a window that was shown meanwhile
 
 
 def reset_panels(window: Any) -> None:

@@ -44,7 +44,8 @@ def state_of(window: Any) -> dict[str, str]:
     out: dict[str, str] = {}
     seen: set[int] = set()
     window.shell.actions.settle()
-    for place, part in _parts(window, "window"):
+    parts = _parts(window, "window")
+    for place, part in parts:
         seen.add(id(part))
         if isinstance(part, QWidget):
             out.update((f"{place}.{key}", repr(value)) for key, value in _shown(part))
@@ -53,7 +54,7 @@ def state_of(window: Any) -> dict[str, str]:
             out[f"{place}:{part.objectName() or part.text()}"] = repr(what)
         elif isinstance(part, QTimer) and not part.isSingleShot():
             out[place] = f"{part.isActive()}, every {part.interval()} ms"
-    for place, part in _parts(window, "window"):
+    for place, part in parts:
         out.update(_values(part, place, seen))
     settings = QSettings()
     out["settings"] = repr({k: settings.value(k) for k in settings.allKeys()})
@@ -69,22 +70,28 @@ def differences(before: Mapping[str, str], after: Mapping[str, str]) -> list[str
     ]
 
 
-def _parts(part: QObject, place: str) -> Iterator[tuple[str, QObject]]:
-    """Give an object and what belongs to it, each with its place; siblings of a class are counted. What is in
+def _parts(window: QObject, name: str) -> list[tuple[str, QObject]]:
+    """Return an object and what belongs to it, each with its place; siblings of a class are counted. What is in
     a widget that is hidden is left out: it is filled when it is shown. So is a field's button, which fades.
     """
-    yield place, part
-    if isinstance(part, QLineEdit) or (isinstance(part, QWidget) and part.isHidden() and not part.isWindow()):
-        return
-    count: dict[str, int] = {}
-    for child in part.children():
-        if isinstance(child, QTabBar) and isinstance(part, QMainWindow):
-            continue  # Qt hands them out anew; docks tell which is in front
-        name = child.objectName() or type(child).__name__
-        if name.startswith("qt_scrollarea_") and name.endswith("container"):
-            continue  # scroll bars are set back, and those of what is behind another panel are laid out when it comes to the front
-        n = count[name] = count.get(name, -1) + 1
-        yield from _parts(child, f"{place}/{name}{n or ''}")
+    out, todo = [], [(name, window)]
+    while todo:
+        place, part = todo.pop()
+        out.append((place, part))
+        if isinstance(part, QWidget) and (
+            isinstance(part, QLineEdit) or (part.isHidden() and not part.isWindow())
+        ):
+            continue
+        count: dict[str, int] = {}
+        for child in part.children():
+            if isinstance(child, QTabBar) and isinstance(part, QMainWindow):
+                continue  # Qt hands them out anew; docks tell which is in front
+            name = child.objectName() or type(child).__name__
+            if name.startswith("qt_scrollarea_") and name.endswith("container"):
+                continue  # scroll bars are set back, and those of what is behind another panel are laid out when it comes to the front
+            n = count[name] = count.get(name, -1) + 1
+            todo.append((f"{place}/{name}{n or ''}", child))
+    return out
 
 
 def _shown(w: QWidget) -> Iterator[tuple[str, object]]:
