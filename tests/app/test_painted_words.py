@@ -26,13 +26,13 @@ ROOT = Path(__file__).resolve().parents[2]
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 SIZES = [(1280, 720), (2560, 1440)]
 # A theme changes colours and not where words stand: each is walked through once at each size and once with
-# each kind of names, not all eight times.
+# each kind of names, not all eight times; short names on a large screen last, where there is most room.
 WALKS = [
     ((1280, 720), "dark", "sample"),
-    ((2560, 1440), "light", "sample"),
     ((1280, 720), "light", "studio"),
     ((2560, 1440), "dark", "studio"),
-]
+    ((2560, 1440), "light", "sample"),
+][: many(3, 4)]
 
 
 def studio(project):

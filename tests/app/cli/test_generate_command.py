@@ -8,6 +8,7 @@ import importlib.util
 import json
 import signal
 import zipfile
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -24,9 +25,11 @@ from metagraph.formats.store import open_project, save_project
 from metagraph.generation import train_process
 from metagraph.generation.chunks import GUIDANCE
 from metagraph.generation.features import RATE
+from metagraph.generation.planted import performed as perform
 from metagraph.generation.stored import read_model, write_model
 from metagraph.generation.take_files import find_takes, read_takes
 from metagraph.generation.train_plan import card_of
+from metagraph.graph.conversation import Conversation
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
@@ -42,6 +45,23 @@ def run(capsys: pytest.CaptureFixture[str], *words: object, code: int = 0) -> st
     assert found == code, told.err
     assert "Traceback" not in told.err
     return told.out if code != 1 else told.err
+
+
+@pytest.fixture(scope="module", autouse=True)
+def performed_once() -> Iterator[None]:
+    """The same conversation, performed by the same side, is baked once in this file."""
+    known: dict[tuple[bytes, int, str], Clip] = {}
+
+    def performed(project: Project, conversation: Conversation, side: int) -> Clip:
+        assert project.skeleton is not None
+        key = (msgspec.json.encode(conversation), side, project.skeleton.fingerprint)
+        if key not in known:
+            known[key] = perform(project, conversation, side)
+        return known[key]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("metagraph.generation.planted.performed", performed)
+        yield
 
 
 @pytest.fixture(scope="module")

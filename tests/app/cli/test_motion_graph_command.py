@@ -86,7 +86,8 @@ def test_motion_is_made_for_a_takes_speech_and_for_new_speech(
     folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     given = [str(folder / "takes"), *said(folder)]
-    text = run(capsys, "synthesize", *given, "--take", "2", "-o", str(tmp_path / "out.bvh"))
+    of_take = ["--take", "2", "--search", "greedy"]
+    text = run(capsys, "synthesize", *given, *of_take, "-o", str(tmp_path / "out.bvh"))
     assert "15.0 s with" in text and "of 2 takes" in text
     assert read_clips(tmp_path / "out.bvh")[0].frames == 450
     new = [
@@ -96,8 +97,6 @@ def test_motion_is_made_for_a_takes_speech_and_for_new_speech(
         "2",
         "-s",
         "5",
-        "--search",
-        "greedy",
         "--without",
         "hesitation",
     ]
