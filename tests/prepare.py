@@ -29,6 +29,12 @@ def collected() -> list[str]:
 
 
 if __name__ == "__main__":
-    kernels.make()
-    # What cannot be collected is told by the tests themselves.
-    subprocess.run(collected(), cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
+    # Beside each other: neither waits for the other, and what checks types is done before both are.
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    collecting = subprocess.Popen(collected(), cwd=ROOT, **quiet)
+    try:
+        kernels.make()
+        collecting.wait(timeout=900)  # what cannot be collected is told by the tests themselves
+    finally:
+        collecting.kill()
+        collecting.wait()
