@@ -221,22 +221,21 @@ def _chips(
 ) -> list[Chip]:
     """Return the stances as chips in lines, and the "+" after them."""
     chips: list[Chip] = []
-    x, y = 2.0 * GRID, float(CHIP_TOP)
+    x, y, room = 2.0 * GRID, float(CHIP_TOP), width - 4 * GRID
     for ident, s in graph.stances.items():
         count = sum(len(graph.of(ident, k)) for k in ("gesture", "fidget", "transition"))
         words = hole(project, graph.layer, ident) if widest == CHIP_MAX else ""
-        text = (
-            widths.get(s.name, 7.2 * len(s.name))
-            + widths.get(str(count), 16.0)
-            + (widths.get(words, 7 * len(words)) + 8 if words else 0)
-        )
+        text = widths.get(s.name, 7.2 * len(s.name)) + widths.get(str(count), 16.0)
+        if words:
+            told = text + widths.get(words, 7 * len(words)) + 8
+            words, text = (words, told) if told + BESIDES <= room else ("", text)  # its name goes before
         if widest == TIGHT:
-            many = max(2, int((width - 4 * GRID) // (TIGHTEST + GRID)))
-            w = (width - 4 * GRID - (many - 1) * GRID) / many
+            many = max(2, int(room // (TIGHTEST + GRID)))
+            w = (room - (many - 1) * GRID) / many
         elif widest == BARE:
-            w = min(widths.get(s.name, 7.2 * len(s.name)) + 26, width - 4 * GRID)
+            w = min(widths.get(s.name, 7.2 * len(s.name)) + 26, room)
         else:
-            w = min(max(text + BESIDES, CHIP_MIN), widest + (BESIDES if words else 0))
+            w = min(max(text + BESIDES, CHIP_MIN), widest + (BESIDES if words else 0), room)
         if x + w > width - 2 * GRID and x > 2 * GRID:
             x, y = 2.0 * GRID, y + CHIP_HEIGHT + GRID
         chips.append(Chip(ident, QRectF(x, y, w, CHIP_HEIGHT), s.name, count, words, widest <= BARE))

@@ -162,6 +162,15 @@ def test_the_worst_hole_is_named_first(toy):
     assert hole(project, "arms", one) == "no way out"
 
 
+@pytest.mark.parametrize("wide", [232, 300, 460])
+def test_in_a_narrow_room_no_chip_is_wider_than_it_and_names_go_before_what_is_missing(toy, wide):
+    project = edits.add_stance(toy.project(), "arms", "sits on a chair with arms crossed")
+    layout = arrange(project, "arms", toy.id(project, "rest"), QSizeF(wide, 1400))
+    for chip in layout.chips:
+        assert chip.rect.right() <= layout.size.width() - 10
+        assert not chip.words or len(f"{chip.name}{chip.words}") * 7 < chip.rect.width()
+
+
 def test_chips_count_what_their_stance_holds(toy):
     project = toy.project()
     chips = {c.name: c for c in arrange(project, "arms", toy.id(project, "rest"), QSizeF(1200, 800)).chips}
