@@ -126,6 +126,8 @@ def test_projects_are_canonical(path: Path) -> None:
         'a: "\\ud83d\\ude00"\n',
         "a: " + "[" * 20 + "]" * 20 + "\n",
         "a: " + "[" * 100_000 + "\n",
+        "".join(f"{'  ' * n}a:\n" for n in range(20)) + "  " * 20 + "a: 1\n",
+        'a: {b: "\\x41, c: d}\n',  # words in quotes that do not end
         "a: &b c\n",
         "- 1\n",
     ],
