@@ -1,4 +1,4 @@
-"""Compiles the loops of playback and of the BVH reader, where that is not done yet, and keeps their object
+"""Compiles the loops of playback and of readers of clips, where that is not done yet, and keeps their object
 code, so that other processes need no compiler: python -m metagraph.keep_loops
 
 Ends with 1 where they could not be kept, neither so nor by numba.
@@ -11,11 +11,11 @@ import subprocess
 import sys
 
 from metagraph.compiling import ROOT, Loops, kept_by_numba, there, unkept
-from metagraph.formats import bvh
+from metagraph.formats import bvh, gltf_loops, stray_poses
 from metagraph.playback import loops
 
 BY_NUMBA = "by-numba"
-ALL = (*loops.LOOPS, bvh.COMPILED)
+ALL = (*loops.LOOPS, bvh.COMPILED, stray_poses.COMPILED, gltf_loops.TEXT, gltf_loops.KEYS)
 
 
 def keep() -> bool:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import base64
 import binascii
 import struct
-from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NoReturn
@@ -22,6 +21,8 @@ from numpy.typing import NDArray
 from metagraph.budgets import MOTION_FILE, OUT_OF_PROPORTION, PATH_LENGTH, Allowance
 from metagraph.errors import FileError
 from metagraph.files import read_file
+from metagraph.formats.gltf_columns import WIDTHS, ChannelTable, PlainAccessors, decoded
+from metagraph.formats.gltf_loops import count
 from metagraph.formats.gltf_values import Accessor, Buffer, BufferView, Document, PackedView, Sparse
 from metagraph.formats.meshopt import MeshoptError, unpacked
 from metagraph.wording import told
@@ -31,7 +32,6 @@ Array = NDArray[Any]
 DAMAGED = told("The file is damaged: export it again.")
 _COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _DTYPES = {code: np.dtype(name) for code, name in _COMPONENTS.items()}
-_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 # Required extensions that change nothing we read, or that the reader understands.
 _KNOWN = (
     "KHR_mesh_quantization",
@@ -48,9 +48,6 @@ _REMEDIES = {
     "KHR_draco_mesh_compression": "Export it again without Draco compression, or unpack it with "
     "'gltf-transform copy'.",
 }
-
-
-_decoder = msgspec.json.Decoder(Document)
 
 
 class Gltf:
@@ -195,7 +192,7 @@ class Gltf:
         write to it.
         """
         accessor: Accessor = self.item(self.json.accessors, index, "accessor", where)
-        dtype, width = _DTYPES.get(accessor.component_type), _WIDTHS.get(accessor.type)
+        dtype, width = _DTYPES.get(accessor.component_type), WIDTHS.get(accessor.type)
         if dtype is None or width is None or (width == 16 and accessor.component_type != 5126):
             self.fail(
                 told(
@@ -233,43 +230,21 @@ class Gltf:
         data = self.buffer(0, where)
         return np.frombuffer(data, "<f4", len(data) // 4)
 
-    def starts(self, indices: Sequence[int], count: int, width: int, where: str) -> list[int] | None:
-        """Return where among `numbers` several accessors begin, where each is float32 numbers one after
-        another in the first buffer, `count` elements or more; else None.
+    def starts(self, indices: Array, counts: Array | int, width: int, where: str) -> Array:
+        """Return where among `numbers` accessors begin that are float32 numbers one after another in the
+        first buffer, as `PlainAccessors` does.
         """
-        accessors, views = self.json.accessors, self._plain_views
-        item, last = width * 4, len(self.buffer(0, where)) - count * width * 4
-        starts = []
-        for index in indices:
-            if index >= len(accessors):
-                return None
-            a = accessors[index]
-            if a.component_type != 5126 or a.sparse is not None or a.buffer_view is None:
-                return None
-            if a.buffer_view >= len(views) or _WIDTHS.get(a.type) != width or a.count < count:
-                return None
-            offset, length, stride = views[a.buffer_view]
-            start = offset + a.byte_offset
-            if (stride and stride != item) or start > last or start & 3:
-                return None
-            if a.byte_offset + item * a.count > length:
-                return None
-            starts.append(start // 4)
-        return starts
+        return self.plain.starts(indices, counts, width, len(self.buffer(0, where)))
 
     @cached_property
-    def _plain_views(self) -> list[tuple[int, int, int]]:
-        """Where each view of the first buffer begins, its bytes and its stride; no bytes where it is packed,
-        or of another buffer.
-        """
-        return [
-            (
-                v.byte_offset,
-                -1 if v.buffer or (v.extensions is not None and v.packed is not None) else v.byte_length,
-                v.byte_stride,
-            )
-            for v in self.json.buffer_views
-        ]
+    def channels(self) -> ChannelTable:
+        """What the channels of all animations say."""
+        return ChannelTable.of(self.json.animations)
+
+    @cached_property
+    def plain(self) -> PlainAccessors:
+        """Which accessors are float32 numbers one after another in the first buffer."""
+        return PlainAccessors.of(self.json)
 
     def _strided(self, accessor: Accessor, index: int, dtype: np.dtype[Any], width: int, where: str) -> Array:
         assert accessor.buffer_view is not None
@@ -331,6 +306,7 @@ def open_gltf(path: str | Path) -> Gltf:
 
 def parse_gltf(path: Path, data: bytes) -> Gltf:
     """Open the bytes of a file; `path` names it in errors and is where its buffers lie. Raises FileError."""
+    count(len(data))
     text: bytes | memoryview = data
     binary = None
     if data[:4] == b"glTF":
@@ -345,7 +321,7 @@ def parse_gltf(path: Path, data: bytes) -> Gltf:
             told("Check that the file has the right ending."),
         )
     try:
-        document = _decoder.decode(text)
+        document = decoded(text)
     except (msgspec.MsgspecError, RecursionError, ValueError) as error:
         raise FileError(
             path,

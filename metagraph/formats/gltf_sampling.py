@@ -81,51 +81,37 @@ def slerp(a: Array, b: Array, u: Array) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class KeyGroup:
-    """Channels of a take that share key times. take: which one of several. times: of the keys. joints:
-    theirs; starts: where each one's keys begin among a buffer's numbers.
-    """
-
-    take: int
-    times: Array
-    joints: Sequence[int]
-    starts: Sequence[int]
-
-
-@dataclass(frozen=True, eq=False)
 class KeyTable:
-    """Keys of many channels one after another: a rig has dozens of groups of them, a file dozens of takes.
-    times, takes: of each group. groups, joints, counts `[C]`: of each channel its group, ascending, its
-    joint, and how many keys it has. values `[N, n]`: the keys.
+    """Keys of many channels: a rig has dozens of groups that share key times, a file dozens of takes.
+
+    numbers: the buffer that they lie in, `width` of them for a key. times, takes `[G]`: of each group.
+    groups, joints, starts `[C]`: of each channel its group, ascending, its joint, and where its keys begin.
     """
 
+    numbers: Array
+    width: int
     times: Sequence[Array]
     takes: Array
     groups: Array
     joints: Array
-    counts: Array
-    values: Array
+    starts: Array
 
-    @classmethod
-    def read(cls, numbers: Array, some: Sequence[KeyGroup], width: int) -> KeyTable | None:
-        """Return the keys of groups, of so many numbers each; None for no groups. numbers: a buffer's."""
-        if not some:
-            return None
-        sizes = [len(group.joints) for group in some]
-        counts = np.repeat([len(group.times) for group in some], sizes)
-        starts = np.concatenate([group.starts for group in some])
-        ends = np.cumsum(counts)
-        shape = (len(numbers) - width + 1, width)
-        rows = np.lib.stride_tricks.as_strided(numbers, shape, numbers.strides * 2, writeable=False)
-        places = np.repeat(starts - width * (ends - counts), counts) + width * np.arange(ends[-1])
-        return cls(
-            [group.times for group in some],
-            np.array([group.take for group in some]),
-            np.repeat(np.arange(len(some)), sizes),
-            np.concatenate([group.joints for group in some]),
-            counts,
-            rows[places],
-        )
+    @cached_property
+    def counts(self) -> Array:
+        """`[C]` how many keys each channel has."""
+        return np.array([len(times) for times in self.times])[self.groups]
+
+    @cached_property
+    def values(self) -> Array:
+        """`[N, width]`: the keys, one channel's after another's."""
+        shape = (len(self.numbers) - self.width + 1, self.width)
+        steps = self.numbers.strides * 2
+        rows = np.lib.stride_tricks.as_strided(self.numbers, shape, steps, writeable=False)
+        return np.asarray(rows[self.along(self.starts - self.width * self.begins) + self._places])
+
+    @cached_property
+    def _places(self) -> Array:
+        return self.width * np.arange(int(self.counts.sum()))
 
     def only(self, which: Array) -> KeyTable | None:
         """Return some of the channels `[C]`, None for none."""
@@ -135,8 +121,8 @@ class KeyTable:
             return None
         kept, groups = np.unique(self.groups[which], return_inverse=True)
         times = [self.times[group] for group in kept]
-        values = self.values[self.along(which)]
-        return KeyTable(times, self.takes[kept], groups, self.joints[which], self.counts[which], values)
+        some = self.takes[kept], groups, self.joints[which], self.starts[which]
+        return KeyTable(self.numbers, self.width, times, *some)
 
     @cached_property
     def begins(self) -> Array:
@@ -150,6 +136,10 @@ class KeyTable:
     def most(self, of_keys: Array) -> Array:
         """Return `[C]` the most of each channel's keys `[N, n]`."""
         return np.asarray(np.maximum.reduceat(of_keys.max(-1), self.begins))
+
+    def where(self, which: Any) -> tuple[list[int], list[int]]:
+        """Return takes and joints of some channels."""
+        return self.takes[self.groups[which]].tolist(), self.joints[which].tolist()
 
     def some(self, group: int) -> tuple[slice, slice]:
         """Return which channels, and which keys, are of a group."""

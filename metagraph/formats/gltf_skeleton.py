@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.budgets import JOINTS, NODES
+from metagraph.formats.gltf_columns import PATHS, SCALE
 from metagraph.formats.gltf_file import Gltf
 from metagraph.formats.gltf_values import Node
 from metagraph.formats.takes import UNIT
@@ -23,6 +24,7 @@ from metagraph.wording import told
 Array = NDArray[Any]
 
 _TALL, _TINY = 20.0, 0.05  # metres: nothing that talks is taller or smaller, so the file is in other units
+_PATHS = tuple(PATHS)
 _LARGEST = 1e7  # a translation or scale beyond this is damage
 
 
@@ -283,22 +285,20 @@ def _members(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int]
                 gltf.fail(told("joint {joint} does not exist", joint=joint), told("skin {s}", s=s))
             skinned.add(joint)
     animated: dict[int, list[tuple[str, int]]] = {}
-    for a, animation in enumerate(doc.animations):
-        for channel in animation.channels:
-            node = channel.target.node
-            if node in skinned:
-                continue  # a joint in any case
-            if node is None or channel.target.path not in ("translation", "rotation", "scale"):
-                continue
+    table = gltf.channels
+    free = np.flatnonzero((table.nodes >= 0) & (table.paths <= SCALE))
+    free = free[~np.isin(table.nodes[free], list(skinned))]  # others are joints in any case
+    for n, node, path, output in zip(
+        *(a[free].tolist() for a in (np.arange(len(table.nodes)), table.nodes, table.paths, table.outputs)),
+        strict=True,
+    ):
+        if node >= len(nodes) or output < 0:
+            a = int(np.searchsorted(table.begins, n, "right")) - 1
+            where = f"animation {a} '{doc.animations[a].name}'"
             if node >= len(nodes):
-                gltf.fail(
-                    told("its target node {node} does not exist", node=node),
-                    told("animation {a} '{name}'", a=a, name=animation.name),
-                )
-            sampler = gltf.item(
-                animation.samplers, channel.sampler, "sampler", f"animation {a} '{animation.name}'"
-            )
-            animated.setdefault(node, []).append((channel.target.path, sampler.output))
+                gltf.fail(told("its target node {node} does not exist", node=node), where)
+            gltf.item(doc.animations[a].samplers, int(table.samplers[n]), "sampler", where)
+        animated.setdefault(node, []).append((_PATHS[path], output))
     if skinned:
         moving = {n for n, outputs in animated.items() if _moves(gltf, nodes[n], outputs)}
         members = skinned | moving

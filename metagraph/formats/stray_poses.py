@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.compiling import Loops
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
@@ -43,6 +44,11 @@ SOON = 0.3  # the same for one that only the next three steps fall short of
 STILL = 5e-4  # of the spread: less is noise
 AT_ONCE = 1 << 20  # numbers of rotations of clips that are worked out together
 
+COMPILED = Loops("metagraph.formats.stray_kernels")
+MANY = 500  # frames for which it pays to load the loop, where it is kept
+
+_measured_so_far = [0]  # frames, without the loop
+
 
 @dataclass(frozen=True)
 class StrayPoses:
@@ -69,23 +75,16 @@ class _Take:
         self.steps = (np.zeros(0), np.zeros(0))
 
     @classmethod
-    def alike(cls, clips: Sequence[Clip], bound: Sequence[Pose]) -> list[_Take]:
+    def alike(
+        cls, clips: Sequence[Clip], bound: Sequence[Pose], bones: tuple[Array, Array, Array] | None = None
+    ) -> list[_Take]:
         """Return takes of one skeleton of which the same joints are translated, worked out together."""
         skeleton, moved = clips[0].skeleton, list(clips[0].translated)
-        weights = _weights(skeleton, moved)
-        frames = [clip.frames for clip in clips]
-        locals_ = np.empty((sum(frames), len(skeleton), 3), np.float32)
-        locals_[:] = skeleton.rest_translations
-        locals_[:, moved] = np.concatenate([clip.translations for clip in clips])
-        _, places = skeleton.globals(Pose(np.concatenate([clip.rotations for clip in clips]), locals_))
-        middles = np.einsum("fji,j->fi", places, weights, dtype=np.float64)
-        places -= middles[:, None].astype(places.dtype)
-        sizes = _size(places, weights)
-        turned = _size(np.diff(places, axis=0), weights)
-        gone = np.linalg.norm(np.diff(middles, axis=0), axis=-1)
+        weights = _weights(skeleton, moved, bones)
+        ends = np.cumsum([clip.frames for clip in clips]).tolist()
+        places, sizes, turned, gone = _measured(skeleton, clips, moved, weights)
         out, begin = [], 0
-        for clip in clips:
-            end = begin + clip.frames
+        for clip, end in zip(clips, ends, strict=True):
             take = cls(clip, bound, weights, places[begin:end], sizes[begin:end])
             step = turned[begin : end - 1] / take.spread
             take.steps = (step, np.hypot(step, gone[begin : end - 1] / take.spread))
@@ -161,16 +160,60 @@ def _size(ways: Array, weights: Array) -> Array:
     return np.asarray(np.sqrt(np.einsum("...ji,...ji,j->...", ways, ways, weights)))
 
 
-def _weights(skeleton: Skeleton, moved: Sequence[int]) -> Array:
-    """Return how much joints count `[J]` in clips in which some are translated."""
+def _measured(
+    skeleton: Skeleton, clips: Sequence[Clip], moved: list[int], weights: Array
+) -> tuple[Array, Array, Array, Array]:
+    """Return of clips, one after another, where joints are from their middle `[F, J, 3]`, the sizes of that
+    `[F]` and of the ways to the next frame, and the ways of the middles; those from clip to clip mean
+    nothing. moved: the joints that are translated.
+    """
+    frames, rest = sum(clip.frames for clip in clips), skeleton.rest_translations.astype(np.float32)
+    if COMPILED.now is None and _measured_so_far[0] < MANY:
+        _measured_so_far[0] += frames
+        if _measured_so_far[0] >= MANY:
+            COMPILED.load_kept()
+    if COMPILED.now is not None:
+        out = np.empty((frames, len(skeleton), 3), np.float32), *np.empty((3, frames))
+        begin = 0
+        tree, which = np.array(skeleton.parents, np.int64), np.array(moved)
+        for clip in clips:
+            places, *others = (a[begin : begin + clip.frames] for a in out)
+            COMPILED.now.measure(
+                tree, clip.rotations, clip.translations, which, rest, weights, places, *others
+            )
+            begin += clip.frames
+        return out
+    locals_ = np.empty((frames, len(skeleton), 3), np.float32)
+    locals_[:] = rest
+    locals_[:, moved] = np.concatenate([clip.translations for clip in clips])
+    _, places = skeleton.globals(Pose(np.concatenate([clip.rotations for clip in clips]), locals_))
+    middles = np.einsum("fji,j->fi", places, weights, dtype=np.float64)
+    places -= middles[:, None].astype(places.dtype)
+    turned = _size(np.diff(places, axis=0), weights)
+    return places, _size(places, weights), turned, np.linalg.norm(np.diff(middles, axis=0), axis=-1)
+
+
+def _weights(
+    skeleton: Skeleton, moved: Sequence[int], bones: tuple[Array, Array, Array] | None = None
+) -> Array:
+    """Return how much joints count `[J]` in clips in which some are translated. bones: the skeleton's, where
+    they are known.
+    """
+    own, inner, above = bones or _bones(skeleton)
+    lengths = own.copy()
+    # the way from a root on the ground to the hips is no part of the body
+    lengths[moved] *= skeleton.below[moved] <= len(skeleton) / 2
+    np.add.at(lengths, above, lengths[inner])
+    total = float(lengths.sum())
+    return lengths / total if total > 0 else np.full(len(lengths), 1 / len(lengths))
+
+
+def _bones(skeleton: Skeleton) -> tuple[Array, Array, Array]:
+    """Return how far joints are from their parents `[J]`, which have one, and that."""
     lengths = np.linalg.norm(skeleton.rest_translations, axis=-1)
     inner = np.flatnonzero(skeleton.parents >= 0)
     lengths[skeleton.parents < 0] = 0
-    # the way from a root on the ground to the hips is no part of the body
-    lengths[moved] *= skeleton.below[moved] <= len(skeleton) / 2
-    np.add.at(lengths, skeleton.parents[inner], lengths[inner].copy())
-    total = float(lengths.sum())
-    return lengths / total if total > 0 else np.full(len(lengths), 1 / len(lengths))
+    return lengths, inner, skeleton.parents[inner]
 
 
 def stray_poses(clips: Sequence[Clip], bound: Sequence[Pose] = ()) -> list[StrayPoses]:
@@ -178,8 +221,13 @@ def stray_poses(clips: Sequence[Clip], bound: Sequence[Pose] = ()) -> list[Stray
     may have left there.
     """
     out = [StrayPoses()] * len(clips)
+    bones: dict[int, tuple[Array, Array, Array]] = {}
     for numbers in _alike(clips):
-        for number, take in zip(numbers, _Take.alike([clips[n] for n in numbers], bound), strict=True):
+        some = [clips[n] for n in numbers]
+        skeleton = some[0].skeleton
+        if id(skeleton) not in bones:
+            bones[id(skeleton)] = _bones(skeleton)
+        for number, take in zip(numbers, _Take.alike(some, bound, bones[id(skeleton)]), strict=True):
             out[number] = _stray(take)
     return out
 
@@ -247,12 +295,14 @@ def _run(take: _Take, steps: Array, way: slice, fps: float, frames: int) -> int:
             after = max(STILL, *following)
             if peak < OWN * after:
                 continue
-            own = float(np.quantile(steps[end:], 0.95)) if count - end > 8 else 0.0
             # Either much quicker than what follows, or broken off as nothing after it is.
             smooth = max((STILL, *(abs(b - a) for a, b in pairwise(following))))
             next_ones = max(STILL, *following[:3])
             odds = max(peak / after, BROKEN * (peak - numbers[end]) / smooth, SOON * peak / next_ones)
-            if odds < (LIKENESS[0][1] if peak > OWN * own else CERTAIN):
+            if odds < LIKENESS[0][1]:
+                continue
+            own = _usual(numbers[end:]) if odds < CERTAIN and count - end > 8 else 0.0
+            if odds < CERTAIN and peak <= OWN * own:
                 continue
             # A ramp runs at one speed from its first frame on and stops short; its last step may be a part.
             if (
@@ -272,6 +322,15 @@ def _run(take: _Take, steps: Array, way: slice, fps: float, frames: int) -> int:
             if length == 1 or _straight(take.clip, np.arange(frames)[way][start : end + 1]):
                 return end
     return 0
+
+
+def _usual(steps: list[float]) -> float:
+    """Return the step that one in twenty is above, as `numpy.quantile` has it."""
+    place = 0.95 * (len(steps) - 1)
+    low = int(place)
+    part, some = place - low, sorted(steps)
+    a, b = some[low], some[min(low + 1, len(some) - 1)]
+    return a + (b - a) * part if part < 0.5 else b - (b - a) * (1 - part)
 
 
 def _straight(clip: Clip, frames: Array) -> bool:
@@ -299,13 +358,14 @@ def _lone(take: _Take, first: int, stop: int) -> tuple[int, ...]:
     steps = take.steps[0]
     if stop - first < 5:
         return ()
-    inside = np.arange(first + 1, stop - 1)
-    both = np.minimum(steps[inside - 1], steps[inside])
-    skipping = take.places[inside + 1] - take.places[inside - 1]
-    over = take.size(skipping) / take.spread
+    both = np.minimum(steps[first : stop - 2], steps[first + 1 : stop - 1])
+    far = np.flatnonzero(both >= LONE_STEP) + first + 1
+    if not len(far):
+        return ()
+    over = take.size(take.places[far + 1] - take.places[far - 1]) / take.spread
     out: list[int] = []
-    for frame, step, across in zip(inside.tolist(), both.tolist(), over.tolist(), strict=True):
-        if step < LONE_STEP or step < LONE_BOUND * across:
+    for frame, step, across in zip(far.tolist(), both[far - first - 1].tolist(), over.tolist(), strict=True):
+        if step < LONE_BOUND * across:
             continue
         around = np.concatenate(
             [steps[max(first, frame - 4) : frame - 1], steps[frame + 1 : min(frame + 4, stop - 1)]]

@@ -93,7 +93,10 @@ def frame_rate(keys: Sequence[Array], wanted: float | None = None) -> float:
     wanted: a rate to prefer when the keys lie on it.
     """
     start = min((float(k[0]) for k in keys if len(k)), default=0.0)
-    every = np.unique(np.concatenate([np.asarray(k, float) for k in keys] or [np.zeros(1)])) - start
+    every = np.concatenate([np.asarray(k, float) for k in keys] or [np.zeros(1)])
+    if not (every[1:] > every[:-1]).all():
+        every = np.unique(every)
+    every = every - start
     if len(every) < 2:
         return wanted or 30.0
     slack = 1e-3 + 2e-7 * float(every[-1] + abs(start)) * 30

@@ -2,10 +2,10 @@
 [files] [playing] [synthesis] [exporting] [windows] [drawing]
 
 Words choose groups of rows. Peers are used where they can be imported: pip install upc-pymotion bvh bvhio
-pygltflib orjson; what is not there is said. Each round runs both sides of a row once, one after the other;
-medians, and the ratio of the medians: above 1 we are faster. Import and compile times are counted on both
-sides or on neither. ozz-animation is no package: it is built from its source by hand (-O3 -march=native), and
-its rows stand in the README of this folder.
+pygltflib cmeel-assimp orjson; what is not there is said. Each round runs both sides of a row once, one after
+the other; medians, and the ratio of the medians: above 1 we are faster. Import and compile times are counted
+on both sides or on neither. ozz-animation is no package: it is built from its source by hand (-O3
+-march=native), and its rows stand in the README of this folder.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from bench_preview import crowd as standing  # noqa: E402
 
 from metagraph.engines.export_document import to_document  # noqa: E402
 from metagraph.formats.bvh import read_bvh  # noqa: E402
-from metagraph.formats.gltf import read_character, write_glb  # noqa: E402
+from metagraph.formats.gltf import read_character, read_gltf_clips, write_glb  # noqa: E402
 from metagraph.formats.store import open_project  # noqa: E402
 from metagraph.playback.crowd import Crowd  # noqa: E402
 from metagraph.playback.planner import make_plan  # noqa: E402
@@ -103,6 +103,7 @@ def files(folder: Path) -> Iterator[Row]:
     yield Row(
         "the same, a process from start to end", "imports and reading", "upc-pymotion", "the same", own, other
     )
+    bench_formats.load_loops()
     clip, some = bench_formats.invented(96), []
     for i in range(60):
         some.append(folder / f"clip{i}.glb")
@@ -111,6 +112,15 @@ def files(folder: Path) -> Iterator[Row]:
     for name, reader in [*peers, limit]:
         peer, _, holds = name.partition(" + ")
         yield Row("GLB, 60 files of one clip, a clip", "clips, resampled", peer, holds, ours[1], reader, 60)
+    for name in ("kaykit-rogue", "sumerian-hosts"):
+        real = sorted((bench_formats.DATA / name).rglob("*.glb"))
+        count = sum(len(read_gltf_clips(p)) for p in real)
+        limit, ours, *peers = bench_formats.glb_readers(real).items()
+        for reader_name, reader in [*peers, limit] if real else ():
+            peer, _, holds = reader_name.partition(" + ")
+            own_holds = "clips, resampled, checks; no mesh"
+            task = f"GLB, {count} clips of {name}, a clip"
+            yield Row(task, own_holds, peer, holds, ours[1], reader, count)
 
 
 def playing(count: int) -> Iterator[Row]:
