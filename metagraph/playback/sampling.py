@@ -454,12 +454,10 @@ class Performer:
         if len(left) == 1:
             return left[0]
         neutral = mood.neutral
-        weights = {
-            a.id: a.likelihood
-            / max(self._count(a.id, now), 1.0)
-            * (1.0 if neutral else favour(mood, a.tags, vigour(self.project, a)))
-            for a in left
-        }
+        weights: dict[str, float] = {}
+        for a in left:
+            favoured = 1.0 if neutral else favour(mood, a.tags, vigour(self.project, a))
+            weights[a.id] = a.likelihood / max(self._count(a.id, now), 1.0) * favoured
         if not any(w > 0 for w in weights.values()):
             return left[0]
         chosen = pick(self.seed, key, "action", weights)

@@ -841,8 +841,8 @@ inline Ref<Action> Performer::_draw(
     bool neutral = mood->neutral();
     Map<std::string, double> weights;
     for (const auto& a : left) {
-        weights[a->id] = a->likelihood / std::max(this->_count(a->id, now), 1.0)
-            * (neutral ? 1.0 : mood::favour(mood, a->tags, vigour::vigour(this->project, a)));
+        double favoured = neutral ? 1.0 : mood::favour(mood, a->tags, vigour::vigour(this->project, a));
+        weights[a->id] = a->likelihood / std::max(this->_count(a->id, now), 1.0) * favoured;
     }
     bool is_any = false;
     for (const auto& w : lang::values(weights)) {
@@ -856,9 +856,9 @@ inline Ref<Action> Performer::_draw(
     }
     std::string chosen = choice::pick(this->seed, key, "action", weights);
     Ref<Action> first;
-    for (const auto& a : left) {
-        if (a->id == chosen) {
-            first = a;
+    for (const auto& a2 : left) {
+        if (a2->id == chosen) {
+            first = a2;
             break;
         }
     }

@@ -544,11 +544,11 @@ export class Performer {
       return left[0];
     }
     const neutral = mood.neutral;
-    const weights = new Map(left.map((a) =>
-      [
-        a.id,
-        a.likelihood / Math.max(this.count(a.id, now), 1) * (neutral ? 1 : favour(mood, a.tags, vigour(this.project, a))),
-      ]));
+    const weights = new Map();
+    for (const a of left) {
+      const favoured = neutral ? 1 : favour(mood, a.tags, vigour(this.project, a));
+      weights.set(a.id, a.likelihood / Math.max(this.count(a.id, now), 1) * favoured);
+    }
     if (![...weights.values()].some((w) => w > 0)) {
       return left[0];
     }

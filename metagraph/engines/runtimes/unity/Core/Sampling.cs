@@ -687,11 +687,12 @@ namespace Metagraph
                 return left[0];
             }
             var neutral = mood.Neutral;
-            var weights = left.Select(a => (
-                a.Id,
-                a.Likelihood / Math.Max(Count(a.Id, now), 1.0)
-                    * (neutral ? 1.0 : MoodRules.Favour(mood, a.Tags, VigourRules.Vigour(Project, a)))
-            )).ToMap();
+            var weights = new Dictionary<string, double>();
+            foreach (GraphAction a in left)
+            {
+                var favoured = neutral ? 1.0 : MoodRules.Favour(mood, a.Tags, VigourRules.Vigour(Project, a));
+                weights[a.Id] = a.Likelihood / Math.Max(Count(a.Id, now), 1.0) * favoured;
+            }
             if (!weights.Values.ToList().Any(w => w > 0))
             {
                 return left[0];

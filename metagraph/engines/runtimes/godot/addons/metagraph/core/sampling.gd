@@ -526,8 +526,8 @@ class Performer:
 		var neutral = mood.neutral
 		var weights = {}
 		for a in left:
-			weights[a.id] = a.likelihood / Util.most(self._count(a.id, now), 1.0)
-				* (1.0 if neutral else Mood.favour(mood, a.tags, Vigour.vigour(self.project, a)))
+			var favoured = 1.0 if neutral else Mood.favour(mood, a.tags, Vigour.vigour(self.project, a))
+			weights[a.id] = a.likelihood / Util.most(self._count(a.id, now), 1.0) * favoured
 		var is_any = false
 		for w in weights.values():
 			if w > 0:
@@ -537,9 +537,9 @@ class Performer:
 			return left[0]
 		var chosen = Choice.pick(self.seed_, key, "action", weights)
 		var first = null
-		for a in left:
-			if a.id == chosen:
-				first = a
+		for a2 in left:
+			if a2.id == chosen:
+				first = a2
 				break
 		return first
 
