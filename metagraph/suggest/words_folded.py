@@ -66,15 +66,20 @@ def _bases(cluster: str) -> str:
 
 def plain(text: str) -> str:
     """Return a phrase's letters alone: folded, small, without blanks, hyphens or apostrophes."""
+    if text.isascii() and text.isalnum():
+        return text.lower()
     return "".join(c for c in folded(text)[0].lower() if c.isalnum() or c == "ー")
 
 
+@lru_cache(maxsize=4096)  # the words of a language's phrases come in every order
 def spellings(phrase: str) -> frozenset[str]:
     """Return the ways in which a phrase may stand in a name, each as `plain` has it."""
-    out = {plain(phrase)}
+    kana = plain(phrase)
+    out = {kana}
+    if phrase.isascii():
+        return frozenset(out) if kana else frozenset()
     if any(ord(c) in _UMLAUTS for c in phrase):
         out.add(plain(phrase.translate(_UMLAUTS)))
-    kana = plain(phrase)
     if kana and all("ぁ" <= c <= "ゖ" or c == "ー" for c in kana):
         out |= romaji(kana)
     return frozenset(s for s in out if s)
