@@ -97,6 +97,21 @@ def compile_all() -> None:
     graph = build(states_of(takes.clips))
     synthesise(graph, takes, Wish(4.0, ()), "new")
     PathExtender(driver_graph(graph, heard(graph.states, [() for _ in takes.clips]))).step()
+    compile_searches()
+
+
+def compile_searches() -> None:
+    """Search with all that motion may be asked to have."""
+    from metagraph.synthesis.graph import build
+    from tests.synthesis.test_blocks import LIMIT, made
+    from tests.synthesis.test_iconic_words import (
+        test_motion_comes_from_around_the_word_in_the_take,
+        test_words_that_must_be_met_are_and_are_given_up_last_but_one,
+    )
+
+    build(made(200), LIMIT, most=7)
+    test_motion_comes_from_around_the_word_in_the_take()
+    test_words_that_must_be_met_are_and_are_given_up_last_but_one()
 
 
 if __name__ == "__main__":

@@ -18,11 +18,13 @@ import msgspec
 import pytest
 
 from app.cli.parser import main
+from metagraph.engines import vectors
 from metagraph.formats.language_files import read_pack
 from metagraph.formats.store import from_text
 from metagraph.study.perceive.perceive_plan import PerceivePlan
 from metagraph.study.perceive.perceive_plan import from_text as perceive_from_text
 from metagraph.study.study_plan import from_text as study_from_text
+from tests.thorough import many
 
 # Papers are drawn by Qt; whoever opens windows later in this process needs its application.
 pytestmark = pytest.mark.usefixtures("qapp")
@@ -97,8 +99,10 @@ RUN: set[str] = set()  # commands that have run, without the slashes that folder
 @pytest.mark.gl
 @pytest.mark.parametrize(("page", "n"), of("sh"))
 def test_commands_in_the_pages_run(
-    page: Path, n: int, samples: Path, capsys: pytest.CaptureFixture[str]
+    page: Path, n: int, samples: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    every = vectors.every_case
+    monkeypatch.setattr(vectors, "every_case", lambda project: [*every(project)][:: many(40, 1)])
     lines = blocks(page)[n][1].splitlines()
     for line in lines:
         plain = line.replace("/ ", " ").rstrip("/")

@@ -17,9 +17,10 @@ from app.project.jobs import Jobs
 from metagraph.graph import edits
 from tests.app.every_dialog import DIALOGS, opened
 from tests.app.handles import Handles
+from tests.thorough import many
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
-TIMES = 2
+TIMES = many(1, 2)
 
 
 def settled() -> None:

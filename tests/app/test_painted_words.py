@@ -26,13 +26,13 @@ ROOT = Path(__file__).resolve().parents[2]
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 SIZES = [(1280, 720), (2560, 1440)]
 # A theme changes colours and not where words stand: each is walked through once at each size and once with
-# each kind of names, not all eight times; short names on a large screen last, where there is most room.
+# each kind of names, not all eight times: long names on a small screen and short ones on a large one.
 WALKS = [
-    ((1280, 720), "dark", "sample"),
     ((1280, 720), "light", "studio"),
-    ((2560, 1440), "dark", "studio"),
-    ((2560, 1440), "light", "sample"),
-][: many(3, 4)]
+    ((2560, 1440), "dark", "sample"),
+    ((1280, 720), "dark", "sample"),
+    ((2560, 1440), "light", "studio"),
+][: many(2, 4)]
 
 
 def studio(project):
@@ -68,7 +68,7 @@ def told(found: dict[str, list[str]]) -> str:
     return "\n".join(f"{k}: {line}" for k, lines in found.items() for line in lines)
 
 
-@pytest.mark.parametrize("size", SIZES, ids=str)
+@pytest.mark.parametrize("size", SIZES[: many(1, 2)], ids=str)
 def test_panels_that_are_opened_keep_to_it_too(drive, sample, size):
     drive.document.load(edits.update_each(sample, {}), None)
     drive.files.opened.emit()

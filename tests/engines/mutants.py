@@ -20,6 +20,25 @@ SHIPPED = sorted(p.parent for p in Path(engines.__file__).with_name("conformance
 # What every runtime plays: of two long scripts drawn at random, one is enough unless asked to be thorough.
 PLAYED = [folder for folder in SHIPPED if THOROUGH or folder.name != "random2"]
 
+# The kinds of cases are all among stick's, which every runtime plays whole. Of what these have, each runtime
+# plays a part of its own, and they together all; each all where asked to be thorough.
+SHARED = ("random1", "varied")
+RUNTIMES = ("javascript", "csharp", "cpp", "godot")
+
+
+def share_of(folder: Path, runtime: str, scratch: Path) -> Path:
+    """Return the folder of vectors that a runtime plays: a shipped one, or one made in `scratch`."""
+    if THOROUGH or folder.name not in SHARED:
+        return folder
+    target = scratch / folder.name
+    shutil.copytree(folder, target)
+    every = _read(folder)
+    cases = every["cases"][RUNTIMES.index(runtime) :: len(RUNTIMES)]
+    (target / "vectors.json").write_text(
+        json.dumps({**every, "cases": cases}, ensure_ascii=False), encoding="utf-8"
+    )
+    return target
+
 
 def broken(path: Path, rule: str, instead: str) -> str:
     """Return a source with a rule changed, which must stand in it once."""

@@ -58,8 +58,8 @@ REAL = [
 ]
 # Spaces in names, other letters, neither fingers nor toes; the other characters are no other to an export.
 ZOO = ["biped", "japanese", "bare"]
-# Each skeleton has so many-th case, from another on: each case is tried on one of the eight.
-SHARE = many(8, 3)
+# Each skeleton has so many-th case, from another on: every second case is tried on one of the eight.
+SHARE = many(16, 3)
 
 
 @pytest.mark.parametrize(("folder", "pattern"), REAL)

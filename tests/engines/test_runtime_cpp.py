@@ -22,7 +22,7 @@ from metagraph.playback.extend_performance import hear, since
 from metagraph.playback.life.voice import voice_from_text
 from metagraph.playback.plan import Plan
 from tests.engines.cpp_program import MUTANTS, needs_compiler, ran
-from tests.engines.mutants import PLAYED, folders_to_try
+from tests.engines.mutants import PLAYED, folders_to_try, share_of
 from tests.engines.requests_asked import ASKED, SENSELESS
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -41,8 +41,8 @@ def probe(cpp_probe: Path) -> Path:
 
 
 @pytest.mark.parametrize("folder", PLAYED, ids=lambda folder: folder.name)
-def test_the_runtime_agrees_with_the_vectors(probe: Path, folder: Path) -> None:
-    done = ran(probe, "conformance", folder)
+def test_the_runtime_agrees_with_the_vectors(probe: Path, folder: Path, tmp_path: Path) -> None:
+    done = ran(probe, "conformance", share_of(folder, "cpp", tmp_path))
     assert done.returncode == 0, done.stdout[:2000] + done.stderr[:2000]
 
 

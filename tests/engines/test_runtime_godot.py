@@ -17,13 +17,14 @@ import pytest
 from metagraph.engines.targets import registry
 from metagraph.graph.model import Project
 from tests.engines.godot_runtime import ADDON, PERFORM, STICK, godot, needs_godot, run
-from tests.engines.mutants import PLAYED, broken, folders_to_try
+from tests.engines.mutants import PLAYED, broken, folders_to_try, share_of
 from tests.thorough import many, some
 
 
 @needs_godot
 @pytest.mark.parametrize("folder", PLAYED, ids=lambda folder: folder.name)
-def test_shipped_vectors_pass_on_the_engine(game: Path, folder: Path) -> None:
+def test_shipped_vectors_pass_on_the_engine(game: Path, folder: Path, tmp_path: Path) -> None:
+    folder = share_of(folder, "godot", tmp_path)
     code, told = godot(game, "addons/metagraph/conformance.gd", folder)
     assert code == 0, told
     cases = json.loads((folder / "vectors.json").read_bytes())["cases"]

@@ -84,7 +84,7 @@ def test_shipped_vectors_pass_in_godot_4(tmp_path: Path, part: int, browse: Brow
     for folder in folders:
         files |= {f"vectors/{folder.name}/{path.name}": path.read_bytes() for path in folder.iterdir()}
         vectors = json.loads((folder / "vectors.json").read_bytes())
-        vectors["cases"] = some(vectors["cases"], 3)  # Godot 3 plays all, by the same sources
+        vectors["cases"] = some(vectors["cases"], 5)  # Godot 3 plays more, by the same sources
         cases += len(vectors["cases"])
         files[f"vectors/{folder.name}/vectors.json"] = json.dumps(vectors).encode()
     for path in ENGINE.glob("index.*"):

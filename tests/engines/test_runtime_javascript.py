@@ -9,7 +9,7 @@ import pytest
 
 from metagraph.playback.life.voice import voice_from_text
 from tests.engines.javascript_runtime import STICK, VARIED, changed, conformance, needs_node, run
-from tests.engines.mutants import PLAYED
+from tests.engines.mutants import PLAYED, share_of
 from tests.thorough import many
 
 pytestmark = needs_node
@@ -19,8 +19,8 @@ pytestmark = needs_node
 
 
 @pytest.mark.parametrize("folder", PLAYED, ids=lambda folder: folder.name)
-def test_it_does_what_the_shipped_vectors_say(folder: Path) -> None:
-    done = conformance(folder)
+def test_it_does_what_the_shipped_vectors_say(folder: Path, tmp_path: Path) -> None:
+    done = conformance(share_of(folder, "javascript", tmp_path))
     assert done.returncode == 0, done.stdout + done.stderr
 
 

@@ -21,7 +21,7 @@ from metagraph.playback.life.voice import voice_from_text
 from metagraph.playback.plan import Plan
 from metagraph.playback.player import pose_at
 from tests.engines.csharp_runtime import RUNTIME, STICK, Host, compiled, mono, needs_mono
-from tests.engines.mutants import PLAYED
+from tests.engines.mutants import PLAYED, share_of
 from tests.engines.requests_asked import ASKED, SENSELESS
 
 pytestmark = needs_mono
@@ -182,8 +182,8 @@ public static class Probe
 
 
 @pytest.mark.parametrize("folder", PLAYED, ids=lambda folder: folder.name)
-def test_the_runtime_agrees_with_the_vectors(conformance: Path, folder: Path) -> None:
-    done = mono(conformance, folder)
+def test_the_runtime_agrees_with_the_vectors(conformance: Path, folder: Path, tmp_path: Path) -> None:
+    done = mono(conformance, share_of(folder, "csharp", tmp_path))
     assert done.returncode == 0, done.stdout[:2000] + done.stderr[:2000]
 
 

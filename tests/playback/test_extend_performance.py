@@ -125,7 +125,7 @@ def test_what_was_told_on_the_way_replays_as_it_was_heard(asks: list[Any], told:
         ]
 
 
-@settings(max_examples=8)
+@settings(max_examples=thorough.many(4, 8))
 @given(some_asks, st.sampled_from([0.0, 60.0]))
 def test_forgetting_the_past_changes_nothing_to_come(asks: list[Any], memory: float) -> None:
     project = replace(_SAMPLE[0], settings=replace(_SAMPLE[0].settings, memory=memory))

@@ -24,6 +24,7 @@ from tests.engines.stranger.comparing import NAMES, SHIPPED, Vectors, compared, 
 from tests.engines.stranger.drawing import key32, rests_of
 from tests.engines.stranger.planning import can_plan, cues_of
 from tests.engines.test_real_exports import project_of
+from tests.thorough import some
 
 # What must be among the poses that were compared, so that no rule goes unseen.
 SEEN = {
@@ -42,7 +43,8 @@ def shipped() -> dict[str, Vectors]:
 def test_the_pages_words_pose_a_character_as_its_vectors_say(shipped: dict[str, Vectors], name: str) -> None:
     character, vectors = shipped[name]
     seen: set[str] = set()
-    for plays, off in compared(character, vectors):
+    part = {**vectors, "cases": some(vectors["cases"], 2 if name in ("stick", "varied") else 1)}
+    for plays, off in compared(character, part):
         seen |= plays
         assert {kind: off[kind] <= vectors["tolerance"][kind] for kind in off} == dict.fromkeys(off, True), (
             plays,

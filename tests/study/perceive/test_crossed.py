@@ -102,19 +102,19 @@ def test_what_has_no_end_or_says_the_same_twice_has_no_model() -> None:
 def test_of_studies_without_a_preference_about_one_in_twenty_finds_one(
     people: int, items: int, spread: tuple[float, float]
 ) -> None:
-    studies, most = many(60, 120), many(8, 13)
+    studies, most = many(30, 120), many(5, 13)
     found = [fitted(drawn(seed, people, items, 0.0, spread, 0.3)) for seed in range(studies)]
     hits = sum(f is not None and f.p["preference"] < 0.05 for f in found)
-    assert hits <= most, hits  # of 60 or 120 with 5 % each, more are less likely than 1 in 100
+    assert hits <= most, hits  # of 30 or 120 with 5 % each, more are less likely than 1 in 100
 
 
 def test_intervals_hold_what_was_planted_about_as_often_as_they_say() -> None:
-    studies, planted = many(40, 80), 0.7
+    studies, planted = many(20, 80), 0.7
     held = 0
     for seed in range(studies):
         found = fitted(drawn(seed + 500, 24, 10, planted, (0.5, 0.3), -0.4))
         held += found is not None and found.effects["preference"].holds(planted)
-    assert held >= many(33, 69), held  # of 40 or 80 with 95 % each, fewer are less likely than 1 in 500
+    assert held >= many(16, 69), held  # of 20 or 80 with 95 % each, fewer are less likely than 1 in 300
 
 
 def test_people_who_differ_make_an_interval_wider_than_as_many_independent_answers_would() -> None:

@@ -14,6 +14,7 @@ from metagraph.study.perceive.perceive_power import (
     people_needed,
     shown,
 )
+from tests import thorough
 
 
 def test_what_is_expected_is_the_share_of_all_together() -> None:
@@ -25,7 +26,7 @@ def test_what_is_expected_is_the_share_of_all_together() -> None:
 
 
 def test_where_nobody_and_nothing_differs_simulated_power_is_the_exact_one() -> None:
-    found = shown(Expected(0.65, 0, 0), 10, 10, 10, studies=120)
+    found = shown(Expected(0.65, 0, 0), 10, 10, 10, studies=thorough.many(60, 120))
     assert found.low is not None and found.high is not None
     assert found.low - 0.03 < binomial.power(100, 0.65) < found.high + 0.03
 
@@ -39,7 +40,7 @@ def test_people_who_differ_need_more_answers() -> None:
 
 
 def test_the_fewest_people_show_it_as_often_as_is_wanted() -> None:
-    people, found = people_needed(Expected(0.75, 0.3, 0.2), 8, 8, studies=60)
+    people, found = people_needed(Expected(0.75, 0.3, 0.2), 8, 8, studies=thorough.many(30, 60))
     assert people is not None and found is not None and 4 <= people <= 20 and found.value >= 0.8
 
 
