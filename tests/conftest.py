@@ -24,7 +24,7 @@ from metagraph.motion.clip import Clip
 from metagraph.speech import pitch, sound
 from tests import kernels
 from tests.browsing import browse
-from tests.once import heard_once
+from tests.once import heard_once, read_once
 from tests.run_notes import KEY, NOTES
 from tests.thorough import THOROUGH
 
@@ -38,9 +38,10 @@ os.environ["METAGRAPH_LOOP_CACHE"] = ""  # loops are numba's own but where a tes
 os.environ["METAGRAPH_MOTION_CACHE"] = str(ROOT / ".pytest_cache" / "motion")
 os.environ["METAGRAPH_MESH_CACHE"] = str(ROOT / ".pytest_cache" / "meshes")
 
-# A process hears each sound once: the samples' conversations were heard a hundred times. Before others take
-# these names from their modules.
+# A process reads and hears each sound once: the samples' conversations were heard a hundred times. Before
+# others take these names from their modules.
 sound.hear = heard_once(sound.hear)
+sound.read_recording = read_once(sound.read_recording)
 pitch.pitch = heard_once(pitch.pitch)
 
 stated = os.fstat

@@ -22,12 +22,14 @@ from tests.engines.cpp_program import (
     ran,
     unreal_sources,
 )
+from tests.thorough import THOROUGH
 
 ROOT = Path(__file__).resolve().parents[2]
 STICK = ROOT / "metagraph" / "engines" / "conformance" / "stick"
 
 
 @needs_compiler
+@pytest.mark.skipif(not THOROUGH, reason="only where asked to be thorough: what plays is compiled as C++17")
 def test_the_plugin_and_the_shipped_headers_compile_as_an_export_writes_them(tmp_path: Path) -> None:
     """As C++20, which Unreal takes it for. What runs below is C++17, as the core is, and has a switch for each
     mutant of the core: that is how the two differ.

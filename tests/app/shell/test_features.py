@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from app.features import FEATURES
+from tests.thorough import some
 
 ROOT = Path(__file__).resolve().parents[3]
 START = """
@@ -30,7 +31,8 @@ window.close()
 
 @pytest.mark.window
 @pytest.mark.parametrize(
-    ("feature", "gone"), [("manual", "manual"), ("problems", "problems"), ("conversation", "converse")]
+    ("feature", "gone"),
+    some([("manual", "manual"), ("problems", "problems"), ("conversation", "converse")], 2),
 )
 def test_a_feature_goes_by_deleting_its_folder_and_its_line(feature, gone, tmp_path):
     shutil.copytree(ROOT / "app", tmp_path / "app", ignore=shutil.ignore_patterns("__pycache__"))
