@@ -20,7 +20,6 @@ from metagraph.suggest.traits import Traits, traits_of
 from metagraph.suggest.whole_body import CARRIER, SCALE, carried, recorded_whole, whole_of
 from tests.label_zoo.catalogue import named
 from tests.suggest.test_traits import chain, of
-from tests.thorough import some
 
 WHOLE = (
     "standing talker",
@@ -51,12 +50,12 @@ def test_a_skeleton_that_is_no_figure_was_not_recorded_whole(frames: int) -> Non
         assert np.isfinite(whole.first).all() and np.isfinite([whole.extent, whole.loop_error]).all()
 
 
-@pytest.mark.parametrize("name", some(WHOLE, 2))
+@pytest.mark.parametrize("name", WHOLE)
 def test_takes_of_the_whole_body_are_noticed_by_names_or_by_motion(name: str) -> None:
     assert propose(named(name).project).whole
 
 
-@pytest.mark.parametrize("name", some(LAYERED, 2))
+@pytest.mark.parametrize("name", LAYERED)
 def test_clips_of_single_layers_are_not(name: str) -> None:
     project = named(name).project
     assert not propose(project).whole and not propose(project, sources=("motion",)).whole
