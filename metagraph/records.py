@@ -16,16 +16,21 @@ from __future__ import annotations
 import dataclasses
 import inspect
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
+from types import MemberDescriptorType as Slot
 from typing import TYPE_CHECKING, Any, cast
 
 FEW = 8  # values of a class that are made without anything compiled
 _FACTORY = dataclasses._HAS_DEFAULT_FACTORY  # type: ignore[attr-defined]  # what signatures show
 
 
-def _text(fields: tuple[dataclasses.Field[Any], ...], frozen: bool, post_init: bool) -> str:
-    """Return the source of a function that makes what is called often, as `dataclasses` would write it."""
-    heads, body = ["self"], []
+def _text(
+    fields: tuple[dataclasses.Field[Any], ...], frozen: bool, slots: Collection[str], post_init: bool
+) -> str:
+    """Return the source of a function that makes what is called often, as `dataclasses` would write it.
+    slots: names of fields that have one each, which is written to straight away.
+    """
+    heads, body, puts = ["self"], [], []
     for f in fields:
         value = f.name
         if f.default_factory is not dataclasses.MISSING:
@@ -35,14 +40,21 @@ def _text(fields: tuple[dataclasses.Field[Any], ...], frozen: bool, post_init: b
             heads.append(f"{f.name}=_of[{f.name!r}].default")
         else:
             heads.append(f.name)
-        body.append(f"_set(self, {f.name!r}, {value})" if frozen else f"self.{f.name} = {value}")
+        if not frozen:
+            body.append(f"self.{f.name} = {value}")
+        elif f.name in slots:
+            puts.append(f" _put_{f.name} = _slots[{f.name!r}].__set__")
+            body.append(f"_put_{f.name}(self, {value})")
+        else:
+            body.append(f"_set(self, {f.name!r}, {value})")
     if post_init:
         body.append("self.__post_init__()")
     compared = [f.name for f in fields if f.compare]
     hashed = [f.name for f in fields if (f.compare if f.hash is None else f.hash)]
     return "\n".join(
         [
-            "def _make(_of, _set, _factory):",
+            "def _make(_of, _set, _slots, _factory):",
+            *puts,
             f" def __init__({', '.join(heads)}):",
             *(f"  {line}" for line in body or ["pass"]),
             " def __eq__(self, other):",
@@ -96,9 +108,11 @@ def _waiting(cls: type, frozen: bool) -> dict[str, Any]:
     def compiled(name: str) -> Any:
         if vars(cls).get(name) is stubs[name]:
             made: dict[str, Any] = {}
-            text = _text(fields, frozen, hasattr(cls, "__post_init__"))
+            of = {f.name: f for f in fields}
+            slots = {name: slot for name, slot in vars(cls).items() if name in of and isinstance(slot, Slot)}
+            text = _text(fields, frozen, slots, hasattr(cls, "__post_init__"))
             exec(text, vars(sys.modules[cls.__module__]), made)
-            methods = made["_make"]({f.name: f for f in fields}, object.__setattr__, _FACTORY)
+            methods = made["_make"](of, object.__setattr__, slots, _FACTORY)
             for method in methods:
                 stub = stubs[method.__name__]
                 method.__qualname__, method.__annotations__ = stub.__qualname__, stub.__annotations__

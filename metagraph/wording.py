@@ -40,6 +40,23 @@ def joined(words: Sequence[str], between: str) -> Told:
     return Told(between.join(f"{{{name}}}" for name in values), values)
 
 
+def requoted(words: str, change: Callable[[str], str], quote: str = "'") -> str:
+    """Return words in which what stands in quotes is changed, in whatever language they are said."""
+    if not isinstance(words, Told):
+        return words
+    values = {
+        name: value
+        if not isinstance(value, str)
+        else requoted(value, change, quote)
+        if isinstance(value, Told)
+        else change(value)
+        if f"{quote}{{{name}}}{quote}" in words.template
+        else value
+        for name, value in words.values.items()
+    }
+    return Told(words.template, values)
+
+
 def filled(template: str, values: Mapping[str, Any]) -> str:
     """Return a template with its values."""
     return template.format(**values) if values else template

@@ -9,7 +9,7 @@ import pickle
 import pytest
 
 from metagraph.errors import FileError
-from metagraph.wording import Told, reworded, told
+from metagraph.wording import Told, requoted, reworded, told
 
 GERMAN = {"{who} has {count:d} legs": "{who} hat {count:d} Beine", "a cow": "eine Kuh"}
 
@@ -55,3 +55,14 @@ def test_a_file_error_of_another_process_keeps_its_words() -> None:
 def test_what_a_file_says_is_still_made_fit_for_a_message() -> None:
     error = FileError("a.bvh", told("field '{field}' is odd", field="x\ny"))
     assert str(error) == "a.bvh: field 'x\ufffdy' is odd."
+
+
+def test_what_stands_in_quotes_is_changed_and_nothing_else() -> None:
+    inner = told("name says '{words}' to {words}", words="arms cross")
+    whole = told('{inner}; begins at "{stance}"', inner=inner, stance="arms cross")
+    changed = requoted(whole, str.title)
+    assert changed == "name says 'Arms Cross' to Arms Cross; begins at \"arms cross\""
+    assert isinstance(changed, Told) and changed.template == whole.template
+    assert requoted(whole, str.title, '"') == "name says 'arms cross' to arms cross; begins at \"Arms Cross\""
+    assert requoted("words that 'know' nothing", str.upper) == "words that 'know' nothing"
+    assert requoted(told("{count} '{count}'", count=3), str) == "3 '3'"

@@ -50,7 +50,7 @@ class Joint(Struct, omit_defaults=True, forbid_unknown_fields=True):
     scales: Literal["both", "smaller", "neither"] = "both"
 
 
-class ExportedClip(Struct, omit_defaults=True, forbid_unknown_fields=True):
+class ExportedClip(Struct, omit_defaults=True, forbid_unknown_fields=True, gc=False):
     """A clip. animation: its place in the GLB's list of animations, where it bears the same name. sha256: of
     the file it came from. made_by, made_seed: the learned model that generated it, and its seed; left out of
     others. arms: what its arms weigh, a row of eight numbers for each tenth of a second; left out where the
@@ -98,7 +98,7 @@ class ExportedContact(Struct, forbid_unknown_fields=True):
     ]
 
 
-class ExportedAction(Struct, forbid_unknown_fields=True):
+class ExportedAction(Struct, forbid_unknown_fields=True, gc=False):
     """One use of a clip. start, end: the part of the clip that plays (whole_end: the end is the clip's own).
     blend_in and blend_out lie inside it; a stance's blend_in is the overlap at its loop's seam.
     earliest_exit: clip time from which it may be left, or null. joints: the only ones it moves, all when

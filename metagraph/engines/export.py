@@ -6,47 +6,27 @@ import re
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
 
 import msgspec
 
 from metagraph.budgets import SOUND_FILE
 from metagraph.engines import contract as c
-from metagraph.engines.export_contacts import contact_rig_of, contacts_of
-from metagraph.engines.export_rig import rig_of, voices_of
-from metagraph.engines.export_weight import arms_of, feet_of, weight_rig_of
+from metagraph.engines.export_document import to_document, used_clips
 from metagraph.errors import FileError
 from metagraph.file_names import file_stem, file_stems
 from metagraph.files import is_inside, read_file, unforeseen
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.store import writable
-from metagraph.graph import anatomy
 from metagraph.graph.check import check
-from metagraph.graph.expand import columns
 from metagraph.graph.expression_presets import presets_of
 from metagraph.graph.face_curves import worn
 from metagraph.graph.model import (
-    KINDS,
-    LAYERS,
-    REACH,
-    Action,
-    ClipEntry,
-    MetaGraph,
     Project,
-    Settings,
 )
 from metagraph.motion.character_mesh import Character, bound, no_character
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton, unique_names
-from metagraph.playback import choice, hashing, markov
-from metagraph.playback.cue_shapes import HURRY
-from metagraph.playback.layer_planning import WINDOW
-from metagraph.playback.phase_times import LEAST_BLEND
-from metagraph.playback.phases import phases
-from metagraph.playback.sampling import LOOP_FADE
-from metagraph.playback.vigour import vigour
 from metagraph.speech.sound import sound_ending
-from metagraph.uncollected import uncollected
 from metagraph.wording import told
 
 Chosen = Callable[[Path], bool]
@@ -145,7 +125,7 @@ def write(
     project = writable(project)
     tell = progress or (lambda done, total, words: None)
     assert project.skeleton is not None
-    used = _used(project)
+    used = used_clips(project)
     stem, target = stem_of(project), Path(folder)
     glb, json = target / f"{stem}.glb", target / f"{stem}.json"
     names = unique_names([entry.name for entry in used])
@@ -272,180 +252,14 @@ def exported_clips(project: Project) -> list[Clip]:
     """Return the motion of the clips that are written, by the names they are written with, with the curves
     that the face wears.
     """
-    used = [e for e in _used(project) if e.motion is not None]
-    names = unique_names([entry.name for entry in _used(project)])
+    used = [e for e in used_clips(project) if e.motion is not None]
+    names = unique_names([entry.name for entry in used_clips(project)])
     assert project.skeleton is not None
     return [
         replace(worn(project, e.motion).renamed(name), skeleton=project.skeleton)
         for e, name in zip(used, names, strict=True)
         if e.motion is not None
     ]
-
-
-def _used(project: Project) -> list[ClipEntry]:
-    """Return the clips that are placed, and the base pose's, in the project's order."""
-    return [e for e in project.clips.values() if e.id in project.uses or e.id == project.base.clip]
-
-
-@uncollected()
-def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bool = False) -> c.Export:
-    """Return the JSON's content; `names`: of the used clips' animations in the GLB."""
-    skeleton = project.skeleton
-    assert skeleton is not None
-    parts, sides, scales = anatomy.parts(project), anatomy.sides(project), anatomy.scales(project)
-    joints = [
-        c.Joint(
-            name,
-            skeleton.names[skeleton.parents[i]] if skeleton.parents[i] >= 0 else None,
-            parts[i],
-            sides[i],  # type: ignore[arg-type]
-            [float(x) for x in skeleton.rest_translations[i]],
-            [float(x) for x in skeleton.rest_rotations[i]],
-            _SCALES[int(scales[:, i].sum())],
-        )
-        for i, name in enumerate(skeleton.names)
-    ]
-    pose = anatomy.base_pose(project)
-    base = c.Base(project.base.clip, project.base.frame, pose.rotations.tolist(), pose.translations.tolist())
-    arms, feet = arms_of(project), feet_of(project)
-    clips = [
-        c.ExportedClip(
-            e.id,
-            name,
-            n,
-            e.fps,
-            e.frames,
-            e.duration,
-            e.digest,
-            e.made_by,
-            e.made_seed if e.made_by else 0,
-            arms.get(e.id, []),
-            feet.get(e.id, []),
-        )
-        for n, (e, name) in enumerate(zip(_used(project), names, strict=True))
-    ]
-    return c.Export(
-        metagraph=c.FORMAT,
-        name=project.name,
-        glb=glb,
-        height=skeleton.height,
-        order=list(LAYERS),
-        joints=joints,
-        base=base,
-        clips=clips,
-        layers={layer: _layer(project, project.graphs[layer]) for layer in LAYERS},
-        planner=_planner(project.settings),
-        randomness=c.Randomness(
-            "fnv1a32-mix",
-            hashing.OFFSET,
-            hashing.PRIME,
-            [16, hashing.MIX[0], 13, hashing.MIX[1], 16],
-            choice.key32(1, "a", "b"),
-        ),
-        roles=dict(project.roles),
-        parts=dict(project.parts),
-        expanded={layer: _expanded(project, project.graphs[layer]) for layer in LAYERS} if expanded else None,
-        life=project.life,
-        face=project.face,
-        points=dict(project.points),
-        lines=dict(project.lines),
-        performances=dict(project.performances),
-        rig=rig_of(project),
-        voices=voices_of(project),
-        touch=project.touch,
-        contact_rig=contact_rig_of(project),
-        weight_rig=weight_rig_of(project),
-    )
-
-
-def _planner(s: Settings) -> c.Planner:
-    return c.Planner(
-        s.seed & 0xFFFFFFFF, s.alpha, s.never_twice, s.shortest, s.wait, WINDOW, LOOP_FADE, "3x^2-2x^3",
-        s.memory, s.rest, s.lookahead, HURRY, LEAST_BLEND,
-    )  # fmt: skip
-
-
-def _layer(project: Project, graph: MetaGraph) -> c.ExportedLayer:
-    index: dict[str, dict[c.KindName, list[str]]] = {}
-    for stance in graph.stances:
-        for kind in KINDS:
-            if actions := graph.of(stance, kind):
-                index.setdefault(stance, {})[kind] = [a.id for a in actions]
-    ways: dict[tuple[str, str], list[str]] = {}
-    for action in graph.actions.values():
-        if action.kind == "transition" and action.end_stance is not None:
-            ways.setdefault((action.stance, action.end_stance), []).append(action.id)
-    model = markov.model(project, graph.layer)
-    return c.ExportedLayer(
-        start=graph.start,
-        weights={part: graph.weight(part) for part in REACH[graph.layer]},
-        own_weights=list(graph.weights),
-        stances=[c.ExportedStance(s.id, s.name) for s in graph.stances.values()],
-        actions=[_action(project, a) for a in graph.actions.values()],
-        index=index,
-        transitions=[c.Transition(a, b, ids) for (a, b), ids in ways.items()],
-        markov=c.ExportedMarkov(
-            list(model.states),
-            [list(row) for row in model.matrix],
-            model.gap,
-            model.positive,
-            model.negative,
-            list(model.tags),
-            [list(pair) for pair in model.lengths],
-            [list(row) for row in model.modes],
-        ),
-        own_markov=graph.layer in project.markov,
-    )
-
-
-_SCALES: tuple[Literal["neither", "smaller", "both"], ...] = ("neither", "smaller", "both")
-
-
-def _action(project: Project, action: Action) -> c.ExportedAction:
-    start, end = project.span(action)
-    t = action.timing
-    return c.ExportedAction(
-        action.id,
-        action.name,
-        action.clip,
-        action.kind,
-        action.stance,
-        action.end_stance,
-        start,
-        end,
-        t.end is None,
-        max(0.0, t.blend_in),
-        max(0.0, t.blend_out),
-        t.loop,
-        t.earliest_exit,
-        t.stroke,
-        action.limb,
-        list(action.joints),
-        list(action.tags),
-        action.likelihood,
-        *_phases(project, action),
-        max(0.0, action.cooldown),
-        action.spacing,
-        contacts_of(action),
-        vigour(project, action),
-        dict(action.joint_weights),
-    )
-
-
-def _phases(project: Project, action: Action) -> tuple[list[float], list[float | None]]:
-    """Return a gesture's phases as they are, and as the user set them."""
-    if action.kind != "gesture":
-        return [], []
-    found, t = phases(project, action), action.timing
-    own = [t.ready, t.stroke_end, t.relax]
-    return [found.ready, found.stroke, found.stroke_end, found.relax], own if any(
-        x is not None for x in own
-    ) else []
-
-
-def _expanded(project: Project, graph: MetaGraph) -> c.Expanded:
-    found = columns(project, graph)
-    return c.Expanded(list(graph.actions), found.sources, found.targets, found.leave, found.blend)
 
 
 def schema_text() -> bytes:

@@ -337,14 +337,15 @@ def _numbers(path: Path, data: bytes, start: int, channels: int) -> Array:
     _read_so_far[0] += len(data) - start
     kernels = _kernels()
     if kernels is not None:
-        numbers, stopped = _compiled_numbers(kernels.parse, data, start)
+        numbers, stopped = _compiled_numbers(kernels.parse, data, start, channels)
+        sensible = stopped == len(data)
     else:
         try:
             numbers, stopped = decimals(data, start), len(data)
         except ValueError:
             numbers, stopped = np.zeros(0), start
-    bad = ~np.isfinite(numbers) | (np.abs(numbers) > 1e9)
-    if stopped == len(data) and not bad.any():
+        sensible = stopped == len(data) and bool((np.abs(numbers) <= 1e9).all())
+    if sensible:
         return numbers
     first = _line(data, start)
     for i, row in enumerate(data[start:].split(b"\n")):
@@ -369,27 +370,21 @@ def _numbers(path: Path, data: bytes, start: int, channels: int) -> Array:
     )
 
 
-def _compiled_numbers(parse: Any, data: bytes, start: int) -> tuple[Array, int]:
+def _compiled_numbers(parse: Any, data: bytes, start: int, channels: int) -> tuple[Array, int]:
     """Return the numbers and where reading stopped, using two threads on large files."""
-    whole = np.frombuffer(data, np.uint8)
-    end = len(data)
+    whole, end = np.frombuffer(data, np.uint8), len(data)
+    out = np.empty((end - start) // 2 + 2)
     middle = data.find(b"\n", (start + end) // 2) + 1 if end - start > 1 << 20 else 0
-    pieces = [(start, middle), (middle, end)] if middle > start else [(start, end)]
-    outs = [np.empty((b - a) // 2 + 1) for a, b in pieces]
-    if len(pieces) == 1:
-        results = [parse(whole, start, end, outs[0])]
-    else:
-        with ThreadPoolExecutor(2) as pool:
-            results = list(pool.map(lambda p, o: parse(whole, p[0], p[1], o), pieces, outs))
-    numbers = (
-        np.concatenate([out[:count] for out, (count, _) in zip(outs, results, strict=True)])
-        if len(outs) > 1
-        else outs[0][: results[0][0]]
-    )
-    for (_, stop), (_, stopped) in zip(pieces, results, strict=True):
-        if stopped != stop:
-            return numbers, int(stopped)
-    return numbers, end
+    if middle > start:
+        half = np.count_nonzero(whole[data.find(b"\n", start) + 1 : middle] == 10) * channels
+        with ThreadPoolExecutor(1) as pool:
+            later = pool.submit(parse, whole, middle, end, out[half:])
+            first = parse(whole, start, middle, out[:half])
+            count, stopped = later.result()
+        if first == (half, middle):  # each line is a row
+            return out[: half + count], int(stopped)
+    count, stopped = parse(whole, start, end, out)
+    return out[:count], int(stopped)
 
 
 def _rotations(values: Array, joints: list[_Joint], columns: list[list[int]]) -> Array:

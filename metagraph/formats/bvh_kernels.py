@@ -20,7 +20,7 @@ def parse(data: Any, at: int, end: int, out: Any) -> tuple[int, int]:
     """Read decimal numbers between white space from bytes `data[at:end]` into `out`.
 
     Returns how many there were, and where reading stopped: `end`, or the first byte of what is not a number,
-    or the first number that no longer fits.
+    or the first number that no longer fits or is over a billion.
     """
     count = 0
     while True:
@@ -76,6 +76,8 @@ def parse(data: Any, at: int, end: int, out: Any) -> tuple[int, int]:
             value = value / _POWERS[-shift] if shift >= -22 else value * 10.0**shift
         elif shift > 0:
             value = value * _POWERS[shift] if shift <= 22 else value * 10.0**shift
+        if not value <= 1e9:
+            return count, start
         out[count] = -value if negative else value
         count += 1
 

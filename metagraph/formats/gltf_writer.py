@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -24,6 +23,7 @@ from metagraph.formats.gltf_binary import (
     Packing,
     glb_bytes,
 )
+from metagraph.formats.key_thinning import kept_frames
 from metagraph.motion import rotation
 from metagraph.motion.character_mesh import Character
 from metagraph.motion.clip import Clip
@@ -111,8 +111,11 @@ def write_glb(
         roots = [*roots, mesh_node]
     document["scenes"] = [{"nodes": roots} if stand is None else {"name": SCENE, "nodes": roots}]
     posed = _pose_still_nodes(nodes, clips, tolerance) if pose_nodes and clips else frozenset()
+    turns = kept_frames([clip.rotations.astype(np.float64) for clip in clips], tolerance, True)
+    moves = kept_frames([clip.translations.astype(np.float64) for clip in clips], tolerance, False)
     animations = [
-        _animation(body, nodes, clip, quantize, tolerance, morphs, mesh_node, posed, moved) for clip in clips
+        _animation(body, nodes, clip, kept, quantize, tolerance, morphs, mesh_node, posed, moved)
+        for clip, *kept in zip(clips, turns, moves, strict=True)
     ]
     if animations:
         document["animations"] = animations
@@ -251,6 +254,7 @@ def _animation(
     body: BinaryChunk,
     nodes: list[dict[str, Any]],
     clip: Clip,
+    frames: Sequence[list[Array]],
     quantize: bool,
     tolerance: float,
     morphs: tuple[str, ...],
@@ -258,6 +262,7 @@ def _animation(
     posed: frozenset[int],
     moved: Mapping[str, Collection[int]] | None,
 ) -> dict[str, Any]:
+    """Return a clip as an animation. frames: those to keep of each joint's turns, and of each translation."""
     chosen = range(len(clip.skeleton)) if moved is None else moved[clip.name]
     times = np.arange(clip.frames) / clip.fps
     samplers: list[dict[str, Any]] = []
@@ -275,7 +280,7 @@ def _animation(
 
     rotations = clip.rotations.astype(np.float64)
     written = np.round(rotation.normalize(rotations) * 32767) if quantize else rotations
-    for joint, kept in enumerate(_keys(rotations, tolerance, True)):
+    for joint, kept in enumerate(frames[0]):
         if joint in posed or joint not in chosen:
             continue
         if moved is not None and joint == min(chosen) and joint != 0 and clip.frames > 1 and len(kept) == 1:
@@ -286,7 +291,7 @@ def _animation(
             continue
         add(joint, "rotation", kept, written[kept, joint], SHORT if quantize else FLOAT)
     translations = clip.translations.astype(np.float64)
-    for place, kept in zip(clip.translated, _keys(translations, tolerance, False), strict=True):
+    for place, kept in zip(clip.translated, frames[1], strict=True):
         if place not in chosen:
             continue
         if place == 0 and clip.frames > 1 and len(kept) == 1:
@@ -304,66 +309,3 @@ def _animation(
 def _as_posed(turn: Array, node: list[float]) -> bool:
     """Whether a turn is what a node has by itself, which readers take where no channel tells."""
     return bool(np.minimum(np.abs(turn - node).max(), np.abs(turn + node).max()) < 1e-6)
-
-
-# Which frames to keep is most of the time of an export, and the same when it is written again, or for another
-# engine.
-_KNOWN: dict[tuple[bytes, tuple[int, ...], float, bool], list[Array]] = {}
-_MOST = 1000  # tracks of clips that are remembered, some 10 kB each
-
-
-def _keys(values: Array, tolerance: float, turning: bool) -> list[Array]:
-    """Return what `_thinned` does, as it was found the first time."""
-    key = (
-        hashlib.blake2b(np.ascontiguousarray(values).data, digest_size=16).digest(),
-        values.shape,
-        tolerance,
-        turning,
-    )
-    found = _KNOWN.pop(key, None) or _thinned(values, tolerance, turning)
-    _KNOWN[key] = found  # the last used last
-    if len(_KNOWN) > _MOST:
-        _KNOWN.pop(next(iter(_KNOWN)), None)
-    return found
-
-
-def _thinned(values: Array, tolerance: float, turning: bool) -> list[Array]:
-    """Return for each track of `values [F, C, n]` the frames to keep so that what lies between is within
-    tolerance.
-
-    Every track starts with its ends and is split at its worst frame until none is too far off, all tracks at
-    once.
-    """
-    frames, tracks = values.shape[:2]
-    still = np.abs(values - values[:1]).max((0, 2)) <= tolerance
-    if frames <= 2 or tolerance <= 0:
-        return [np.array([0]) if s else np.arange(frames) for s in still]
-    keep = np.zeros((tracks, frames), bool)
-    keep[:, 0] = keep[:, -1] = True
-    data = values.transpose(1, 0, 2)
-    every = np.broadcast_to(np.arange(frames), (tracks, frames))
-    open_tracks = np.flatnonzero(~still)
-    while len(open_tracks):
-        mask, own = keep[open_tracks], data[open_tracks]
-        low = np.maximum.accumulate(np.where(mask, every[: len(mask)], 0), 1)
-        high = np.minimum.accumulate(np.where(mask, every[: len(mask)], frames - 1)[:, ::-1], 1)[:, ::-1]
-        a, b = np.take_along_axis(own, low[..., None], 1), np.take_along_axis(own, high[..., None], 1)
-        part = (every[: len(mask)] - low) / np.maximum(high - low, 1)
-        guess = rotation.slerp(a, b, part) if turning else a + (b - a) * part[..., None]
-        if turning:
-            guess = guess * np.sign(np.einsum("tfi,tfi->tf", guess, own))[..., None]
-        error = np.abs(guess - own).max(-1)
-        error[mask] = 0
-        late = (error > tolerance).any(1)
-        # In every stretch between kept frames, keep its worst frame when that is too far off.
-        rows, cols = np.nonzero(mask)
-        starts = rows * frames + cols
-        worst = np.maximum.reduceat(error.reshape(-1), starts)
-        stretch = np.cumsum(mask.reshape(-1)) - 1
-        hit = (error.reshape(-1) > tolerance) & (error.reshape(-1) >= worst[stretch])
-        mask |= hit.reshape(mask.shape)
-        keep[open_tracks] = mask
-        open_tracks = open_tracks[late]
-    # A track with its own key times pays four bytes a key for them; keep every frame where that costs more.
-    keep[keep.sum(1) > 0.66 * frames] = True
-    return [np.array([0]) if s else np.flatnonzero(k) for s, k in zip(still, keep, strict=True)]

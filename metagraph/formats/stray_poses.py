@@ -8,6 +8,7 @@ T- or A-pose) and is left by a step unlike the take's own motion; either alone i
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from functools import cached_property
 from itertools import pairwise
 from typing import Any
@@ -46,6 +47,7 @@ AT_ONCE = 1 << 20  # numbers of rotations of clips that are worked out together
 
 COMPILED = Loops("metagraph.formats.stray_kernels")
 MANY = 500  # frames for which it pays to load the loop, where it is kept
+LONG = 2000  # frames of a clip that two threads share
 
 _measured_so_far = [0]  # frames, without the loop
 
@@ -174,14 +176,23 @@ def _measured(
             COMPILED.load_kept()
     if COMPILED.now is not None:
         out = np.empty((frames, len(skeleton), 3), np.float32), *np.empty((3, frames))
-        begin = 0
         tree, which = np.array(skeleton.parents, np.int64), np.array(moved)
-        for clip in clips:
-            places, *others = (a[begin : begin + clip.frames] for a in out)
-            COMPILED.now.measure(
-                tree, clip.rotations, clip.translations, which, rest, weights, places, *others
-            )
-            begin += clip.frames
+
+        def measure(clip: Clip, begin: int, first: int, last: int) -> None:
+            some, own = slice(first, last), slice(begin + first, begin + last)
+            turns, ways = clip.rotations[some], clip.translations[some]
+            COMPILED.now.measure(tree, turns, ways, which, rest, weights, *(a[own] for a in out))
+
+        begin = 0
+        with ThreadPoolExecutor(1) as beside:
+            for clip in clips:
+                half = clip.frames // 2 if clip.frames >= LONG else 0
+                # Each half has the frame they meet in, which the way to the next one is from.
+                later = beside.submit(measure, clip, begin, half, clip.frames) if half else None
+                measure(clip, begin, 0, half + 1 if half else clip.frames)
+                if later is not None:
+                    later.result()
+                begin += clip.frames
         return out
     locals_ = np.empty((frames, len(skeleton), 3), np.float32)
     locals_[:] = rest

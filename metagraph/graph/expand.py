@@ -7,8 +7,8 @@ loops, its gestures and fidgets, and the transitions that leave it.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
-from dataclasses import field
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
 
 from metagraph.graph.model import KINDS, LAYERS, Action, Layer, MetaGraph, Project
 from metagraph.records import dataclass
@@ -73,56 +73,75 @@ def size(project: Project, layer: Layer | None = None, stance: str | None = None
     return Size(len(clips), states, connections)
 
 
-@dataclass(slots=True)
-class Columns:
-    """Connections in columns: number n leads from action `sources[n]` to `targets[n]`, places in
-    `MetaGraph.actions`. leave: as of `Connection`, -1 for at any time.
+@dataclass(frozen=True, slots=True)
+class Node:
+    """What an action that ends in a stance leads to: loops first. targets: places in `MetaGraph.actions`.
+    blends: seconds in which each comes in; the first `loops` of them blend as their source goes out. at:
+    target -> its place among them.
     """
 
-    sources: list[int] = field(default_factory=list)
-    targets: list[int] = field(default_factory=list)
-    leave: list[float] = field(default_factory=list)
-    blend: list[float] = field(default_factory=list)
+    stance: str
+    targets: tuple[int, ...]
+    blends: tuple[float, ...]
+    loops: int
+    at: Mapping[int, int]
 
 
-def columns(project: Project, graph: MetaGraph) -> Columns:
-    """Return every connection of a layer: sources in the order they were placed, each with its targets in
-    that order. Nodes are gone through, not single connections: of those there may be millions.
+class Fan(NamedTuple):
+    """All connections of one action. source: its place in `MetaGraph.actions`. itself: its own place among
+    the node's targets, which is no connection, -1 where it is none of them. leave: as of `Connection`, -1
+    for at any time. blend: seconds, into loops.
     """
-    out = Columns()
+
+    source: int
+    node: Node
+    itself: int
+    leave: float
+    blend: float
+
+
+def fans(project: Project, graph: MetaGraph) -> Iterator[Fan]:
+    """Yield every action of a layer that leads to others, in the order they were placed. Connections are not
+    gone through one by one: of those there may be millions.
+    """
     place = {ident: n for n, ident in enumerate(graph.actions)}
-    nodes: dict[str, tuple[list[int], list[float], int]] = {}  # stance -> targets, blends, how many are loops
+    nodes: dict[str, Node] = {}
     for number, source in enumerate(graph.actions.values()):
         end = ends_in(source)
         if end is None or end not in graph.stances:
             continue
-        if end not in nodes:
-            node = [t for kind in KINDS for t in graph.of(end, kind)]
-            loops = len(graph.of(end, "stance"))
-            nodes[end] = [place[t.id] for t in node], [t.timing.blend_in for t in node], loops
-        targets, blends, loops = nodes[end]
-        targets, blends = targets[:], [source.timing.blend_out] * loops + blends[loops:]
-        if source.stance == end:
-            itself = targets.index(number)
-            del targets[itself], blends[itself]
+        node = nodes.get(end)
+        if node is None:
+            node = nodes[end] = _node(graph, end, place)
         leave = -1.0
         if source.kind != "stance":
             exit_at = source.timing.earliest_exit
             leave = project.span(source)[1] if exit_at is None else exit_at
-        out.sources += [number] * len(targets)
-        out.targets += targets
-        out.leave += [leave] * len(targets)
-        out.blend += blends
-    return out
+        itself = node.at[number] if source.stance == end else -1
+        yield Fan(number, node, itself, leave, source.timing.blend_out)
+
+
+def _node(graph: MetaGraph, stance: str, place: Mapping[str, int]) -> Node:
+    actions = [action for kind in KINDS for action in graph.of(stance, kind)]
+    targets = tuple(place[action.id] for action in actions)
+    return Node(
+        stance,
+        targets,
+        tuple(action.timing.blend_in for action in actions),
+        len(graph.of(stance, "stance")),
+        {target: n for n, target in enumerate(targets)},
+    )
 
 
 def connections(project: Project, graph: MetaGraph) -> Iterator[Connection]:
-    """Yield every connection of a layer, in the order of `columns`."""
-    idents, found = list(graph.actions), columns(project, graph)
-    for source, target, leave, blend in zip(
-        found.sources, found.targets, found.leave, found.blend, strict=True
-    ):
-        yield Connection(idents[source], idents[target], None if leave < 0 else leave, blend)
+    """Yield every connection of a layer: sources in the order they were placed, each with its targets."""
+    idents = list(graph.actions)
+    for fan in fans(project, graph):
+        node, source, leave = fan.node, idents[fan.source], None if fan.leave < 0 else fan.leave
+        for n, target in enumerate(node.targets):
+            if n != fan.itself:
+                blend = fan.blend if n < node.loops else node.blends[n]
+                yield Connection(source, idents[target], leave, blend)
 
 
 def chain(graph: MetaGraph, start: str, goal: str) -> tuple[str, ...] | None:

@@ -315,7 +315,7 @@ class ClipEntry:
     @property
     def duration(self) -> float:
         """Seconds from the first frame to the last."""
-        return max(0, self.frames - 1) / self.fps
+        return (self.frames - 1) / self.fps if self.frames > 1 else 0.0
 
 
 @dataclass(frozen=True)
@@ -459,8 +459,9 @@ class Project:
         start.
         """
         entry = self.clips.get(action.clip)
-        length = entry.duration if entry else 0.0
-        start, end = action.timing.start, action.timing.end
+        length = entry.duration if entry is not None else 0.0
+        timing = action.timing
+        start, end = timing.start, timing.end
         if not start > 0.0:  # as with most; what is no number is 0, too
             start = 0.0
         elif start > length:

@@ -42,19 +42,22 @@ def bounds(metas: Sequence[MetaAction]) -> list[Bound]:
         wish = float("inf")
         own: _First | None = None
         start = begins(meta)
+        rank = meta.rank
         for one in first:
-            if one.rank > meta.rank:
+            if one.rank > rank:
                 limit = min(limit, one.start)
-            if one.rank >= meta.rank and not one.written:
+            if one.rank >= rank and not one.written:
                 wish = min(wish, one.start)
-            if one.rank == meta.rank and one.written == meta.written:
+            if one.rank == rank and one.written == meta.written:
                 own = one
-        after = [one for one in reversed(pressing[-LOOKED_AT:]) if one.rank >= meta.rank]
+        after: list[MetaAction] = []
+        if len(pressing) > 0:
+            after = [one for one in reversed(pressing[-LOOKED_AT:]) if one.rank >= rank]
         out.append(Bound(meta, limit, wish, after))
         if meta.request.late is not None:
             pressing.append(meta)
         if own is None:
-            first.append(_First(meta.rank, meta.written, start))
+            first.append(_First(rank, meta.written, start))
         else:
             own.start = start
     return list(reversed(out))

@@ -46,7 +46,6 @@ class Crowd:
         each = [plan.layers for plan in unique.values()]
         lines = {layer: [(of[layer].rests, of[layer].cues) for of in each] for layer in LAYERS}
         self._layers = self._layout.lay(project, lines)
-        self._local: Pose | None = None
 
     def __len__(self) -> int:
         return len(self._plan_of)
@@ -58,43 +57,39 @@ class Crowd:
         out: float32 poses in one piece to write into, such as an earlier frame's; new memory costs nearly as
         much as the poses do.
         """
-        return self._posed(seconds, out, (_NO_TURNS, _NO_PLACES))
+        found = out or self._empty()
+        self._posed(seconds, found, _NOTHING)
+        return found
 
     def globals(self, seconds: Any, out: tuple[Array, Array] | None = None) -> tuple[Array, Array]:
         """Return model-space rotations `[C, J, 4]` and positions `[C, J, 3]`, metres. out: float32 arrays
         in one piece to write into.
         """
-        if self._local is None:
-            self._local = self._empty()
-        if out is None:
-            made = self._empty()
-            out = made.rotations, made.translations
-        self._posed(seconds, self._local, out)
-        return out
+        made = self._empty() if out is None else Pose(*out)
+        self._posed(seconds, _NOTHING, made)
+        return made.rotations, made.translations
 
     def _empty(self) -> Pose:
         count, joints = len(self), len(self._layout.places)
         return Pose(np.empty((count, joints, 4), np.float32), np.empty((count, joints, 3), np.float32))
 
-    def _posed(self, seconds: Any, out: Pose | None, model: tuple[Array, Array]) -> Pose:
+    def _posed(self, seconds: Any, out: Pose, model: Pose) -> None:
         COMPILED.load()
         pose = COMPILED.now.pose
         times = np.array(np.broadcast_to(np.asarray(seconds, np.float64), (len(self),)))
-        of, found = self._layout, out or self._empty()
+        of = self._layout
         base = of.base, of.travels, of.places
 
         def some(first: int, last: int) -> None:
             pose(
                 *(first, last, times, self._plan_of, self._layers, *base),
-                *(found.rotations, found.translations, of.parents, *model),
+                *(out.rotations, out.translations, of.parents, model.rotations, model.translations),
             )
 
         _share(some, len(self))
-        return found
 
 
-_NO_TURNS = np.empty((0, 0, 4), np.float32)
-_NO_PLACES = np.empty((0, 0, 3), np.float32)
+_NOTHING = Pose(np.empty((0, 0, 4), np.float32), np.empty((0, 0, 3), np.float32))
 
 
 @lru_cache(maxsize=1)

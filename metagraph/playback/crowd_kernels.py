@@ -13,11 +13,12 @@ from typing import Any
 import numpy as np
 
 from metagraph.compiling import compiler
-from metagraph.motion import forward_kernels
+from metagraph.motion import four_kernels
+from metagraph.motion.four_kernels import FOUR, ROW
 from metagraph.playback import laying
 from metagraph.playback.laying import CLIP, CUE, LANES, REST
 
-KEPT, SOURCES = ("pose",), (forward_kernels, laying)
+KEPT, SOURCES = ("pose",), (four_kernels, laying)
 
 Array = Any
 Number = Any  # float32 throughout, except for times
@@ -253,7 +254,7 @@ def _add_layer(
     first: int, last: int, seconds: Array, plan_of: Array, layer: Any, out: Array, out_t: Array
 ) -> None:
     """Add one layer's offsets for characters `first`..`last`: rotations to `out [last - first, B, 64]`,
-    translations to `out_t [C, J, 3]`. layer: as `laying.LaidLayer` has it.
+    translations to `out_t [last - first, J, 3 or more]`. layer: as `laying.LaidLayer` has it.
     """
     rests, rest_starts, cues, cue_starts, at, clips, turns, ways, blocks, movers, lanes, mover_lanes = layer
     shown, stance = np.empty(4 * LANES, np.float32), np.empty(4 * LANES, np.float32)
@@ -337,22 +338,7 @@ def _add_layer(
                     if extent != 1:
                         t = under + (t - under) * np.float32(1 + (extent - 1) * mover_lanes[way, m])
                     t = under + (t - under) * moves_m if moves_m < 1 else t
-                out_t[c, movers[m], axis] += t * mover_lanes[WEIGHT, m]
-
-
-@_compiled
-def _to_joints(blocked: Array, places: Array, out: Array) -> None:
-    """Scale rotations `[B, 64]` to unit length and write them joint by joint: `out [J, 4]`."""
-    for b in range(len(blocked)):
-        _unit(blocked[b])
-    flat = blocked.reshape(-1)
-    for j in range(len(places)):
-        p = places[j]
-        out[j, 0], out[j, 1] = flat[p], flat[p + LANES]
-        out[j, 2], out[j, 3] = flat[p + 2 * LANES], flat[p + 3 * LANES]
-
-
-_to_model = compiler(keep=False, **_OPTIONS)(forward_kernels.to_model)
+                out_t[c - first, movers[m], axis] += t * mover_lanes[WEIGHT, m]
 
 
 @_compiled
@@ -360,27 +346,43 @@ def pose(
     first: int, last: int, seconds: Array, plan_of: Array, layers: Any, base: Array, travels: Array,
     places: Array, out_r: Array, out_t: Array, parents: Array, model_r: Array, model_p: Array,
 ) -> None:  # fmt: skip
-    """Write poses of characters `first`..`last` to `out_r [C, J, 4]`, `out_t [C, J, 3]`; and where they are
-    not empty, those in the character's space to `model_r`, `model_p`. layers: what `_add_layer` takes. base
+    """Write poses of characters `first`..`last` to `out_r [C, J, 4]`, `out_t [C, J, 3]`; or, where they are
+    not empty, to `model_r` and `model_p` in the characters' spaces. layers: what `_add_layer` takes. base
     `[B, 64]`, travels `[J, 3]`: the base pose. places `[J]`: of the joints in the blocks.
     """
-    blocked = np.empty((min(AT_ONCE, last - first), *base.shape), np.float32)
+    joints, count = len(travels), min(AT_ONCE, last - first)
+    blocked = np.empty((count, *base.shape), np.float32)
+    model = len(model_r) > 0
+    ways = np.zeros((count if model else 0, joints, FOUR), np.float32)
+    rest = np.zeros((joints, FOUR if model else 3), np.float32)
+    rest[:, :3] = travels
+    still = rest.reshape(-1)
+    turns = np.empty((len(base) * LANES, ROW), np.float32)
+    rows = places // (4 * LANES) * LANES + places % LANES
     for start in range(first, last, AT_ONCE):
         end = min(start + AT_ONCE, last)
-        for c in range(start, end):
+        moved = ways if model else out_t[start:end]
+        for c in range(end - start):
             for b in range(len(base)):
                 for i in range(4 * LANES):
-                    blocked[c - start, b, i] = base[b, i]
-            for j in range(len(travels)):
-                for k in range(3):
-                    out_t[c, j, k] = travels[j, k]
+                    blocked[c, b, i] = base[b, i]
+            flat = moved[c].reshape(-1)
+            for i in range(len(still)):
+                flat[i] = still[i]
         for layer in layers:
-            _add_layer(start, end, seconds, plan_of, layer, blocked, out_t)
+            _add_layer(start, end, seconds, plan_of, layer, blocked, moved)
+        for c in range(end - start):
+            for b in range(len(base)):
+                _unit(blocked[c, b])
+        if model:
+            out = model_r[start:end], model_p[start:end]
+            four_kernels.to_models(parents, rows, blocked[: end - start], ways, turns, *out)
+            continue
         for c in range(start, end):
-            _to_joints(blocked[c - start], places, out_r[c])
-        if len(model_r) > 0:
-            for c in range(start, end):
-                _to_model(parents, out_r[c], out_t[c], model_r[c], model_p[c])
+            four_kernels.spread(blocked[c - start], turns, 0)
+            for j in range(joints):
+                for k in range(4):
+                    out_r[c, j, k] = turns[rows[j], k]
 
 
 def warm() -> None:

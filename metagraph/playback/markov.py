@@ -14,7 +14,7 @@ from collections.abc import Set as AbstractSet
 
 from metagraph.graph.model import Kind, Layer, Limb, Markov, Mode, Project
 from metagraph.graph.words import MODES
-from metagraph.playback.choice import pick, uniform
+from metagraph.playback.choice import chance_of, keyed, picked, uniform
 from metagraph.playback.hashing import Bits
 from metagraph.playback.plan import WRITTEN, Cursor, MetaAction, MetaRequest
 
@@ -93,38 +93,45 @@ def write(
     """
     number, state, time = cursor.number, cursor.state, cursor.time
     open_to = [1.0 if kinds is None or kind in kinds else 0.0 for _, kind in chain.states]
+    rows: dict[int, dict[str, float]] = {}
     out: list[MetaAction] = []
-    while any(p > 0 for p in open_to):
-        key = f"auto/{chain.layer}/{number}"
-        start = time + chain.gap * (0.35 + 1.3 * uniform(seed, key, "gap"))
+    able = any(p > 0 for p in open_to)
+    while able:
+        ident = f"auto/{chain.layer}/{number}"
+        key = keyed(seed, ident)
+        start = time + chain.gap * (0.35 + 1.3 * chance_of(key, "gap"))
         if not start < until:  # nor when it is no number
             break
-        state = int(pick(seed, key, "state", _row(chain, state, open_to)))
+        if state not in rows:
+            rows[state] = _row(chain, state, open_to)
+        state = int(picked(key, "state", rows[state]))
         limb, kind = chain.states[state]
-        seconds = length(chain, state, seed, key)
+        seconds = length(chain, state, key)
         tags = tuple(chain.tag(state).split())
         if kind == "gesture" and len(chain.tags) == 0:
-            draw = uniform(seed, key, "tag")
+            draw = chance_of(key, "tag")
             if draw < chain.positive:
                 tags = ("positive",)
             elif draw < chain.positive + chain.negative:
                 tags = ("negative",)
-        request = MetaRequest(key, chain.layer, kind, start, seconds, tags=tags, limb=limb, priority=WRITTEN)
+        request = MetaRequest(
+            ident, chain.layer, kind, start, seconds, tags=tags, limb=limb, priority=WRITTEN
+        )
         out.append(MetaAction(request, start, start + seconds, written=True))
         number, time = number + 1, start + seconds
     return out, Cursor(number, state, time)
 
 
 def _row(chain: Markov, state: int, open_to: Sequence[float]) -> dict[str, float]:
-    """Return how likely each state is after a state (-1: before the first), by its place; any that may be
-    where nothing leads on.
+    """Return how likely each state is that may come after a state (-1: before the first), by its place; any
+    that may be where nothing leads on.
     """
     row = list(open_to)
     if 0 <= state < len(row):
         row = [p * may for p, may in zip(chain.matrix[state], open_to, strict=True)]
     if not any(p > 0 for p in row):
         row = list(open_to)
-    return {str(i): p for i, p in enumerate(row)}
+    return {str(i): p for i, p in enumerate(row) if p > 0}
 
 
 def performs(chain: Markov, seed: Bits, meta: MetaAction, mode: Mode | None) -> bool:
@@ -137,18 +144,18 @@ def performs(chain: Markov, seed: Bits, meta: MetaAction, mode: Mode | None) -> 
     return share >= 1 or uniform(seed, meta.request.id, "mode") < share
 
 
-def length(chain: Markov, state: int, seed: Bits, key: str) -> float:
-    """Return how many seconds meta action `key` lasts: 1 to 3, evenly, where the model has no lengths.
+def length(chain: Markov, state: int, key: Bits) -> float:
+    """Return how many seconds a meta action of a key lasts: 1 to 3, evenly, where the model has no lengths.
 
     Else log-normal with the state's mean m and standard deviation s, from two uniform draws u, v in (0, 1) by
     Box and Muller, which any language can do alike: `a = ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`,
     `m exp(sqrt(a) z - a / 2)`.
     """
-    u = uniform(seed, key, "length")
+    u = chance_of(key, "length")
     if len(chain.lengths) == 0:
         return 1.0 + 2.0 * u
     mean, deviation = chain.lengths[state]
     share = deviation / mean
     spread = math.log1p(share * share)
-    z = math.sqrt(-2.0 * math.log(u)) * math.cos(2.0 * math.pi * uniform(seed, key, "length2"))
+    z = math.sqrt(-2.0 * math.log(u)) * math.cos(2.0 * math.pi * chance_of(key, "length2"))
     return mean * math.exp(math.sqrt(spread) * z - spread / 2.0)

@@ -28,6 +28,7 @@ Array = NDArray[Any]
 RESTING = 0.1  # of the way from the least to the greatest speed: below is rest (Yang et al., section 3.1)
 SLOWING = 0.5  # a slowing to less than this share of the slower peak beside it parts two bouts
 SMOOTH = 0.06  # seconds, standard deviation of the filter on speeds
+REMEMBERED = 32_768  # actions; were they fewer than a project has, an export would find all anew each time
 SHORTEST = 0.08  # seconds of a bout or rest worth the name
 
 
@@ -35,17 +36,23 @@ def phases(project: Project, action: Action) -> Phases:
     """Return an action's phases: what its timing says, and the rest as found; the middle of it where the clip
     is missing.
     """
-    start, end = project.span(action)
-    timing = action.timing
     entry = project.clips.get(action.clip)
-    motion = entry.motion if entry is not None else None
+    return phases_within(project, action, entry.motion if entry is not None else None, *project.span(action))
+
+
+def phases_within(project: Project, action: Action, motion: Clip | None, start: float, end: float) -> Phases:
+    """Return an action's phases, where its clip and the part that plays (`Project.span`) are at hand."""
+    timing = action.timing
+    own = not timing.ready is timing.stroke is timing.stroke_end is timing.relax is None
     if motion is None or motion.frames < 4 or end - start < 4 / motion.fps:
         middle = (start + end) / 2
         found = Phases(start, middle, middle, middle, middle, end)
+        if not own:
+            return found
     else:
         joints, seen_from = movers(project, motion, action.layer, action.limb)
         found = _found(ref(motion), joints, seen_from, start, end)
-    if timing.ready is timing.stroke is timing.stroke_end is timing.relax is None and (
+    if not own and (
         start
         == found.start
         <= found.ready
@@ -120,7 +127,7 @@ def _movers(roles: Mapping[str, int], motion: Clip, layer: Layer, limb: str) -> 
     return found or tuple(range(len(motion.skeleton))), seen_from
 
 
-@lru_cache(maxsize=4096)
+@lru_cache(maxsize=REMEMBERED)
 def _found(whose: ref[Clip], joints: tuple[int, ...], seen_from: int, start: float, end: float) -> Phases:
     # What is remembered must not keep a clip whose project was closed; a `ref` is equal while its clip lives.
     motion = whose()

@@ -58,8 +58,13 @@ class MetaRequest:
     intensity: float | None = None
 
     def __post_init__(self) -> None:
-        times = (self.start, self.duration, self.stroke, self.hold, self.late)
-        if not all(isfinite(x or 0.0) for x in times):
+        if not (
+            isfinite(self.start)
+            and isfinite(self.duration or 0.0)
+            and isfinite(self.stroke or 0.0)
+            and isfinite(self.hold or 0.0)
+            and isfinite(self.late or 0.0)
+        ):
             raise ValueError(f"request '{self.id}': its times must be finite numbers of seconds")
 
 

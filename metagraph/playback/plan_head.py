@@ -99,7 +99,9 @@ def head_of(project: Project, plan: Plan, now: float, again: Collection[str]) ->
 
 def keep_head(plan: Plan, head: PlanHead) -> None:
     """Remember the head of a plan."""
-    _known[:] = [(ref(plan), head), *(x for x in _known if x[0]() not in (None, plan))][:KEPT]
+    # Whether it is this one is asked of each, not whether it is alike: that would be looked up cue by cue.
+    others = [x for x in _known if (of := x[0]()) is not None and of is not plan]
+    _known[:] = [(ref(plan), head), *others][:KEPT]
 
 
 _known: list[tuple[ref[Plan], PlanHead]] = []

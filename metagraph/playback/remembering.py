@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from metagraph.playback.plan import Cue
 
 REMEMBERED = 32  # draws of a stance and kind that spacing can look back on
@@ -10,6 +12,13 @@ REMEMBERED = 32  # draws of a stance and kind that spacing can look back on
 def node(stance: str, kind: str) -> str:
     """Return what draws of a stance and kind are remembered under."""
     return f"{kind} {stance}"
+
+
+def rested(recent: Sequence[str], ident: str, needed: int) -> bool:
+    """Whether so many other draws came after an action's last one."""
+    if needed <= 0:
+        return True
+    return needed <= REMEMBERED and ident not in recent[max(0, len(recent) - needed) :]
 
 
 def remember(

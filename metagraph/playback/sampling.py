@@ -28,7 +28,7 @@ from metagraph.playback.mood import HELD, Mood, Moods, changed, drag, extent, fa
 from metagraph.playback.phase_times import LEAST_BLEND
 from metagraph.playback.phases import phases
 from metagraph.playback.plan import Cue, MetaAction, MetaRequest, Outcome, Past, Report, Rest
-from metagraph.playback.remembering import REMEMBERED, node, remember
+from metagraph.playback.remembering import node, remember, rested
 from metagraph.playback.vigour import vigour
 from metagraph.records import dataclass
 
@@ -49,7 +49,8 @@ class Performer:
 
     uses: how often each action was used. recent: the last draws of each `node`. ended: when each action
     ended. begun: keys of meta actions whose chain of transitions plays already. served: keys of those that
-    another's action serves, too. moods: what it is in the mood for, and when.
+    another's action serves, too. moods: what it is in the mood for, and when. candidates: the actions of each
+    `node` that may be drawn, as far as they were asked for.
     """
 
     project: Project
@@ -66,6 +67,7 @@ class Performer:
     reports: list[Report] = field(default_factory=list)
     begun: AbstractSet[str] = frozenset()
     served: set[str] = field(default_factory=set)
+    candidates: dict[str, list[Action]] = field(default_factory=dict)
 
     def note(self, cue: Cue, then: str) -> None:
         """Take a cue as played."""
@@ -92,16 +94,17 @@ class Performer:
             meta = bound.meta
             if begins(meta) >= end:
                 continue
-            if meta.key in self.served:
+            if len(self.served) > 0 and meta.key in self.served:
                 continue
             if meta.request.late is not None:
                 self._realise(bound, max(self.ready, begins(meta)))
                 continue
-            if meta.end <= self.ready + FITS and meta.start < self.ready and meta.key not in self.begun:
+            ready = self.ready
+            if meta.start < ready and meta.end <= ready + FITS and meta.key not in self.begun:
                 running = "the running action"
                 if len(self.cues) > 0:
                     running = f"'{self.cues[-1].action.name}'"
-                waits = self.ready - meta.request.start
+                waits = ready - meta.request.start
                 # What is wanted for a certain time is over; what is wanted once may come late.
                 if meta.written or meta.request.duration is not None or waits > self.project.settings.wait:
                     self._tell(
@@ -109,7 +112,7 @@ class Performer:
                     )
                     continue
                 self._tell(meta, "queued", f"waits {waits:.2f} s for {running}", True)
-            self._realise(bound, max(self.ready, meta.start))
+            self._realise(bound, max(ready, meta.start))
 
     def _realise(self, bound: Bound, now: float) -> None:
         meta = bound.meta
@@ -122,9 +125,10 @@ class Performer:
         for step in steps:
             hops = step.hop != ""
             asked = None if hops else meta.request
+            mood = self._mood(asked, now)
             fitting = list(step.candidates)
             if limit < float("inf"):  # else all fit
-                fitting = [a for a in step.candidates if fits_before(self._shape(a, asked, now), limit)]
+                fitting = [a for a in step.candidates if fits_before(self._shape(a, asked, now, mood), limit)]
             if len(fitting) == 0:
                 before = "" if meta.written else " before something more important"
                 self._tell(meta, "no-room", f"nothing fits into the {max(0.0, limit - now):.2f} s{before}")
@@ -133,7 +137,7 @@ class Performer:
                 warm = [
                     a
                     for a in fitting
-                    if a.cooldown <= 0 or self._cooled(a) <= self._shape(a, asked, now).start + FITS
+                    if a.cooldown <= 0 or self._cooled(a) <= self._shape(a, asked, now, mood).start + FITS
                 ]
                 if len(warm) == 0:
                     soonest = min([self._cooled(a) for a in fitting])
@@ -151,9 +155,8 @@ class Performer:
                 fitting = self._timely(bound, fitting, now)
                 if len(fitting) == 0:
                     return
-            mood = self._mood(asked, now)
             action = self._draw(fitting, f"{meta.key}/{step.hop}" if hops else meta.key, now, mood)
-            shape = self._shape(action, asked, now)
+            shape = self._shape(action, asked, now, mood)
             cue = self._cue(action, shape, bound, hops, stance, mood)
             cues.append(cue)
             now, stance = cue.end, cue.then
@@ -167,7 +170,8 @@ class Performer:
         meta = bound.meta
         request = meta.request
         allowed = slack_of(request)
-        late = {a.id: lateness(self.project, a, request, self._shape(a, request, now)) for a in fitting}
+        mood = self._mood(request, now)
+        late = {a.id: lateness(self.project, a, request, self._shape(a, request, now, mood)) for a in fitting}
         least = min([late[a.id] for a in fitting])
         if least > allowed + FITS:
             waits = self._cause(request, now)
@@ -226,18 +230,21 @@ class Performer:
             if fits and self._usable(action):
                 found = phases(self.project, action)
                 lead = found.stroke - found.skip(action.timing.blend_in)
-                least = min(least, lead + drag(lead, self._tempo(action, request, request.stroke)))
+                speed = self._tempo(action, self._mood(request, request.stroke))
+                least = min(least, lead + drag(lead, speed))
         return request.stroke - least
 
     def _over(self, action: Action, request: MetaRequest, now: float) -> float:
         """Return when what follows an action could begin at the earliest."""
-        shape = self._shape(action, request, now)
+        shape = self._shape(action, request, now, self._mood(request, now))
         return shape.start + hurried(self.project, action, shape) + self.project.settings.rest - FITS
 
     def _until(self, action: Action, shape: CueShape, bound: Bound) -> float:
         """Return when an action that is to be played through is left nevertheless: early enough for the first
         of what follows that can be in time then, late enough for its own stroke; infinity for never.
         """
+        if len(bound.after) == 0:
+            return float("inf")
         rest = self.project.settings.rest
         soonest = shape.start + hurried(self.project, action, shape)
         for other in bound.after:
@@ -312,7 +319,10 @@ class Performer:
                 )
                 return None
             return self._way(meta, request.stance)
-        every = [a for a in graph.of(self.stance, request.kind) if self._usable(a)]
+        here = node(self.stance, request.kind)
+        if here not in self.candidates:
+            self.candidates[here] = [a for a in graph.of(self.stance, request.kind) if self._usable(a)]
+        every = self.candidates[here]
         if len(request.among) > 0:
             every = [a for a in every if a.id in request.among]
         found = every
@@ -322,7 +332,7 @@ class Performer:
         if request.limb is not None:
             exact = [a for a in found if a.limb == request.limb]
         if meta.written:  # the model's limb and tags are wishes, not orders, nor worth playing the same again
-            again = self.recent.get(node(self.stance, request.kind), ())[-1:]
+            again = self.recent.get(here, ())[-1:]
             if not any(a.id not in again for a in exact):
                 exact = found if any(a.id not in again for a in found) else every
         if len(exact) == 0:
@@ -407,9 +417,9 @@ class Performer:
     def _usable(self, action: Action) -> bool:
         return action.likelihood > 0 and self._arrives(action)
 
-    def _shape(self, action: Action, request: MetaRequest | None, now: float) -> CueShape:
+    def _shape(self, action: Action, request: MetaRequest | None, now: float, mood: Mood) -> CueShape:
         """Return how an action would play for a request from `now` on, or as a step on the way to it."""
-        return shape_of(self.project, action, request, now, self._tempo(action, request, now))
+        return shape_of(self.project, action, request, now, self._tempo(action, mood))
 
     def _mood(self, request: MetaRequest | None, at: float) -> Mood:
         """Return the mood that something asked for is played in from `at` on, or at its stroke."""
@@ -420,9 +430,8 @@ class Performer:
             return mood
         return changed(mood, request.valence, request.arousal, request.intensity)
 
-    def _tempo(self, action: Action, request: MetaRequest | None, at: float) -> float:
+    def _tempo(self, action: Action, mood: Mood) -> float:
         """Return how fast an action is played, 1 where it was made for the mood."""
-        mood = self._mood(request, at)
         return 1.0 if mood.neutral or made_for(mood, action.tags) else tempo(mood)
 
     def _extent(self, action: Action, mood: Mood) -> float:
@@ -442,17 +451,17 @@ class Performer:
         recently as long as any others are left.
         """
         left = self._spaced(candidates)
-        weights = {
-            a.id: a.likelihood / max(self._count(a.id, now), 1.0) * self._favour(a, mood) for a in left
-        }
+        if len(left) == 1:
+            return left[0]
+        neutral = mood.neutral
+        weights: dict[str, float] = {}
+        for a in left:
+            favoured = 1.0 if neutral else favour(mood, a.tags, vigour(self.project, a))
+            weights[a.id] = a.likelihood / max(self._count(a.id, now), 1.0) * favoured
         if not any(w > 0 for w in weights.values()):
             return left[0]
         chosen = pick(self.seed, key, "action", weights)
         return next(a for a in left if a.id == chosen)
-
-    def _favour(self, action: Action, mood: Mood) -> float:
-        """Return how much likelier a mood makes an action, 1 in none."""
-        return 1.0 if mood.neutral else favour(mood, action.tags, vigour(self.project, action))
 
     def _spaced(self, candidates: list[Action]) -> list[Action]:
         """Leave out what needs more other actions before it plays again; where that leaves nothing, all need
@@ -463,11 +472,9 @@ class Performer:
         before = self.recent.get(node(first.stance, first.kind), ())
         if len(candidates) < 2 or len(before) == 0:
             return candidates
-        # How many came after each.
-        since = {ident: len(before) - 1 - place for place, ident in enumerate(before)}
         needs = {a.id: default if a.spacing is None else a.spacing for a in candidates}
         for less in range(max([needs[a.id] for a in candidates]) + 1):
-            left = [a for a in candidates if since.get(a.id, REMEMBERED) >= needs[a.id] - less]
+            left = [a for a in candidates if rested(before, a.id, needs[a.id] - less)]
             if len(left) > 0:
                 return left
         return candidates
@@ -532,6 +539,8 @@ class Performer:
     def loop(self, stance: str, key: str) -> Action | None:
         """Return one of a stance's loops, drawn by likelihood; None where it has none."""
         loops = self.graph.of(stance, "stance")
+        if len(loops) == 1:
+            return loops[0]
         weights = {a.id: a.likelihood for a in loops if a.likelihood > 0}
         if len(weights) == 0:
             return loops[0] if len(loops) > 0 else None

@@ -7,6 +7,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from metagraph.errors import error_words
 from metagraph.graph import edits
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import LAYERS, Kind, Layer, Project
@@ -39,7 +40,9 @@ def accept(
     wanted = [
         p for p in found.proposals.values() if (clips is None or p.clip in clips) and p.clip in project.clips
     ]
-    left = {p.clip: f"only {p.confidence:.0%} sure" for p in wanted if p.confidence < above}
+    left: dict[str, str] = {
+        p.clip: told("only {sure:.0%} sure", sure=p.confidence) for p in wanted if p.confidence < above
+    }
     wanted = [p for p in wanted if p.clip not in left]
     keys = {
         key: key for key, place in found.places.items() if place.there and project.stance(key) is not None
@@ -63,7 +66,7 @@ def accept(
             project = _place(project, p, found.places, keys, loops, held)
             placed.append(p.clip)
         except EditError as error:
-            left[p.clip] = str(error)
+            left[p.clip] = error_words(error)
     project = softened(_begun(before, project), {action.id for action in before.actions()})
     return Taken(project, tuple(placed), left, held)
 

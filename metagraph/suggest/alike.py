@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.suggest.estimate import Belief
+from metagraph.wording import told
 
 Array = NDArray[Any]
 
@@ -116,7 +117,9 @@ class Alike:
                 continue
             value, firm, near = model.best(model.scores(said, away, None), said)
             sure = model.confidence(firm) * model.familiar(away)
-            out[field] = Belief(value, sure, f"like {near}" if near else "like what is labelled so")
+            out[field] = Belief(
+                value, sure, told("like '{words}'", words=near) if near else told("like what is labelled so")
+            )
         return out
 
     def _away(self, scaled: Array | None) -> Array | None:
@@ -226,7 +229,7 @@ class _Field:
         shared[self.index != place] = 0
         near = int(shared.argmax())
         named = " ".join(self.alike.examples[self.places[near]].words) if shared[near] else ""
-        return self.values[place], float(shares[place]), f"'{named}'" if named else ""
+        return self.values[place], float(shares[place]), named
 
     def familiar(self, away: Array | None) -> float:
         """Return how far the examples can speak for a motion, 0..1: less, the farther the nearest is beyond

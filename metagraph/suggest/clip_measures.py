@@ -11,6 +11,7 @@ from math import log, sqrt
 from metagraph.graph.words import Layer
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.traits import Traits
+from metagraph.wording import told
 
 TYPICAL: Mapping[Layer, float] = {
     "arms": 0.12,
@@ -103,29 +104,31 @@ def layer_of(traits: Traits) -> Belief[Layer]:
     arms = max(0.0, e["left_arm"] + e["right_arm"] - breath) + e["fingers"]
     have = [layer for layer in ("body", "arms", "head") if layers[layer].names]
     if have == ["body"]:
-        return Belief("body", SUREST, "the character has neither arms nor a head that are known")
+        return Belief("body", SUREST, told("the character has neither arms nor a head that are known"))
     if traits.face > 1e-3 and "head" in have:
-        return Belief("head", SUREST, "only the face moves")
+        return Belief("head", SUREST, told("only the face moves"))
     if arms + lower + upper < 1e-5:
-        return Belief("body", 0.34, "nothing moves")
+        return Belief("body", 0.34, told("nothing moves"))
     body, hands = lower / (0.15 * upper + 0.25 * arms + 1e-6), arms / (0.1 * upper + 1e-6)
-    share = (
-        f"hips and legs {lower * 100:.1f}, arms {arms * 100:.1f}, head and trunk {upper * 100:.1f} % of "
-        "the height a second"
+    share = told(
+        "hips and legs {lower:.1f}, arms {arms:.1f}, head and trunk {upper:.1f} % of the height a second",
+        lower=lower * 100,
+        arms=arms * 100,
+        upper=upper * 100,
     )
     if body >= 1:
-        return Belief("body", _tempered(body), f"hips and legs move: {share}")
+        return Belief("body", _tempered(body), told("hips and legs move: {share}", share=share))
     if hands >= 1 and "arms" in have:
         return Belief(
             "arms",
             min(_tempered(hands), _tempered(1 / max(body, 1e-3))),
-            f"the arms move, hips and legs do not: {share}",
+            told("the arms move, hips and legs do not: {share}", share=share),
         )
     if "head" in have:
         return Belief(
             "head",
             min(_tempered(1 / max(hands, 1e-3)), _tempered(1 / max(body, 1e-3))),
-            f"only the head moves: {share}",
+            told("only the head moves: {share}", share=share),
         )
     return Belief("body", 0.5, share)
 
@@ -141,8 +144,16 @@ def moves_most(traits: Traits) -> Belief[Layer]:
         return layer_of(traits)
     first, second = far[0], far[1][0] if len(far) > 1 else 0.0
     x = traits.layers[first[1]]
-    words = f"the {first[1]} goes {100 * traits.height * x.extent:.0f} cm, the most beside what is usual"
+    words = _goes_farthest(first[1], 100 * traits.height * x.extent)
     return Belief(first[1], _tempered(first[0] / max(second, 1e-6)), words)
+
+
+def _goes_farthest(layer: Layer, length: float) -> str:
+    if layer == "body":
+        return told("the body goes {length:.0f} cm, the most beside what is usual", length=length)
+    if layer == "arms":
+        return told("the arms go {length:.0f} cm, the most beside what is usual", length=length)
+    return told("the head goes {length:.0f} cm, the most beside what is usual", length=length)
 
 
 def _tempered(ratio: float) -> float:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
-from metagraph.graph.model import LAYERS, Action, Project, Timing
+from metagraph.graph.model import LAYERS, Action, Kind, Layer, Project, Timing
 from metagraph.motion.clip import Clip
 from metagraph.playback.phases import phases
 from metagraph.suggest import compatibility
@@ -21,6 +21,7 @@ from metagraph.suggest.estimate import Belief
 from metagraph.suggest.motion_guess import MotionGuess
 from metagraph.suggest.proposal import Place, Proposal, Rest, words_of
 from metagraph.suggest.traits import Traits
+from metagraph.wording import told
 
 Array = NDArray[Any]
 
@@ -89,23 +90,33 @@ def _with_times(p: Proposal, motion: Clip, times: compatibility.Times) -> Propos
         "loop": loop,
     }
     sure = 0.9 if times.good else 0.5
-    reasons = dict.fromkeys(timing, str(times.reason))
-    reasons["loop"] = "a stance goes on until it is left" if loop else f"a {p.kind.value} plays once"
+    reasons = dict.fromkeys(timing, times.reason)
+    reasons["loop"] = _plays(p.kind.value)
     if times.earliest_exit is None:
         reasons["earliest_exit"] = (
-            "a stance may be left at any time"
+            told("a stance may be left at any time")
             if loop
-            else "it plays to its end, where it looks like a stance again"
+            else told("it plays to its end, where it looks like a stance again")
         )
     else:
-        reasons["earliest_exit"] = f"looks like the stance it ends in from {times.earliest_exit:.2f} s on"
+        reasons["earliest_exit"] = told(
+            "looks like the stance it ends in from {seconds:.2f} s on", seconds=times.earliest_exit
+        )
     details = {
         key: Belief(value, p.kind.confidence if key == "loop" else sure, reasons[key])
         for key, value in timing.items()
     }
     return replace(
-        p, timing=timing, timing_reason=str(times.reason), good=times.good, details={**p.details, **details}
+        p, timing=timing, timing_reason=times.reason, good=times.good, details={**p.details, **details}
     )
+
+
+def _plays(kind: Kind) -> str:
+    if kind == "stance":
+        return told("a stance goes on until it is left")
+    if kind == "transition":
+        return told("a transition plays once")
+    return told("a gesture plays once") if kind == "gesture" else told("a fidget plays once")
 
 
 def masked(project: Project, p: Proposal, traits: Traits | None) -> Proposal:
@@ -115,7 +126,7 @@ def masked(project: Project, p: Proposal, traits: Traits | None) -> Proposal:
     motion = project.clips[p.clip].motion
     if motion is None or traits is None:
         return p
-    mask: Belief[tuple[str, ...]] = Belief((), 0.9, "moves what its layer reaches")
+    mask: Belief[tuple[str, ...]] = Belief((), 0.9, told("moves what its layer reaches"))
     if traits.face > 0 and p.layer.value == "head":
         moving = np.flatnonzero(np.ptp(motion.rotations, axis=0).max(-1) > 1e-3)
         apart = np.ptp(motion.translations, axis=0).max(-1) if len(motion.translated) else np.zeros(0)
@@ -127,8 +138,9 @@ def masked(project: Project, p: Proposal, traits: Traits | None) -> Proposal:
             mask = Belief(
                 names,
                 0.9,
-                f"only {len(names)} joint{'s' if len(names) > 1 else ''} of the face "
-                f"move{'s' * (len(names) == 1)}",
+                told("only {count} joints of the face move", count=len(names))
+                if len(names) > 1
+                else told("only 1 joint of the face moves"),
             )
     return replace(p, details={**p.details, "mask": mask})
 
@@ -143,16 +155,25 @@ def stroked(project: Project, p: Proposal, motion: MotionGuess | None) -> Propos
         "", p.clip, "gesture", p.layer.value, "", "", timing=Timing(**p.timing), limb=p.limb.value
     )
     found = phases(project, action)
-    what = {"arms": "the hands are", "head": "the head is", "body": "the trunk is"}[p.layer.value]
     near = motion.stroke is not None and abs(motion.stroke.value - found.stroke) < 0.1
-    reason = f"{what} fastest at {found.stroke:.2f} s" + (
-        f", on the way out; held until {found.relax:.2f} s" if near else ""
-    )
+    reason = _fastest(p.layer.value, found.stroke)
+    if near:
+        reason = told(
+            "{fastest}, on the way out; held until {seconds:.2f} s", fastest=reason, seconds=found.relax
+        )
     return replace(
         p,
         timing={**p.timing, "stroke": round(found.stroke, 3)},
         details={**p.details, "stroke": Belief(round(found.stroke, 3), 0.85 if near else 0.6, reason)},
     )
+
+
+def _fastest(layer: Layer, seconds: float) -> str:
+    if layer == "arms":
+        return told("the hands are fastest at {seconds:.2f} s", seconds=seconds)
+    if layer == "head":
+        return told("the head is fastest at {seconds:.2f} s", seconds=seconds)
+    return told("the trunk is fastest at {seconds:.2f} s", seconds=seconds)
 
 
 def weighted(project: Project, proposals: Mapping[str, Proposal]) -> dict[str, Proposal]:
@@ -174,10 +195,12 @@ def weighted(project: Project, proposals: Mapping[str, Proposal]) -> dict[str, P
         words = key[-1]
         if count > 1 and words:
             belief = Belief(
-                round(1 / count, 3), 0.8, f"one of {count} of '{words}', which share the weight of one"
+                round(1 / count, 3),
+                0.8,
+                told("one of {count} of '{words}', which share the weight of one", count=count, words=words),
             )
         else:
-            belief = Belief(1.0, 0.8, "no other is called so, so it counts as one")
+            belief = Belief(1.0, 0.8, told("no other is called so, so it counts as one"))
         for clip in clips:
             p = proposals[clip]
             out[clip] = replace(p, details={**p.details, "likelihood": belief})
@@ -216,8 +239,17 @@ def rest_of(project: Project, place: Place, proposals: Mapping[str, Proposal]) -
             start, end = (0.0, long) if first else (motion.duration - long, motion.duration)
             name = project.clips[clip].name
             reason = (
-                f"no clip rests there; '{name}' is still for {'its first' if first else 'its last'} "
-                f"{long:.2f} s"
+                told(
+                    "no clip rests there; '{name}' is still for its first {seconds:.2f} s",
+                    name=name,
+                    seconds=long,
+                )
+                if first
+                else told(
+                    "no clip rests there; '{name}' is still for its last {seconds:.2f} s",
+                    name=name,
+                    seconds=long,
+                )
             )
             best = Rest(clip, round(start, 3), round(end, 3), reason)
     return best

@@ -15,6 +15,7 @@ from metagraph.suggest.name_words import NameGuess
 from metagraph.suggest.proposal import Place, Proposals, plain
 from metagraph.suggest.stances import Stances, likely
 from metagraph.suggest.traits import Traits
+from metagraph.wording import told
 
 # Words that mean nothing else; others may be a beat in another language, or in another mouth
 SURELY = frozenset(
@@ -75,8 +76,12 @@ def left_aside(
     recorded by itself.
     """
     if traits is not None and traits.duration < POSE and not _shared(traits, motion, shapes):
-        frames = "a single frame" if traits.frames == 1 else f"only {traits.duration:.2f} s long"
-        return f"is {frames}: a pose in which no other clip begins or ends, not a movement"
+        if traits.frames == 1:
+            return told("is a single frame: a pose in which no other clip begins or ends, not a movement")
+        return told(
+            "is only {seconds:.2f} s long: a pose in which no other clip begins or ends, not a movement",
+            seconds=traits.duration,
+        )
     if said.kind is not None:
         return ""
     if said.other is not None and (usual or said.other.value in SURELY or not _talks(traits, motion)):
@@ -84,17 +89,18 @@ def left_aside(
     if traits is None or motion is None or motion.chances is None:
         return ""
     if walks(traits):
-        return (
-            f"walks or runs: its feet pass each other by {100 * traits.height * traits.stride:.0f} cm, and "
-            "its end flows into its beginning"
+        return told(
+            "walks or runs: its feet pass each other by {stride:.0f} cm, and its end flows into its "
+            "beginning",
+            stride=100 * traits.height * traits.stride,
         )
     begins, ends = motion.begins[:1], motion.ends[:1]
     if begins and ends and begins[0][1] is not ends[0][1] and min(begins[0][0], ends[0][0]) > PASSES:
         return ""
     if traits.travel > FAR:
-        return f"goes {traits.height * traits.travel:.1f} m away and to no other stance"
+        return told("goes {length:.1f} m away and to no other stance", length=traits.height * traits.travel)
     if traits.turned > ROUND:
-        return f"turns round by {traits.turned:.0f} degrees and to no other stance"
+        return told("turns round by {degrees:.0f} degrees and to no other stance", degrees=traits.turned)
     if (
         traits.rise > EXERCISE
         and traits.energy["legs"] > FAST
@@ -102,7 +108,9 @@ def left_aside(
         and ends
         and begins[0][1] is ends[0][1]
     ):
-        return f"goes up and down by {100 * traits.height * traits.rise:.0f} cm: an exercise"
+        return told(
+            "goes up and down by {length:.0f} cm: an exercise", length=100 * traits.height * traits.rise
+        )
     return ""
 
 

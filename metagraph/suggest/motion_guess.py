@@ -6,7 +6,7 @@ with the head and trunk along, a fidget is small, busy, or touches the character
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import exp, log
 
@@ -15,6 +15,7 @@ from metagraph.suggest.clip_measures import SUREST, TYPICAL, energy, layer_of, m
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.stances import Shape, Stances, distance, likely, nearest
 from metagraph.suggest.traits import LayerTraits, Traits
+from metagraph.wording import told
 
 # of the way of a clip that ends in no other stance, the share from end to end from which on it is a
 # transition
@@ -64,11 +65,11 @@ def guess(
     """
     layer = _layer_beside(traits, stances) if on is None else Belief(on, SUREST, "")
     x = traits.layers[layer.value]
-    told = x if posture is None else posture
+    posed = x if posture is None else posture
     shapes = stances.get(layer.value, ())
-    starts, ends = nearest(shapes, told.names, told.first), nearest(shapes, told.names, told.last)
-    begins, leaves = likely(shapes, told.names, told.first), likely(shapes, told.names, told.last)
-    moved = _passing(begins, leaves, _sigmoid(_moving(told, layer.value, starts, ends)))
+    starts, ends = nearest(shapes, posed.names, posed.first), nearest(shapes, posed.names, posed.last)
+    begins, leaves = likely(shapes, posed.names, posed.first), likely(shapes, posed.names, posed.last)
+    moved = _passing(begins, leaves, _sigmoid(_moving(posed, layer.value, starts, ends)))
     calm = starts[0][1].calm if starts and starts[0][0] < 0.5 * TYPICAL[layer.value] else 0.0
     walking = walks(traits)
     rests = 1.0 if walking else resting(traits) + (3.0 if energy(traits) <= 1.05 * calm else 0.0)
@@ -83,32 +84,51 @@ def guess(
     }
     kind = max(chances, key=lambda k: chances[k])
     cm = 100 * traits.height
-    reason = {
-        "transition": f"ends {told.loop_error * cm:.1f} cm from where it begins and goes only "
-        f"{told.extent * cm:.0f} cm beside that way",
-        "stance": (
-            f"moves at most {max(y.peak for y in traits.layers.values()) * cm:.0f} cm/s in "
-            f"{traits.duration:.1f} s"
+    reason: dict[Kind, str] = {
+        "transition": told(
+            "ends {apart:.1f} cm from where it begins and goes only {aside:.0f} cm beside that way",
+            apart=posed.loop_error * cm,
+            aside=posed.extent * cm,
+        ),
+        "stance": told(
+            "moves at most {speed:.0f} cm/s in {seconds:.1f} s",
+            speed=max(y.peak for y in traits.layers.values()) * cm,
+            seconds=traits.duration,
         )
         if not walking
-        else (
-            f"goes on walking or running: its feet pass each other by {traits.stride * cm:.0f} cm, and its "
-            "end flows into its beginning"
+        else told(
+            "goes on walking or running: its feet pass each other by {stride:.0f} cm, and its end flows into "
+            "its beginning",
+            stride=traits.stride * cm,
         ),
-        "gesture": f"goes {x.extent * cm:.0f} cm away and comes back, in {_times(x.bouts)}, up to "
-        f"{x.peak * cm:.0f} cm/s",
-        "fidget": f"goes {x.extent * cm:.0f} cm away in {_times(x.bouts)}, up to {x.peak * cm:.0f} cm/s"
-        + _touching(traits, cm),
-    }[kind]
+        "gesture": told(
+            "goes {length:.0f} cm away and comes back, in {times}, up to {speed:.0f} cm/s",
+            length=x.extent * cm,
+            times=_times(x.bouts),
+            speed=x.peak * cm,
+        ),
+        "fidget": _touching(
+            traits,
+            cm,
+            told(
+                "goes {length:.0f} cm away in {times}, up to {speed:.0f} cm/s",
+                length=x.extent * cm,
+                times=_times(x.bouts),
+                speed=x.peak * cm,
+            ),
+        ),
+    }
     return MotionGuess(
-        Belief(kind, min(SUREST, chances[kind], (1 + layer.confidence) / 2), reason),
+        Belief(kind, min(SUREST, chances[kind], (1 + layer.confidence) / 2), reason[kind]),
         layer,
         limb_of(traits, layer.value, kind),
         Belief(
-            kind == "stance", min(SUREST, chances[kind]), f"its ends are {x.loop_error * cm:.1f} cm apart"
+            kind == "stance",
+            min(SUREST, chances[kind]),
+            told("its ends are {apart:.1f} cm apart", apart=x.loop_error * cm),
         ),
-        _beside(starts, begins, "begins" if kind != "stance" else "rests", layer, cm),
-        _beside(ends, leaves, "ends", layer, cm) if kind == "transition" else None,
+        _beside(starts, begins, _begins if kind != "stance" else _rests, layer, cm),
+        _beside(ends, leaves, _ends, layer, cm) if kind == "transition" else None,
         starts[1][1] if len(starts) > 1 else None,
         _stroke(x, cm) if kind in ("gesture", "fidget") and x.peak > 0 else None,
         chances,
@@ -118,15 +138,29 @@ def guess(
 
 
 def _times(bouts: int) -> str:
-    return "1 movement" if bouts == 1 else f"{bouts} movements"
+    return told("1 movement") if bouts == 1 else told("{count} movements", count=bouts)
 
 
-def _touching(traits: Traits, cm: float) -> str:
-    return (
-        f", and a hand comes {traits.touch * cm:.0f} cm nearer to touch the other arm or the head"
-        if traits.touch > 0.03
-        else ""
+def _touching(traits: Traits, cm: float, goes: str) -> str:
+    if traits.touch <= 0.03:
+        return goes
+    return told(
+        "{goes}, and a hand comes {length:.0f} cm nearer to touch the other arm or the head",
+        goes=goes,
+        length=traits.touch * cm,
     )
+
+
+def _begins(length: str, stance: str) -> str:
+    return told('begins {length} from "{stance}"', length=length, stance=stance)
+
+
+def _rests(length: str, stance: str) -> str:
+    return told('rests {length} from "{stance}"', length=length, stance=stance)
+
+
+def _ends(length: str, stance: str) -> str:
+    return told('ends {length} from "{stance}"', length=length, stance=stance)
 
 
 def _stroke(x: LayerTraits, cm: float) -> Belief[float]:
@@ -134,7 +168,11 @@ def _stroke(x: LayerTraits, cm: float) -> Belief[float]:
     return Belief(
         x.stroke_at,
         0.8 if again else 0.6,
-        f"fastest on the way out at {x.stroke_at:.2f} s of {x.peak * cm:.0f} cm/s",
+        told(
+            "fastest on the way out at {seconds:.2f} s of {speed:.0f} cm/s",
+            seconds=x.stroke_at,
+            speed=x.peak * cm,
+        ),
     )
 
 
@@ -143,20 +181,22 @@ def _sigmoid(z: float) -> float:
 
 
 def _beside(
-    found: Sequence[tuple[float, Shape]], likely: Likely, verb: str, layer: Belief[Layer], cm: float
+    found: Sequence[tuple[float, Shape]],
+    likely: Likely,
+    said: Callable[[str, str], str],
+    layer: Belief[Layer],
+    cm: float,
 ) -> Belief[Shape] | None:
     if not found:
         return None
     (chance, shape) = likely[0]
     near = next(away for away, other in found if other is shape)
     second = min((away for away, other in found if other is not shape), default=None)
-    more = "" if second is None else f"; next nearest {_cm(second * cm)}"
+    words = said(_cm(near * cm), shape.name)
+    if second is not None:
+        words = told("{words}; next nearest {length}", words=words, length=_cm(second * cm))
     sure = max(chance, ONLY) if second is None else chance  # where there is only one, all are in it
-    return Belief(
-        shape,
-        min(CLEAREST * sure, layer.confidence),
-        f'{verb} {_cm(near * cm)} from "{shape.name}"{more}',
-    )
+    return Belief(shape, min(CLEAREST * sure, layer.confidence), words)
 
 
 def _passing(begins: Likely, ends: Likely, otherwise: float) -> float:
@@ -169,7 +209,7 @@ def _passing(begins: Likely, ends: Likely, otherwise: float) -> float:
 
 
 def _cm(length: float) -> str:
-    return f"{length:.1f} cm" if length < 10 else f"{length:.0f} cm"
+    return told("{length:.1f} cm", length=length) if length < 10 else told("{length:.0f} cm", length=length)
 
 
 def _layer_beside(traits: Traits, stances: Stances) -> Belief[Layer]:
@@ -179,7 +219,9 @@ def _layer_beside(traits: Traits, stances: Stances) -> Belief[Layer]:
     found = layer_of(traits)
     if walks(traits):
         return Belief(
-            "body", SUREST, f"the feet pass each other by {100 * traits.height * traits.stride:.0f} cm"
+            "body",
+            SUREST,
+            told("the feet pass each other by {stride:.0f} cm", stride=100 * traits.height * traits.stride),
         )
     if resting(traits) < 0 or traits.face > 1e-3:
         return found
@@ -194,26 +236,32 @@ def _layer_beside(traits: Traits, stances: Stances) -> Belief[Layer]:
     if found.value != "body" and (
         ("body" in unusual and unusual["body"] > ELSEWHERE) or lower > LIFE * all_of
     ):
-        where = (
-            f"rests {100 * traits.height * unusual['body']:.0f} cm from the usual pose of the body"
-            if "body" in unusual
-            else ""
-        )
         return Belief(
-            "body", 0.75, where or f"rests, and hips and legs make {lower / all_of:.0%} of what moves"
+            "body",
+            0.75,
+            _unusual("body", 100 * traits.height * unusual["body"])
+            if "body" in unusual
+            else told("rests, and hips and legs make {share:.0%} of what moves", share=lower / all_of),
         )
     if len(unusual) == 1 and found.value not in unusual:
         ((layer, away),) = unusual.items()
-        return Belief(
-            layer, 0.7, f"rests {100 * traits.height * away:.0f} cm from the usual pose of the {layer}"
-        )
+        return Belief(layer, 0.7, _unusual(layer, 100 * traits.height * away))
     return found
+
+
+def _unusual(layer: Layer, length: float) -> str:
+    if layer == "body":
+        return told("rests {length:.0f} cm from the usual pose of the body", length=length)
+    if layer == "arms":
+        return told("rests {length:.0f} cm from the usual pose of the arms", length=length)
+    return told("rests {length:.0f} cm from the usual pose of the head", length=length)
 
 
 def limb_of(traits: Traits, layer: Layer, kind: Kind) -> Belief[Limb]:
     """Return the arm that a clip needs; of a head that goes to one side, the side."""
     if kind in ("stance", "transition"):
-        return Belief("both", 0.9, f"a {kind} takes both arms")
+        both = told("a stance takes both arms") if kind == "stance" else told("a transition takes both arms")
+        return Belief("both", 0.9, both)
     if layer == "arms":
         share = traits.symmetry
         limb: Limb = "both" if abs(share) < ALONE else "left" if share > 0 else "right"
@@ -221,19 +269,23 @@ def limb_of(traits: Traits, layer: Layer, kind: Kind) -> Belief[Limb]:
         return Belief(
             limb,
             confidence,
-            f"the left arm makes {50 * (1 + share):.0f} % of the arms' movement, the right "
-            f"{50 * (1 - share):.0f} %",
+            told(
+                "the left arm makes {left:.0f} % of the arms' movement, the right {right:.0f} %",
+                left=50 * (1 + share),
+                right=50 * (1 - share),
+            ),
         )
     x = traits.layers["head"]
     if layer == "head" and "nose" in x.names:
         n = x.names.index("nose")
         left, right = float(x.high[n, 0] - x.first[n, 0]), float(x.first[n, 0] - x.low[n, 0])
         if max(left, right) > 0.02 and max(left, right) > 3 * min(left, right):
-            side: Limb = "left" if left > right else "right"
-            return Belief(
-                side, 0.7, f"the nose goes {100 * traits.height * max(left, right):.0f} cm to the {side}"
-            )
-    return Belief("both", 0.9, f"the {layer} moves, not one arm")
+            length = 100 * traits.height * max(left, right)
+            if left > right:
+                return Belief("left", 0.7, told("the nose goes {length:.0f} cm to the left", length=length))
+            return Belief("right", 0.7, told("the nose goes {length:.0f} cm to the right", length=length))
+    moves = told("the head moves, not one arm") if layer == "head" else told("the body moves, not one arm")
+    return Belief("both", 0.9, moves)
 
 
 def _moving(

@@ -4,7 +4,6 @@ stances.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -28,6 +27,7 @@ from metagraph.suggest.words_tokens import (
     without_numbers,
     without_shared,
 )
+from metagraph.wording import requoted, told
 
 __all__ = ["NameGuess", "Patterns", "PatternsError", "forget", "learn", "merged", "read_names"]
 
@@ -250,9 +250,8 @@ class _Reader:
         """Return the belief with what its reason quotes as the name writes it: 'ToCrossed'."""
         if belief is None or "'" not in belief.reason:
             return belief
-        reason = re.sub(
-            "'([^']+)'", lambda found: quoted(name, found[1].split(), self._taken[name]), belief.reason
-        )
+        taken = self._taken[name]
+        reason = requoted(belief.reason, lambda words: quoted(name, words.split(), taken)[1:-1])
         return Belief(belief.value, belief.confidence, reason)
 
     def key(self, parse: _Parse, field: str) -> Words:
@@ -286,29 +285,35 @@ class _Reader:
         )
 
     def _other(self, words: Words) -> Belief[str] | None:
-        told = next((p for p in phrases(words, self._kinds) if p.meaning == "other"), None)
-        return Belief(told.text, 0.85, f"name says '{told.text}'") if told is not None else None
+        said = next((p for p in phrases(words, self._kinds) if p.meaning == "other"), None)
+        return Belief(said.text, 0.85, _says(said.text)) if said is not None else None
 
     def _recalled(self, parse: _Parse, field: str) -> Belief[str] | None:
         found = recalled(self._patterns, field, self.key(parse, field))
         if found is None:
             return None
         value, words, count = found
-        times = "once" if count == 1 else f"{count} times"
-        return Belief(value, 1 - 0.2 / (count + 1), f"'{words}' was corrected to {value} {times}")
+        said = (
+            told("'{words}' was corrected to {value} once", words=words, value=value)
+            if count == 1
+            else told(
+                "'{words}' was corrected to {value} {count} times", words=words, value=value, count=count
+            )
+        )
+        return Belief(value, 1 - 0.2 / (count + 1), said)
 
     def _kind(self, parse: _Parse) -> Belief[Kind] | None:
         learned = self._recalled(parse, "kind")
         if learned is not None:
             return cast("Belief[Kind]", learned)
         if parse.joined:
-            return Belief("transition", parse.sure, f"name says '{parse.joined}'")
+            return Belief("transition", parse.sure, _says(parse.joined))
         stance = parse.stance
         if stance and parse.own and all(self._kinds.get(w) == "stance" for w in parse.act):
             return Belief(
                 "stance",
                 stance.confidence,
-                f"name says '{stance.why}'" if " names " not in stance.why else stance.why,
+                _says(stance.why) if " names " not in stance.why else stance.why,
             )
         if any(p.meaning == "other" for p in phrases(parse.words, self._kinds)):
             return None  # walking, fighting: none of the four
@@ -316,17 +321,18 @@ class _Reader:
         if said:
             best = max(said, key=lambda p: (p.end - p.start, -p.start))
             if any(p.meaning != best.meaning and p.end - p.start == best.end - best.start for p in said):
-                both = " and ".join(dict.fromkeys(f"'{p.text}'" for p in said))
-                return Belief(cast("Kind", best.meaning), 0.55, f"name says {both}")
-            return Belief(
-                cast("Kind", best.meaning), EXPLICIT if parse.own else 0.93, f"name says '{best.text}'"
-            )
+                return Belief(cast("Kind", best.meaning), 0.55, _says(*(p.text for p in said)))
+            return Belief(cast("Kind", best.meaning), EXPLICIT if parse.own else 0.93, _says(best.text))
         if (
             stance and parse.own and any(len(w) > 2 for w in parse.act)
         ):  # shorter ones are directions: "head_dl"
             idle = "idle" in (stance.words[0] if len(stance.words) == 1 else "", self._before(parse))
             idle = idle and not self._stances.common(stance)
-            reason = f"name adds '{' '.join(parse.act)}' to the stance \"{stance.text}\""
+            reason = told(
+                "name adds '{words}' to the stance \"{stance}\"",
+                words=" ".join(parse.act),
+                stance=stance.text,
+            )
             return Belief("fidget" if idle else "gesture", 0.55, reason)
         return None
 
@@ -340,23 +346,26 @@ class _Reader:
         if learned is not None:
             return learned
         if parse.stance and parse.own:
+            words = " ".join(parse.words[parse.at : parse.at + parse.own])
             begins = (
-                f'comes from "{parse.stance.text}"'
+                told('name comes from "{stance}"', stance=parse.stance.text)
                 if parse.joined
-                else f"{'has' if parse.at else 'begins with'} "
-                f"'{' '.join(parse.words[parse.at : parse.at + parse.own])}'"
+                else told("name has '{words}'", words=words)
+                if parse.at
+                else told("name begins with '{words}'", words=words)
             )
             sure = min(0.85 if parse.at else 0.97, parse.stance.confidence + 0.05)
-            return Belief(parse.stance.text, sure, f"name {begins}")
+            return Belief(parse.stance.text, sure, begins)
         if parse.stance:
-            return Belief(self._called(parse.stance), 0.8, f"name says '{parse.joined}', which begins there")
+            joins = told("name says '{words}', which begins there", words=parse.joined)
+            return Belief(self._called(parse.stance), 0.8, joins)
         usual = self._stances.usual()
         if kind is None or kind.value in ("stance", "transition") or usual is None:
             return None
         return Belief(
             self._called(usual[0]),
             usual[1],
-            f"no other stance is named and '{usual[0].text}' is the plain one",
+            told("no other stance is named and '{words}' is the plain one", words=usual[0].text),
         )
 
     def _end_stance(self, parse: _Parse) -> Belief[str] | None:
@@ -365,7 +374,7 @@ class _Reader:
         learned = self._recalled(parse, "end_stance")
         if learned is not None:
             return learned
-        reason = f"name says '{parse.joined}'"
+        reason = _says(parse.joined)
         if parse.end is not None:
             return Belief(self._called(parse.end), parse.end_confidence, reason)
         return Belief(label(parse.end_words), parse.end_confidence, reason) if parse.end_words else None
@@ -391,7 +400,7 @@ class _Reader:
             return _layer(from_act, 0.85)
         side = next(iter(phrases(parse.act, self._patterns.meanings["limbs"])), None)
         if side and not (kind and kind.value == "stance"):
-            return Belief("arms", 0.8, f"name says '{side.text}', a hand")
+            return Belief("arms", 0.8, told("name says '{words}', a hand", words=side.text))
         if from_stance:  # what is done there may well be another layer's
             still = parse.joined or (kind and kind.value == "stance")
             return _layer(from_stance, (0.95 if len(stood) > 1 else 0.85) if still else 0.45)
@@ -423,10 +432,10 @@ class _Reader:
         if other == {"left"} or other == {"right"}:
             short = [p for p in explicit if len(p.text) < 4]  # "PointRight_L": the hand, not where it points
             if len(short) == 1:
-                return Belief(cast("Limb", short[0].meaning), 0.75, f"name says '{short[0].text}'")
-            return Belief("both", 0.5, f"name says {' and '.join(repr(p.text) for p in explicit)}")
+                return Belief(cast("Limb", short[0].meaning), 0.75, _says(short[0].text))
+            return Belief("both", 0.5, _says(*(p.text for p in explicit)))
         sure = 0.75 if chosen not in explicit else 0.85 if len(chosen.text) == 1 else 0.95
-        return Belief(cast("Limb", chosen.meaning), sure, f"name says '{chosen.text}'")
+        return Belief(cast("Limb", chosen.meaning), sure, _says(chosen.text))
 
     def _tags(self, parse: _Parse) -> Belief[tuple[str, ...]] | None:
         learned = self._recalled(parse, "tags")
@@ -435,16 +444,22 @@ class _Reader:
         said = phrases(parse.act, self._patterns.meanings["tags"]) if not parse.joined else []
         if not said:
             return None
-        words = " and ".join(dict.fromkeys(f"'{p.text}'" for p in said))
-        return Belief(
-            tuple(dict.fromkeys(t for p in said for t in p.meaning.split())), 0.8, f"name says {words}"
-        )
+        tags = tuple(dict.fromkeys(t for p in said for t in p.meaning.split()))
+        return Belief(tags, 0.8, _says(*(p.text for p in said)))
 
     def _number(self, words: Words) -> Belief[int] | None:
         if not words or not is_number(words[-1]) or len(words[-1]) > 9:
             return None
-        return Belief(int(words[-1]), 0.95, f"name ends in '{words[-1]}'")
+        return Belief(int(words[-1]), 0.95, told("name ends in '{words}'", words=str(words[-1])))
 
 
 def _layer(said: Phrase, confidence: float) -> Belief[Layer]:
-    return Belief(cast("Layer", said.meaning), confidence, f"name says '{said.text}'")
+    return Belief(cast("Layer", said.meaning), confidence, _says(said.text))
+
+
+def _says(*texts: str) -> str:
+    """Return that a name says some words."""
+    first, *more = (told("'{words}'", words=str(text)) for text in dict.fromkeys(texts))
+    for other in more:
+        first = told("{one} and {other}", one=first, other=other)
+    return told("name says {quoted}", quoted=first)

@@ -25,6 +25,7 @@ from metagraph.suggest.stances import Shape
 from metagraph.suggest.traits import LayerTraits, Traits
 from metagraph.suggest.vote_fusion import Agreed, combine
 from metagraph.suggest.whole_body import CARRIER, SCALE
+from metagraph.wording import requoted
 
 Array = NDArray[Any]
 
@@ -169,7 +170,8 @@ class Places:
             and seen.value.layer == layer
             and (key := self._of_shape.get(id(seen.value))) is not None
         ):
-            words = seen.reason.replace(f'"{seen.value.name}"', f'"{self.by_key[key].name}"')
+            own, known = seen.value.name, self.by_key[key].name
+            words = requoted(seen.reason, lambda name: known if name == own else name, '"')
             out.append(Belief(key, seen.confidence, words))
         return out
 

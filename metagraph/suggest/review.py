@@ -22,6 +22,7 @@ from metagraph.suggest.estimate import Belief
 from metagraph.suggest.flags import gain
 from metagraph.suggest.proposal import Place, Proposal, Proposals, plain
 from metagraph.suggest.propose import waiting
+from metagraph.wording import told
 
 Field = Literal["kind", "layer", "stance", "end_stance", "limb", "tags", "timing"]
 DECIDING: tuple[Field, ...] = (
@@ -32,7 +33,7 @@ DECIDING: tuple[Field, ...] = (
     "limb",
 )  # what has a few values to choose from
 WORDS: tuple[Field, ...] = ("kind", "layer", "limb", "tags")
-SAID = "you said so"
+SAID = told("you said so")
 USUAL = 6.0  # seconds a clip takes somebody, until some were decided
 PAUSE = 60.0  # seconds after which somebody was away, not deciding
 REMEMBERED = 25  # decisions the pace is taken from
@@ -186,8 +187,8 @@ class Review:
         those that were said.
         """
         p = timed(project, self.found.proposals)[clip]
-        told = self.said.get(clip, {}).get("timing")
-        return replace(p, timing={**p.timing, **told}) if told else p
+        said = self.said.get(clip, {}).get("timing")
+        return replace(p, timing={**p.timing, **said}) if said else p
 
     def with_times(self, p: Proposal) -> Review:
         """Return the review with what `timed` found, unless the clip is taken for something else by now."""
@@ -236,8 +237,8 @@ def _moved(belief: Belief[str] | None, moved: Mapping[str, str]) -> Belief[str] 
 def _corrected(found: Proposals, clip: str, said: Mapping[Field, Any]) -> Proposals:
     """Return the proposals with what was said of one clip."""
     p, places = found.proposals[clip], dict(found.places)
-    told: dict[str, Any] = {name: Belief(said[name], 1.0, SAID) for name in WORDS if name in said}
-    p = replace(p, **told)
+    words: dict[str, Any] = {name: Belief(said[name], 1.0, SAID) for name in WORDS if name in said}
+    p = replace(p, **words)
     layer: Layer = p.layer.value
 
     def place(name: str) -> str:
@@ -264,7 +265,7 @@ def _corrected(found: Proposals, clip: str, said: Mapping[Field, Any]) -> Propos
             (k for k, _ in there.most_common(1)),
             next((k for k, x in places.items() if x.layer == layer), None),
         )
-        stance = Belief(best, 0.5, "where most clips of this layer are") if best is not None else None
+        stance = Belief(best, 0.5, told("where most clips of this layer are")) if best is not None else None
     end = p.end_stance if p.kind.value == "transition" else None
     if "end_stance" in said and p.kind.value == "transition":
         end = Belief(place(said["end_stance"]), 1.0, SAID)
@@ -273,7 +274,7 @@ def _corrected(found: Proposals, clip: str, said: Mapping[Field, Any]) -> Propos
     ):
         end = None
     if layer != "arms":
-        p = replace(p, limb=Belief("both", 0.9, "only arms have sides"))
+        p = replace(p, limb=Belief("both", 0.9, told("only arms have sides")))
     was = found.proposals[clip]
     if (p.kind.value, p.layer.value, stance and stance.value, end and end.value) != _decides(was):
         # Its times were of what it is not; `Review.timed` finds those it has as what it is.

@@ -16,6 +16,7 @@ from math import exp, log
 from typing import Generic, TypeVar
 
 from metagraph.suggest.estimate import Belief
+from metagraph.wording import joined, told
 
 T = TypeVar("T")
 
@@ -61,10 +62,11 @@ def combine(votes: Sequence[Belief[T]], count: int) -> Agreed[T] | None:
     chosen = values[best]
     agreeing = [v for v in votes if v.value == chosen]
     against = [v for v in votes if v.value != chosen and v.confidence >= FIRM]
-    reason = "; ".join(dict.fromkeys(v.reason for v in sorted(agreeing, key=lambda v: -v.confidence)))
+    why = dict.fromkeys(v.reason for v in sorted(agreeing, key=lambda v: -v.confidence))
+    reason = joined(list(why), "; ")
     conflict = ""
     if against and max(v.confidence for v in agreeing) >= FIRM:
         strongest = max(against, key=lambda v: v.confidence)
-        conflict = f"{agreeing[0].reason}, but {strongest.reason}"
+        conflict = told("{one}, but {other}", one=agreeing[0].reason, other=strongest.reason)
     confidence = min(MOST, max(LEAST, shares[best] / whole))
     return Agreed(Belief(chosen, confidence, reason), conflict)

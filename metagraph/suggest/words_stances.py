@@ -18,6 +18,7 @@ from metagraph.suggest.words_tokens import (
     variant,
     without_numbers,
 )
+from metagraph.wording import told
 
 Words = tuple[str, ...]
 
@@ -237,7 +238,7 @@ class Stances:
         if self._acts(core) and not (self._poses(core) and self._goes_on(words)):
             return
         if count >= 2 and not any(p.meaning == "transition" for p in phrases(core, self._kinds)):
-            self._add(core, 0.85, f"{count} names begin with it", words, core)
+            self._add(core, 0.85, told("{count} names begin with it", count=count), words, core)
 
     def _poses(self, words: Words) -> bool:
         """Whether words may be a posture, though they may be an act as well: "head tilt left"."""
@@ -264,7 +265,7 @@ class Stances:
                 and not self._acts(core)
                 and not self._other(core)
             ):
-                self._add(core, 0.9, f"{count} names begin with it", head, core)
+                self._add(core, 0.9, told("{count} names begin with it", count=count), head, core)
         runs: dict[Words, int] = {}
         for taken in distinct:
             n = 0 if taken.split else self._posture_run(taken.words)

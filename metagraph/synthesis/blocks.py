@@ -31,7 +31,7 @@ Block = tuple[
 
 BLOCK = 512  # key states of a block
 ROWS = 64  # key states compared with all others at once
-FORMAT = 1  # of what is kept in folders
+FORMAT = 2  # of what is kept in folders
 SAMPLE = 20_000  # key states that tell which terms differ most
 FAR = np.float32(1e18)
 CANCELLED = "the motion graph was cancelled"
@@ -39,15 +39,18 @@ CANCELLED = "the motion graph was cancelled"
 
 @dataclass(frozen=True, eq=False)
 class BlockWork:
-    """What all blocks are made from. rows `[K, T, 3]`: the terms of key states, those that differ most first;
+    """What all blocks are made from. rows `[K, 3, T]`: the terms of key states, those that differ most first;
     keys `[K]`: which states they are. blocks `[B, T, 3, 64]`: the terms of the frames before `into [N]`, the
-    states transitions may enter, filled up with what is far from everything. limit: what a transition may
-    cost; most: how many of a state's cheapest are kept, all when None.
+    states transitions may enter, filled up with what is far from everything. middles `[B, 3, T]`: the means
+    of blocks; reach `[B]`: what is farther from a block's than that is farther than the limit from all of the
+    block. limit: what a transition may cost; most: how many of a state's cheapest are kept, all when None.
     """
 
     rows: Array
     keys: Array
     blocks: Array
+    middles: Array
+    reach: Array
     into: Array
     limit: float
     most: int | None
@@ -74,23 +77,36 @@ def work_of(states: States, keys: Array, limit: float, most: int | None) -> Bloc
     To go from i to j costs as much as i differs from j - 1, so a state that is entered has a frame before it
     in its take.
     """
-    from metagraph.synthesis.kernels import LANES
+    from metagraph.synthesis.kernels import LANES, lay
 
     first = np.zeros(len(states), bool)
     first[states.starts[:-1]] = True
     into = keys[~first[keys]]
-    order = _order(terms_of(states, keys[:: max(1, len(keys) // SAMPLE)]))
-    rows = np.ascontiguousarray(terms_of(states, keys)[:, order])
-    blocks = np.full((-(-len(into) // LANES), len(order), 3, LANES), FAR, np.float32)
-    for n in range(len(blocks)):
-        some = terms_of(states, into[n * LANES : (n + 1) * LANES] - 1)[:, order]
-        blocks[n, :, :, : len(some)] = some.transpose(1, 2, 0)
-    return BlockWork(rows, keys, blocks, into, limit, most)
+    rows = terms_of(states, keys)
+    order = _order(rows[:: max(1, len(keys) // SAMPLE)])
+    rows = _planes(rows, order)
+    count = -(-len(into) // LANES)
+    blocks = np.empty((count, len(order), 3, LANES), np.float32)
+    middles, spread = np.empty((count, 3, len(order)), np.float32), np.empty(count, np.float32)
+    for n in range(0, count, LANES):
+        some, part = into[n * LANES : (n + LANES) * LANES] - 1, slice(n, n + LANES)
+        lay(_planes(terms_of(states, some), order), FAR, blocks[part], middles[part], spread[part])
+    # Costs are a metric: what is farther from a middle is farther than the limit from whatever is round it.
+    # Sums in 32 bits may be off by some of the last of them.
+    largest = float(np.abs(rows).max(initial=0.0) + spread.max(initial=0.0))
+    slack = 4e-6 * len(order) * largest
+    return BlockWork(rows, keys, blocks, middles, spread + np.float32(limit + slack), into, limit, most)
+
+
+def _planes(terms: Array, order: Array) -> Array:
+    """Return terms `[N, T, 3]` in another order, as `[N, 3, T]`."""
+    return np.take(terms.transpose(0, 2, 1), order, axis=2)
 
 
 def _order(terms: Array) -> Array:
     """Return terms with those that differ most first, so that most pairs are over the limit after a few."""
-    return np.argsort(-np.linalg.norm(terms - terms.mean(0), axis=-1).mean(0), kind="stable")
+    x, y, z = (terms - terms.mean(0)).transpose(2, 0, 1)
+    return np.argsort(-np.sqrt(x * x + y * y + z * z).mean(0), kind="stable")
 
 
 def block(work: BlockWork, first: int, cancelled: Callable[[], bool] | None = None) -> Block:
@@ -111,6 +127,8 @@ def block(work: BlockWork, first: int, cancelled: Callable[[], bool] | None = No
         near(
             work.rows[begin : begin + len(rows)],
             work.blocks,
+            work.middles,
+            work.reach,
             count,
             np.float32(work.limit),
             places,

@@ -110,12 +110,13 @@ def build(
     starts[keys + 1] = rows
     starts = np.cumsum(starts)
     graph = MotionGraph(states, limit, keys, starts, targets, costs, np.ones(len(states), bool))
-    return largest(graph) if connected else graph
+    return largest(graph, spent=True) if connected else graph
 
 
-def largest(graph: MotionGraph) -> MotionGraph:
+def largest(graph: MotionGraph, spent: bool = False) -> MotionGraph:
     """Return what is left of a graph in its largest strongly connected component: from every state there is a
-    way to every other. Raises SynthesisError when no two states are.
+    way to every other. spent: nobody needs the graph any more; what is left takes its memory. Raises
+    SynthesisError when no two states are connected.
     """
     from metagraph.synthesis.kernels import components, cut
 
@@ -130,5 +131,9 @@ def largest(graph: MotionGraph) -> MotionGraph:
     kept = component == int(sizes.argmax())
     if kept.all():
         return graph
-    starts, targets, costs = cut(graph.starts, graph.targets, graph.costs, kept)
+    targets, costs = (graph.targets, graph.costs) if spent else (graph.targets.copy(), graph.costs.copy())
+    starts = cut(graph.starts, targets, costs, kept)
+    targets, costs = targets[: starts[-1]], costs[: starts[-1]]
+    if 2 * len(targets) < len(graph.targets):  # else the memory of all of them stays
+        targets, costs = targets.copy(), costs.copy()
     return replace(graph, starts=starts, targets=targets, costs=costs, kept=kept)

@@ -16,7 +16,7 @@ from metagraph.compiling import compiler
 Array = Any
 
 LANES = 64  # wide enough that the loops cost little, narrow enough that most blocks end early
-EVERY = 4  # terms between looks at whether a block is done with
+EVERY = 8  # terms between looks at whether a block is done with
 
 compiled = compiler(nogil=True, fastmath=True, error_model="numpy")
 compiled_exactly = compiler(
@@ -43,28 +43,81 @@ def _least(total: Array) -> Any:
 
 
 @compiled
+def _apart(one: Array, other: Array) -> Any:
+    """Return how far terms `[3, T]` are from others."""
+    total = np.float32(0)
+    for t in range(one.shape[1]):
+        u, v, w = one[0, t] - other[0, t], one[1, t] - other[1, t], one[2, t] - other[2, t]
+        total += np.sqrt(u * u + v * v + w * w)
+    return total
+
+
+@compiled
+def _spread(every: Array, middle: Array) -> Any:
+    """Write the mean of terms `[N, 3, T]` to middle `[3, T]`; return how far the farthest is from it."""
+    middle[:] = 0
+    for n in range(len(every)):
+        middle += every[n]
+    middle /= np.float32(len(every))
+    farthest = np.float32(0)
+    for n in range(len(every)):
+        farthest = max(farthest, _apart(every[n], middle))
+    return farthest
+
+
+@compiled
+def lay(terms: Array, far: Any, blocks: Array, middles: Array, spread: Array) -> None:
+    """Lay terms `[N, 3, T]` into blocks `[B, T, 3, 64]`, filled up with what is far, their means into middles
+    `[B, 3, T]`, and how far the farthest of a block is from its own to spread `[B]`.
+    """
+    blocks[-1] = far
+    for b in range(len(blocks)):
+        some = terms[b * LANES : (b + 1) * LANES]
+        for t in range(terms.shape[2]):
+            for c in range(3):
+                for n in range(len(some)):
+                    blocks[b, t, c, n] = some[n, c, t]
+        spread[b] = _spread(some, middles[b])
+
+
+@compiled
 def near(
-    rows: Array, blocks: Array, count: int, limit: Any, places: Array, costs: Array, found: Array
+    rows: Array,
+    blocks: Array,
+    middles: Array,
+    reach: Array,
+    count: int,
+    limit: Any,
+    places: Array,
+    costs: Array,
+    found: Array,
 ) -> None:
-    """Find for rows `[R, T, 3]` the targets, of `count` in blocks `[B, T, 3, 64]`, that are at most `limit`
+    """Find for rows `[R, 3, T]` the targets, of `count` in blocks `[B, T, 3, 64]`, that are at most `limit`
     away.
 
     Writes their numbers, ascending, to places `[R, count]`, what they cost to costs `[R, count]`, how many
-    there are to found `[R]`. All rows are compared with a block while it is near at hand in memory.
+    there are to found `[R]`. All rows are compared with a block while it is near at hand in memory, but those
+    that are farther than its reach `[B]` from its middle, of middles `[B, 3, T]`: first all rows at once.
     """
-    terms = rows.shape[1]
+    terms = rows.shape[2]
     total = np.empty(LANES, np.float32)
+    middle = np.empty((3, terms), np.float32)
+    spread = _spread(rows, middle)
     found[:] = 0
     for b in range(len(blocks)):
+        if _apart(middle, middles[b]) > reach[b] + spread:
+            continue
         block = blocks[b]
         first = b * LANES
         for r in range(len(rows)):
+            row = rows[r]
+            if _apart(row, middles[b]) > reach[b]:
+                continue
             for n in range(LANES):
                 total[n] = 0
             over = False
-            row = rows[r]
             for t in range(terms):
-                _add(block[t, 0], block[t, 1], block[t, 2], row[t, 0], row[t, 1], row[t, 2], total)
+                _add(block[t, 0], block[t, 1], block[t, 2], row[0, t], row[1, t], row[2, t], total)
                 if t % EVERY == EVERY - 1 and _least(total) > limit:
                     over = True
                     break
@@ -131,26 +184,23 @@ def thin(counts: Array, targets: Array, costs: Array, most: Any) -> tuple[Array,
 
 
 @compiled
-def cut(starts: Array, targets: Array, costs: Array, kept: Array) -> tuple[Array, Array, Array]:
-    """Return transitions, as `MotionGraph` has them, from and to states that are kept `[F]`."""
+def cut(starts: Array, targets: Array, costs: Array, kept: Array) -> Array:
+    """Leave of transitions, as `MotionGraph` has them, those from and to states that are kept `[F]`, in the
+    memory where they are, and return where those of each state begin then `[F + 1]`.
+    """
     states = len(starts) - 1
-    begins = np.zeros(states + 1, np.int64)
+    begins = np.empty(states + 1, np.int64)
+    at = 0
     for state in range(states):
-        count = 0
+        begins[state] = at
         if kept[state]:
             for place in range(starts[state], starts[state + 1]):
-                count += kept[targets[place]]
-        begins[state + 1] = begins[state] + count
-    ends, price = np.empty(begins[-1], np.int32), np.empty(begins[-1], np.float32)
-    for state in range(states):
-        if kept[state]:
-            at = begins[state]
-            for place in range(starts[state], starts[state + 1]):
-                if kept[targets[place]]:
-                    ends[at] = targets[place]
-                    price[at] = costs[place]
-                    at += 1
-    return begins, ends, price
+                target = targets[place]
+                targets[at] = target
+                costs[at] = costs[place]
+                at += kept[target]
+    begins[states] = at
+    return begins
 
 
 @compiled

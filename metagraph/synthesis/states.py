@@ -63,11 +63,13 @@ def terms_of(states: States, which: Array) -> Array:
     used = np.flatnonzero(states.weights)
     w = states.weights[used, None].astype(np.float32)
     half = len(used)
+    whole = slice(None) if half == len(states.weights) else used
     out = np.empty((len(which), 2 * half, 3), np.float32)
     for n in range(0, len(which), AT_ONCE):
         some = which[n : n + AT_ONCE]
-        out[n : n + AT_ONCE, :half] = states.places[some][:, used] * w
-        out[n : n + AT_ONCE, half:] = states.velocities[some][:, used] * (w * np.float32(states.velocity))
+        place, speed = states.places.take(some, 0)[:, whole], states.velocities.take(some, 0)[:, whole]
+        np.multiply(place, w, out[n : n + AT_ONCE, :half])
+        np.multiply(speed, w * np.float32(states.velocity), out[n : n + AT_ONCE, half:])
     return out
 
 

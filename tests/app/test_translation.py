@@ -5,7 +5,8 @@ from __future__ import annotations
 import ast
 import re
 import string
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -23,14 +24,18 @@ from metagraph.errors import FileError
 from metagraph.formats import import_words
 from metagraph.formats.conversations import read_conversation
 from metagraph.formats.imports import import_files
+from metagraph.formats.store import open_project
 from metagraph.graph import edits
 from metagraph.graph.check import check
 from metagraph.graph.model import Project
+from metagraph.suggest.details import timed
+from metagraph.suggest.propose import propose
 from metagraph.wording import Told, told
 from tests.speech import talk
 
 APP = Path(translation.__file__).parent
 DOMAIN = Path(metagraph.__file__).parent
+SAMPLES = APP.parent / "sample_clips"
 OTHERS = sorted(set(translation.NAMES) - {translation.ENGLISH})
 
 
@@ -178,6 +183,39 @@ def test_what_targets_write_and_lose_is_said_in_the_language(english: None) -> N
     loops = replace(counted, count=lambda project: 3).told(Project())
     assert loops == "3 loops that play with a seam jump where they repeat"
     assert tr_told(loops) == "3 Schleifen, die mit einer Naht spielen, springen an der Wiederholung"
+
+
+def without_words(said: str, known: Collection[str]) -> Iterator[str]:
+    """Yield what of a text is in no language: words that know no template, and templates without words."""
+    if not isinstance(said, Told):
+        yield said
+    elif said.template not in known and not re.fullmatch(r"({\w+}; )*{\w+}", said.template):
+        yield said.template
+    else:
+        for value in said.values.values():
+            if isinstance(value, Told):
+                yield from without_words(value, known)
+
+
+@pytest.mark.parametrize("name", ["sample", "practice"])
+def test_why_clips_are_taken_for_what_they_are_is_said_in_the_language(english: None, name: str) -> None:
+    project = open_project(SAMPLES / f"{name}.metagraph.yaml").project
+    if name == "sample":  # as foreign takes come: by their motion alone, some that are none of the four
+        clips = {c: replace(e, name=f"take {n}") for n, (c, e) in enumerate(project.clips.items())}
+        project = Project(clips=clips, skeleton=project.skeleton)
+    found = propose(project)
+    every = timed(project, found.proposals).values()
+    said = list(found.aside.values())
+    said += [place.rest.reason for place in found.places.values() if place.rest is not None]
+    for p in every:
+        beliefs = (p.kind, p.layer, p.stance, p.end_stance, p.limb, *p.details.values())
+        said += [belief.reason for belief in beliefs if belief is not None]
+        said += [*p.conflicts, *([p.timing_reason] if p.timing_reason else [])]
+    assert len(said) > 100
+    odd = Counter(text for one in said for text in without_words(one, translation.words_of("de")))
+    assert not odd
+    translation.choose("de")
+    assert all(tr_told(one) != one for one in said)
 
 
 def test_what_came_of_recordings_is_said_in_the_language(english: None, tmp_path: Path) -> None:

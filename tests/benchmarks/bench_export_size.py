@@ -18,7 +18,7 @@ import msgspec
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from metagraph.engines import contract as c
-from metagraph.engines.export import to_document
+from metagraph.engines.export_document import to_document
 from metagraph.graph.expand import size
 from metagraph.graph.model import LAYERS, Action, ClipEntry, Kind, MetaGraph, Project, Stance, Timing
 from tests.projects import SKELETON

@@ -35,7 +35,7 @@ import bench_motion_graph  # noqa: E402
 import bench_playback  # noqa: E402
 from bench_preview import crowd as standing  # noqa: E402
 
-from metagraph.engines.export import to_document  # noqa: E402
+from metagraph.engines.export_document import to_document  # noqa: E402
 from metagraph.formats.bvh import read_bvh  # noqa: E402
 from metagraph.formats.gltf import read_character, read_gltf_clips, write_glb  # noqa: E402
 from metagraph.formats.store import open_project  # noqa: E402

@@ -22,9 +22,9 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from metagraph.engines import export as engine
 from metagraph.engines.contract import FORMAT, schema
-from metagraph.engines.export import ExportError, export, schema_text, to_document
+from metagraph.engines.export import ExportError, export, schema_text
+from metagraph.engines.export_document import to_document, used_clips
 from metagraph.engines.export_rig import read_voices, voices_of
 from metagraph.engines.reading import read_export
 from metagraph.errors import FileError
@@ -262,7 +262,7 @@ def test_a_project_read_back_is_saved_and_opened_with_its_clips(sample: Project,
 
 
 def document_of(project: Project, expanded: bool = False) -> bytes:
-    used = engine._used(project)
+    used = used_clips(project)
     return msgspec.json.encode(to_document(project, "x.glb", unique_names([e.name for e in used]), expanded))
 
 

@@ -125,8 +125,8 @@ def test_an_export_plays_what_the_preview_plays(sample: Project, tmp_path: Path)
 # --- breaking one rule at a time
 
 
-def _broken_key32(seed: int, *words: str) -> int:
-    return hashing.mix(hashing.OFFSET ^ len("".join(words)) ^ seed)
+def _broken_keyed(seed: int, *words: str) -> int:
+    return hashing.OFFSET ^ len("".join(words)) ^ seed
 
 
 MUTATIONS: dict[str, tuple[Any, str, Any]] = {
@@ -146,7 +146,7 @@ MUTATIONS: dict[str, tuple[Any, str, Any]] = {
         "_weights",
         lambda layer, data: data.weights,
     ),
-    "the hash of draws": (choice, "key32", _broken_key32),
+    "the hash of draws": (choice, "keyed", _broken_keyed),
     "the counter of uses": (sampling.Performer, "_count", lambda self, ident, now: 0.0),
     "never twice and spacing": (sampling.Performer, "_spaced", lambda self, candidates: candidates),
     "the loop's seam": (
@@ -158,7 +158,7 @@ MUTATIONS: dict[str, tuple[Any, str, Any]] = {
     "the cooldown": (sampling.Performer, "_cooled", lambda self, action: float("-inf")),
     "the shortest chain": (sampling.Performer, "_chain", lambda self, goal: []),
     "how late a request may start": (replan, "delay", lambda asked, free, settings: (list(asked), [])),
-    "lengths of the models": (markov, "length", lambda chain, state, seed, key: 2.0),
+    "lengths of the models": (markov, "length", lambda chain, state, key: 2.0),
     "a breath's shape": (evaluate, "breath_at", lambda lane, life, time: 0.0),
     "a blink's shape": (evaluate, "blink_at", lambda lane, life, time: 0.0),
     "how the head settles": (gaze, "settle", gaze.ease),

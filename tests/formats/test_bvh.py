@@ -403,25 +403,52 @@ def test_writing_into_a_folder_that_cannot_be_made_is_refused(tmp_path: Path) ->
 # --- two parsers, one answer
 
 
-def test_a_large_file_split_between_two_threads_reads_as_a_small_one(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.fixture(scope="module")
+def many_rows() -> list[str]:
     rng = np.random.default_rng(5)
-    values = np.concatenate([rng.normal(size=(12000, 3)), rng.uniform(-720, 720, (12000, 6))], 1)
-    text = "\n".join(" ".join(f"{v:.6g}" for v in row) for row in values)
+    values = np.concatenate([rng.normal(size=(16000, 3)), rng.uniform(-720, 720, (16000, 6))], 1)
+    rows = [" ".join(f"{v:.6g}" for v in row) for row in values]
+    assert sum(map(len, rows)) > 1 << 20, "so many bytes are parted"
+    return rows
+
+
+@pytest.mark.parametrize("lines", ["a row each", "blank ones between", "rows broken off in the middle"])
+def test_a_large_file_split_between_two_threads_reads_as_a_small_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, many_rows: list[str], lines: str
+) -> None:
+    rows = list(many_rows)
+    if lines == "blank ones between":
+        rows[::100] = [row + "\n" for row in rows[::100]]
+    elif lines == "rows broken off in the middle":
+        rows[10:9000] = [row.replace(" ", "\n", 1) for row in rows[10:9000]]
     path = tmp_path / "large.bvh"
-    path.write_text(figure(rows=text + "\n", frames=12000))
+    path.write_text(figure(rows="\n".join(rows) + "\n", frames=16000))
     choose(monkeypatch, False)
     slow = read_bvh(path, 0.01)
     choose(monkeypatch, True)
     fast = read_bvh(path, 0.01)
-    assert path.stat().st_size > 700_000
     side = np.sign(np.einsum("fji,fji->fj", fast.rotations, slow.rotations))[
         ..., None
     ]  # half turns may fall to either side
     np.testing.assert_allclose(fast.rotations, slow.rotations * side, atol=2e-7)
     np.testing.assert_array_equal(fast.translations, slow.translations)
     assert (np.einsum("fji,fji->fj", fast.rotations[1:], fast.rotations[:-1]) >= 0).all()
+
+
+@pytest.mark.parametrize("at", [3, 8000, 15990])
+@pytest.mark.parametrize("word", ["1.1e9", "-2000000000", "1e400", "nan", "seven", "1.2.3", "4-"])
+def test_what_is_no_sensible_number_in_a_large_file_is_told_with_its_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, many_rows: list[str], at: int, word: str
+) -> None:
+    rows = list(many_rows)
+    rows[at] = rows[at].rpartition(" ")[0] + " " + word
+    path = tmp_path / "large.bvh"
+    path.write_text(figure(rows="\n".join(rows) + "\n", frames=16000))
+    line = path.read_text().count("\n") - len(rows) + at + 1
+    choose(monkeypatch, True)
+    with pytest.raises(FileError, match=rf"'{word}' is not a sensible number") as caught:
+        read_bvh(path)
+    assert caught.value.where == f"line {line}"
 
 
 class SlowImport(MetaPathFinder, Loader):

@@ -289,7 +289,9 @@ def test_turns_between_keys_are_those_of_numpy(seed: int, kind: str, still: bool
     np.testing.assert_allclose(out, rotation.continuous(rotation.normalize(expected)), 0, CLOSE)
 
 
-def test_measures_of_stray_poses_are_those_of_numpy() -> None:
+@pytest.mark.parametrize("long", [3, 2000])  # from so many frames on two threads share a take
+def test_measures_of_stray_poses_are_those_of_numpy(monkeypatch: pytest.MonkeyPatch, long: int) -> None:
+    monkeypatch.setattr(stray_poses, "LONG", long)
     skeleton = mannequin_skeleton()
     chance = np.random.default_rng(8)
     takes = []

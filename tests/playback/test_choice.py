@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.playback.choice import key32, pick, uniform
+from metagraph.playback.choice import chance_of, key32, keyed, pick, picked, uniform
 from metagraph.playback.hashing import mix
 
 CASES = [(0,), (1,), (0, ""), (1, "a", "b"), (1, "ab"), (4294967295, "ä", "x"), (7, "auto/arms/0", "state")]
@@ -107,3 +107,10 @@ def test_the_race_is_the_shortest_exponential_time() -> None:
     weighted = {"a1": 1.0, "a2": 2.5}
     times = {k: -math.log(uniform(3, "r1", "action", k)) / w for k, w in weighted.items()}
     assert pick(3, "r1", "action", weighted) == min(times, key=times.__getitem__)
+
+
+@given(st.integers(0, 2**32 - 1), st.lists(st.text(max_size=6), max_size=3), st.text(max_size=6))
+def test_a_key_that_is_kept_gives_what_its_words_give(seed: int, words: list[str], purpose: str) -> None:
+    assert chance_of(keyed(seed, *words), purpose) == uniform(seed, *words, purpose)
+    weights = {"a": 1.0, "b": 2.0, "c": 0.5}
+    assert picked(keyed(seed, "key"), purpose, weights) == pick(seed, "key", purpose, weights)

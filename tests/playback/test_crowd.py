@@ -74,6 +74,19 @@ def test_weights_masks_seams_early_exits_and_missing_clips_agree_too(toy: Any) -
     assert_agrees(project, plans, np.random.default_rng(2).uniform(-1, 42, len(plans)))
 
 
+def test_a_pose_is_the_same_whatever_others_are_beside_it(toy: Any) -> None:
+    project = toy.project()
+    plans = [make_plan(project, 20, seed=seed) for seed in range(131)]
+    times = np.random.default_rng(3).uniform(0, 20, len(plans))
+    turns, places = Crowd(project, plans).globals(times)
+    for count in (1, 2, 3, 4, 5, 127, 128, 129):
+        some = Crowd(project, plans[:count]).globals(times[:count])
+        assert np.array_equal(some[0], turns[:count]) and np.array_equal(some[1], places[:count])
+    behind = np.full((131, 16, 4), 7, np.float32), np.full((131, 16, 3), 7, np.float32)
+    Crowd(project, plans[:130]).globals(times[:130], (behind[0][:130], behind[1][:130]))
+    assert (behind[0][130] == 7).all() and (behind[1][130] == 7).all(), "nothing is written behind the last"
+
+
 def test_one_time_serves_all(toy: Any) -> None:
     project = toy.project()
     crowd = Crowd(project, [make_plan(project, 10)] * 3)

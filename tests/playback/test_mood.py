@@ -39,7 +39,7 @@ from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import pose_at
 from metagraph.playback.running_plan import asks_of, perform
-from metagraph.playback.vigour import vigour
+from metagraph.playback.vigour import _speed_of, vigour, vigours
 
 STEPS = (-1.0, -0.5, 0.0, 0.5, 1.0)
 
@@ -249,6 +249,20 @@ def test_energetic_actions_are_those_whose_hands_move_fast(sample: Project) -> N
     found = sorted(vigour(sample, x) for x in gestures)
     assert -1 <= found[0] < -0.1 and 0.1 < found[-1] <= 1
     assert abs(found[len(found) // 2]) < 0.1, "the middle one is as fast as the middle one"
+
+
+def test_how_energetic_all_actions_are_is_what_each_is(sample: Project) -> None:
+    lacking = {ident: replace(x, motion=None) for ident, x in list(sample.clips.items())[::3]}
+    for project in (sample, replace(sample, clips={**sample.clips, **lacking})):
+        for graph in project.graphs.values():
+            again = replace(graph)  # which remembers nothing
+            one_by_one = project.with_graph(again)
+            speeds = {ident: _speed_of(project, x) for ident, x in graph.actions.items()}
+            known = {ident: speed for ident, speed in speeds.items() if speed is not None}
+            found = vigours(project, replace(graph), known)
+            assert [found.get(x, 0.0) for x in again.actions] == [
+                vigour(one_by_one, x) for x in again.actions.values()
+            ]
 
 
 def test_hands_are_faster_and_farther_out_the_more_aroused(sample: Project) -> None:

@@ -11,13 +11,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from metagraph.graph.model import LAYERS, Layer, Project
+from metagraph.graph.model import LAYERS, Action, Layer, Project
 from metagraph.motion import rotation
 from metagraph.playback import sampling
 from metagraph.playback.composer import rig
+from metagraph.playback.mood import Mood
 from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import pose_at
+from metagraph.playback.sampling import Performer
 
 pytestmark = pytest.mark.usefixtures("compiled_loops")
 
@@ -36,7 +38,7 @@ class Performance:
 
 @pytest.fixture(scope="module")
 def performances(sample: Project) -> list[Performance]:
-    choose = sampling.pick
+    choose, draw = sampling.pick, Performer._draw
     made = []
     for seed in SEEDS:
         draws: list[tuple[str, Mapping[str, float], str]] = []
@@ -47,8 +49,18 @@ def performances(sample: Project) -> list[Performance]:
                 draws.append((key, dict(weights), chosen))
             return chosen
 
+        def watch_all(
+            self: Performer, candidates: list[Action], key: str, now: float, mood: Mood, draws: Any = draws
+        ) -> Action:
+            left = self._spaced(candidates)
+            if len(left) == 1:  # which is not drawn for
+                weight = left[0].likelihood / max(self._count(left[0].id, now), 1)
+                draws.append((key, {left[0].id: weight}, left[0].id))
+            return draw(self, candidates, key, now, mood)
+
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(sampling, "pick", watch)
+            patch.setattr(Performer, "_draw", watch_all)
             made.append(Performance(make_plan(sample, LENGTH, seed=seed), draws))
     return made
 

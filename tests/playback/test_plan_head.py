@@ -176,3 +176,16 @@ def test_what_a_long_plan_leaves_as_it_was_is_shared_and_the_same(monkeypatch: A
         ):
             assert isinstance(a, Strand) and isinstance(b, Strand)
             assert a._chunks[0] is b._chunks[0]
+
+
+def test_plans_that_are_alike_are_told_apart_without_looking_through_them(monkeypatch: Any) -> None:
+    plan = make_plan(PROJECT, 100.0, seed=2)
+    again = make_plan(PROJECT, 100.0, seed=2)
+    expected = from_all(PROJECT, plan, 90.0, (), 100.0)
+    with monkeypatch.context() as patched:
+        patched.setattr(Plan, "__eq__", lambda one, other: pytest.fail("two plans were compared"))
+        found = extend(PROJECT, plan, 90.0, (), 100.0)
+        extend(PROJECT, again, 90.0, (), 100.0)
+        further = extend(PROJECT, found, 95.0, (), 100.0)
+    assert found == expected
+    assert further == from_all(PROJECT, expected, 95.0, (), 100.0)

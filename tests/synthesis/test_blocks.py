@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from metagraph.synthesis import blocks
+from metagraph.synthesis import blocks, kernels
 from metagraph.synthesis.graph import MotionGraph, Threshold, build
 from metagraph.synthesis.states import States, SynthesisError, key_states, with_velocity
 
@@ -38,6 +38,15 @@ def made(frames: int = 6000, joints: int = 4, seed: int = 1) -> States:
     return with_velocity(
         States(places, velocities.astype(np.float32), np.ones(joints, np.float32), starts, 0.0), 1 / 30
     )
+
+
+def line(frames: int, scale: float = 1.0) -> States:
+    """Return states that move straight on, so that what is on the other side of a middle is just as much
+    farther as it can be.
+    """
+    places = np.zeros((frames, 1, 3), np.float32)
+    places[:, 0, 0] = scale * np.arange(frames)
+    return States(places, np.zeros_like(places), np.ones(1, np.float32), np.array([0, frames]), 1 / 30)
 
 
 def same(one: MotionGraph, other: MotionGraph) -> None:
@@ -145,6 +154,42 @@ def test_a_spoiled_block_is_made_again(tmp_path: Path) -> None:
 def test_one_thread_and_many_make_the_same() -> None:
     states = made(3000)
     same(build(states, LIMIT, threads=1), build(states, LIMIT, threads=4))
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("straight", [True, False])
+def test_only_what_is_too_far_is_passed_over(straight: bool, scale: float) -> None:
+    """Whole blocks are, by their middles; whatever the units, and at limits that a pair just keeps to."""
+    states = line(700, scale) if straight else made(700)
+    if not straight:
+        states = replace(states, places=states.places * np.float32(scale))
+    keys = np.arange(len(states))
+    costs = np.sort(blocks.block(blocks.work_of(states, keys, 1e9, None), 0)[2])
+    for limit in costs[np.linspace(0, len(costs) - 1, 25).astype(int)]:
+        work = blocks.work_of(states, keys, float(limit), None)
+        unbounded = replace(work, reach=np.full_like(work.reach, np.inf))
+        for some, whole in zip(blocks.block(work, 0), blocks.block(unbounded, 0), strict=True):
+            assert_array_equal(some, whole)
+
+
+def test_blocks_whose_middles_are_far_are_not_looked_at() -> None:
+    work = blocks.work_of(line(6000), np.arange(6000), 0.3, None)
+    row, every = work.rows[700], np.empty_like(work.blocks)
+    every[:] = row.T[None, :, :, None]  # whatever is looked at is found
+    count, found = every.shape[0] * kernels.LANES, np.empty(1, np.int64)
+    kernels.near(
+        row[None],
+        every,
+        work.middles,
+        work.reach,
+        count,
+        np.float32(0.3),
+        np.empty((1, count), np.int32),
+        np.empty((1, count), np.float32),
+        found,
+    )
+    near = np.linalg.norm(row - work.middles, axis=1).sum(-1) <= work.reach
+    assert found[0] == near.sum() * kernels.LANES and 0 < near.mean() < 0.5
 
 
 def test_what_fails_in_a_block_is_told(monkeypatch: pytest.MonkeyPatch) -> None:

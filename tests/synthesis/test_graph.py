@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.synthesis.graph import MotionGraph, Threshold, build, threshold
+from metagraph.synthesis.graph import MotionGraph, Threshold, build, largest, threshold
 from metagraph.synthesis.states import (
     States,
     SynthesisError,
@@ -187,6 +187,17 @@ def test_what_is_kept_is_the_largest_set_in_which_every_state_reaches_every_othe
     kept = build(states, of_limit(limit), keys)
     assert frozenset(np.flatnonzero(kept.kept).tolist()) in {s for s in sets if len(s) == largest}
     assert all(kept.kept[s] and kept.kept[t] for s, t in edges(kept))
+
+
+@pytest.mark.parametrize("limit", [0.6, 2.0])  # of the first, less than half is kept
+def test_what_is_cut_from_a_graph_leaves_the_graph_as_it_was_but_where_it_is_spent(limit: float) -> None:
+    states = made(900, 4, 6)
+    whole = build(states, of_limit(limit), key_states(states, 0.3), connected=False)
+    before = edges(whole)
+    kept = largest(whole)
+    assert edges(whole) == before and len(kept.targets) < len(whole.targets)
+    wanted = {(s, t): c for (s, t), c in before.items() if kept.kept[s] and kept.kept[t]}
+    assert edges(kept) == wanted == edges(largest(whole, spent=True))
 
 
 def test_only_the_cheapest_of_each_state_are_kept_when_memory_is_short() -> None:

@@ -44,7 +44,7 @@ from app.project.document import Document
 from app.project.learned import Learned
 from app.project.pattern_files import read_patterns, write_patterns
 from app.stage.session import Session
-from app.translation import tr, tr_error
+from app.translation import tr, tr_error, tr_told
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.vocabulary import word
 from metagraph.errors import FileError
@@ -261,7 +261,7 @@ class PatternsDialog(QDialog):
                 text = (
                     f"<span style='color:{look.kinds[belief.value]}'>{KIND_MARKS[belief.value]} {text}</span>"
                 )
-            cells = (title, f"<b>{text}</b>", f"{belief.confidence:.0%}", escape(belief.reason))
+            cells = (title, f"<b>{text}</b>", f"{belief.confidence:.0%}", escape(tr_told(belief.reason)))
             rows.append(
                 "<tr>" + "".join(f"<td style='padding-right:14px'>{cell}</td>" for cell in cells) + "</tr>"
             )

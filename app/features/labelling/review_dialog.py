@@ -40,7 +40,7 @@ from app.project.learned import Learned
 from app.stage.figures import Figures
 from app.stage.playback_source import Shown, alone
 from app.stage.session import Session
-from app.translation import tr, tr_error
+from app.translation import tr, tr_error, tr_told
 from app.widgets.vocabulary import word
 from metagraph.graph.model import KINDS, Kind
 from metagraph.suggest.proposal import Proposal
@@ -397,7 +397,7 @@ class ReviewDialog(QDialog):
             self.stage.tell(
                 tr(
                     "<b>Not placed:</b> {why}.",
-                    why=escape(why[1] if why is not None else tr("it is no longer there")),
+                    why=escape(tr_told(why[1]) if why is not None else tr("it is no longer there")),
                 )
             )
             return
@@ -461,7 +461,7 @@ class ReviewDialog(QDialog):
             self.stage.tell(done if self.work.looked else tr("Looking at names and motion…"))
             return
         if p is None:
-            why = self.review.found.aside.get(clip, "")
+            why = tr_told(self.review.found.aside.get(clip, ""))
             kinds = self._choices("kind")
             self.row = "kind"
             self.fields.show_rows(
@@ -476,7 +476,7 @@ class ReviewDialog(QDialog):
             if choices := self.review.choices(clip, name):
                 belief = getattr(p, name)
                 sure, reason = (
-                    (belief.confidence, belief.reason)
+                    (belief.confidence, tr_told(belief.reason))
                     if belief is not None
                     else (0.0, tr("nothing says which"))
                 )

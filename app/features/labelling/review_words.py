@@ -9,7 +9,7 @@ from html import escape
 
 from app.look.plural import many
 from app.look.theme import KIND_MARKS, KIND_TITLES, Theme
-from app.translation import tr
+from app.translation import tr, tr_told
 from app.widgets.vocabulary import titled
 from metagraph.graph.model import Project
 from metagraph.suggest.proposal import Proposal
@@ -50,7 +50,7 @@ def headline(review: Review, project: Project, clip: str, look: Theme) -> str:
         return (
             f'<span style="font-size:17px; font-weight:600">{tr("Left aside")}</span><br>'
             f'<span style="color:{look.dim}">{escape(project.clips[clip].name)}</span><br>'
-            f"{escape(review.found.aside.get(clip, ''))}"
+            f"{escape(tr_told(review.found.aside.get(clip, '')))}"
         )
     p, places = review.found.proposals[clip], review.found.places
     kind = p.kind.value
@@ -66,7 +66,7 @@ def headline(review: Review, project: Project, clip: str, look: Theme) -> str:
         f'<span style="color:{look.dim}">{escape(project.clips[clip].name)}</span>',
     ]
     against = [*p.conflicts, *([p.timing_reason] if p.good is False else [])]
-    lines += [f'<span style="color:{look.warning}">⚠ {escape(words)}</span>' for words in against]
+    lines += [f'<span style="color:{look.warning}">⚠ {escape(tr_told(words))}</span>' for words in against]
     return "<br>".join(lines)
 
 
@@ -102,7 +102,7 @@ def timing(p: Proposal, duration: float) -> str:
         parts.append(tr("loops"))
     words = [", ".join(parts)]
     if p.timing_reason and p.good is not False:
-        words[0] += f": {p.timing_reason}"
+        words[0] += f": {tr_told(p.timing_reason)}"
     for name, belief in ((name, p.details.get(name)) for name in ("stroke", "mask", "likelihood")):
         if belief is not None and (name != "mask" or belief.value):
             value = (
@@ -112,7 +112,7 @@ def timing(p: Proposal, duration: float) -> str:
                 if name == "stroke"
                 else tr("some joints")
             )
-            words.append(f"{titled(name)} {value}: {belief.reason}")
+            words.append(f"{titled(name)} {value}: {tr_told(belief.reason)}")
     return "<br>".join(map(escape, words))
 
 

@@ -13,7 +13,7 @@ from app.features.timing_editor.hits import Hit
 from app.features.timing_editor.paint import Look, ruler_words
 from app.features.timing_editor.rows import RULER, TrackRows
 from app.features.timing_editor.track import Facts, Kept
-from app.translation import tr
+from app.translation import tr, tr_told
 from app.widgets.vocabulary import word
 from metagraph.playback.timing import WORDS
 from metagraph.suggest.snapping import Snap
@@ -126,7 +126,7 @@ def held(
         x = axis.x(snapped.at)
         painter.setPen(QPen(QColor(look.t.warning), 1.6))
         upright(painter, tracks, x, RULER - 4)
-        words = f"{words} — {snapped.why}"
+        words = f"{words} — {tr_told(snapped.why)}"
     wide = min(look.wide(words) + 18, width - axis.left)
     middle = axis.x(snapped.at) if snapped is not None else axis.left + axis.width / 2
     box = QRectF(min(max(axis.left, middle - wide / 2), max(axis.left, width - wide - 4)), 1, wide, RULER - 3)

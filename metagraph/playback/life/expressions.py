@@ -16,7 +16,7 @@ from bisect import bisect_right
 from collections.abc import Mapping, Sequence
 
 from metagraph.graph.life import Life
-from metagraph.playback.choice import uniform
+from metagraph.playback.choice import chance_of, keyed, uniform
 from metagraph.playback.hashing import Bits
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.track import Speech, Track
@@ -80,13 +80,14 @@ def swells_on(track: Track, seed: Bits, cut: float, drawn: float, before: Lane) 
     number = before.next
     over = before.times[-1] + before.rows[-1][0] if len(before.times) > 0 else 0.0
     while True:
-        gap = SWELL_GAP * (0.3 + 1.4 * uniform(seed, "swell", str(number), "gap"))
+        key = keyed(seed, "swell", str(number))
+        gap = SWELL_GAP * (0.3 + 1.4 * chance_of(key, "gap"))
         at = max(cut, over + gap)
         if at >= drawn:
             return before.plus(times, rows)
         length = SHORTEST_SWELL
-        length += (LONGEST_SWELL - SHORTEST_SWELL) * uniform(seed, "swell", str(number), "length")
-        amount = 0.6 + 0.4 * uniform(seed, "swell", str(number), "amount")
+        length += (LONGEST_SWELL - SHORTEST_SWELL) * chance_of(key, "length")
+        amount = 0.6 + 0.4 * chance_of(key, "amount")
         times.append(at)
         rows.append([length, amount, 1.0 if track.told_mode(at) == "listening" else 0.0])
         over = at + length

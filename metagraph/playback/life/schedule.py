@@ -14,7 +14,7 @@ from dataclasses import field, replace
 
 from metagraph.graph.life import Life, Manner, manner, same_life
 from metagraph.graph.words import MODES
-from metagraph.playback.choice import uniform
+from metagraph.playback.choice import chance_of, keyed, uniform
 from metagraph.playback.hashing import Bits
 from metagraph.playback.life.expressions import emphases_on, swells_on
 from metagraph.playback.life.lane import Lane
@@ -213,9 +213,9 @@ class LifeDraw:
             self.manners.append(ways_in(ways, Mood(felt[0], felt[1], felt[2])))
             self.strict.append(1 if self.targets[look].strict else 0)
 
-    def chance(self, what: str, number: int, purpose: str) -> float:
-        """Return the chance of something about an event: 0..1, without the ends."""
-        return uniform(self.seed, what, str(number), purpose)
+    def key(self, what: str, number: int) -> Bits:
+        """Return what keys the chances of an event: those of `chance_of`, 0..1, without the ends."""
+        return keyed(self.seed, what, str(number))
 
     def place_at(self, seconds: float) -> int:
         """Return the place of the segment that a time is in."""
@@ -259,9 +259,10 @@ class LifeDraw:
                 at = self.edges[later]
                 begun = True
                 continue
-            length = (BREATH + BREATH_CHANCE * self.chance("breath", number, "length")) / rate
+            key = self.key("breath", number)
+            length = (BREATH + BREATH_CHANCE * chance_of(key, "length")) / rate
             length *= 1.0 + 2.0 * self.life.stillness  # slower, too, but never halting
-            depth = ways.breathing * (BREATH + BREATH_CHANCE * self.chance("breath", number, "depth"))
+            depth = ways.breathing * (BREATH + BREATH_CHANCE * chance_of(key, "depth"))
             if not begun:
                 at = -length * uniform(self.seed, "breath", "first")
                 begun = True
@@ -284,13 +285,14 @@ class LifeDraw:
         number = lane.next
         last = lane.times[-1] if len(lane.times) > 0 else 0.0
         while True:
-            need = FIXATION + (mean - FIXATION) * min(4.0, -math.log(self.chance("saccade", number, "gap")))
+            key = self.key("saccade", number)
+            need = FIXATION + (mean - FIXATION) * min(4.0, -math.log(chance_of(key, "gap")))
             last = max(self.cut, self.after(last, need, rates))
             if not last < self.drawn:
                 return lane.plus(times, rows)
-            size = min(LARGEST_SACCADE, -SACCADE * math.log(self.chance("saccade", number, "size")))
+            size = min(LARGEST_SACCADE, -SACCADE * math.log(chance_of(key, "size")))
             size *= self.manners[self.place_at(last)].saccades
-            turn = 2.0 * math.pi * self.chance("saccade", number, "way")
+            turn = 2.0 * math.pi * chance_of(key, "way")
             times.append(last)
             rows.append([size * math.sin(turn + math.pi / 2.0), UPRIGHT * size * math.sin(turn)])
             number += 1
@@ -313,16 +315,17 @@ class LifeDraw:
         number = lane.next
         last = lane.rows[-1][0] if len(lane.rows) > 0 else 0.0
         while True:
-            need = AVERSION_GAP + AVERSION_CHANCE * self.chance("aversion", number, "gap")
+            key = self.key("aversion", number)
+            need = AVERSION_GAP + AVERSION_CHANCE * chance_of(key, "gap")
             at = max(self.cut, last + BETWEEN_AVERSIONS, self.after(last, need, rates))
             if not at < self.drawn:
                 return lane.plus(times, rows)
             own = self.manners[self.place_at(at)]
             length = life.aversion_length * own.aversion_length
-            length *= 0.6 + 0.8 * self.chance("aversion", number, "length")
+            length *= 0.6 + 0.8 * chance_of(key, "length")
             last = at + max(SHORTEST_AVERSION, length)
-            size = own.aversion_angle * (0.7 + 0.6 * self.chance("aversion", number, "size"))
-            turn = 2.0 * math.pi * self.chance("aversion", number, "way")
+            size = own.aversion_angle * (0.7 + 0.6 * chance_of(key, "size"))
+            turn = 2.0 * math.pi * chance_of(key, "way")
             times.append(at)
             rows.append([last, size * math.sin(turn + math.pi / 2.0), UPRIGHT * size * math.sin(turn)])
             number += 1
@@ -347,7 +350,8 @@ class LifeDraw:
         while True:
             own = math.inf
             if mean < math.inf:
-                need = mean * (BLINK_GAP + BLINK_CHANCE * self.chance("blink", number, "gap"))
+                key = self.key("blink", number)
+                need = mean * (BLINK_GAP + BLINK_CHANCE * chance_of(key, "gap"))
                 own = max(self.cut, self.after(last, need, rates))
             # A stressed syllable may bring a blink: the first of a speech always, the others some time after
             # the last blink.

@@ -54,29 +54,34 @@ inline List<Ref<Bound>> bounds(const List<Ref<MetaAction>>& metas) {
         double wish = INFINITY;
         Ref<_First> own;
         double start = bounds::begins(meta);
+        double rank = meta->rank();
         for (const auto& one : first) {
-            if (one->rank > meta->rank()) {
+            if (one->rank > rank) {
                 limit = std::min(limit, one->start);
             }
-            if (one->rank >= meta->rank() && !one->written) {
+            if (one->rank >= rank && !one->written) {
                 wish = std::min(wish, one->start);
             }
-            if (one->rank == meta->rank() && one->written == meta->written) {
+            if (one->rank == rank && one->written == meta->written) {
                 own = one;
             }
         }
         List<Ref<MetaAction>> after;
-        for (const auto& one2 : lang::backwards(lang::part(pressing, -bounds::LOOKED_AT))) {
-            if (one2->rank() >= meta->rank()) {
-                after.push_back(one2);
+        if (lang::len(pressing) > 0) {
+            List<Ref<MetaAction>> found;
+            for (const auto& one2 : lang::backwards(lang::part(pressing, -bounds::LOOKED_AT))) {
+                if (one2->rank() >= rank) {
+                    found.push_back(one2);
+                }
             }
+            after = found;
         }
         out.push_back(lang::made<Bound>(meta, limit, wish, after));
         if (meta->request->late.has_value()) {
             pressing.push_back(meta);
         }
         if (own == nullptr) {
-            first.push_back(lang::made<_First>(meta->rank(), meta->written, start));
+            first.push_back(lang::made<_First>(rank, meta->written, start));
         } else {
             own->start = start;
         }

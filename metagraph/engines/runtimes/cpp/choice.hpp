@@ -13,15 +13,18 @@ namespace metagraph {
 
 namespace choice {
 
+inline constexpr double ALL = 4294967296.0; // numbers of 32 bits
 inline std::uint32_t key32(std::uint32_t seed, const List<std::string>& words);
+inline std::uint32_t keyed(std::uint32_t seed, const List<std::string>& words);
 inline double uniform(std::uint32_t seed, const List<std::string>& words);
+inline double chance_of(std::uint32_t key, const std::string& purpose);
 inline std::string pick(
     std::uint32_t seed,
     const std::string& key,
     const std::string& purpose,
     const Map<std::string, double>& weights
 );
-inline double _unit(std::uint32_t bits);
+inline std::string picked(std::uint32_t key, const std::string& purpose, const Map<std::string, double>& weights);
 
 }  // namespace choice
 
@@ -32,34 +35,49 @@ namespace choice {
 ///
 /// The seed, mixed, is xored into FNV's offset basis.
 inline std::uint32_t key32(std::uint32_t seed, const List<std::string>& words) {
+    return hashing::mix(choice::keyed(seed, words));
+}
+
+/// Return what draws of one key have in common: the hash of a seed and words before it is mixed.
+inline std::uint32_t keyed(std::uint32_t seed, const List<std::string>& words) {
     int value = hashing::begun(seed);
     for (const auto& word : words) {
         value = hashing::absorb(value, word);
     }
-    return hashing::mix(value);
+    return value;
 }
 
 /// Return a number in the open interval (0, 1).
 inline double uniform(std::uint32_t seed, const List<std::string>& words) {
-    return choice::_unit(choice::key32(seed, words));
+    return (hashing::mix(choice::keyed(seed, words)) + 0.5) / choice::ALL;
 }
 
-/// Return one of the ids, id k with probability weight_k / sum.
-///
-/// Each id runs its own race, the shortest of exponential times -log(u_k) / weight_k wins; so adding or removing one
-/// candidate changes the choice only where that candidate wins. Raises ValueError when no weight is positive.
+/// Return what `uniform` does with one word more than a key has.
+inline double chance_of(std::uint32_t key, const std::string& purpose) {
+    return (hashing::mix(hashing::absorb(key, purpose)) + 0.5) / choice::ALL;
+}
+
+/// Return one of the ids, as `picked` does.
 inline std::string pick(
     std::uint32_t seed,
     const std::string& key,
     const std::string& purpose,
     const Map<std::string, double>& weights
 ) {
+    return choice::picked(choice::keyed(seed, List<std::string>{key}), purpose, weights);
+}
+
+/// Return one of the ids, id k with probability weight_k / sum.
+///
+/// Each id runs its own race, the shortest of exponential times -log(u_k) / weight_k wins; so adding or removing one
+/// candidate changes the choice only where that candidate wins. Raises ValueError when no weight is positive.
+inline std::string picked(std::uint32_t key, const std::string& purpose, const Map<std::string, double>& weights) {
     std::string best = "";
     double shortest = INFINITY;
-    int start = hashing::absorb(hashing::absorb(hashing::begun(seed), key), purpose);
+    int start = hashing::absorb(key, purpose);
     for (const auto& [ident, weight] : weights) {
         if (weight > 0) {
-            double time = -std::log(choice::_unit(hashing::mix(hashing::absorb(start, ident)))) / weight;
+            double time = -std::log((hashing::mix(hashing::absorb(start, ident)) + 0.5) / choice::ALL) / weight;
             if (time < shortest || (time == shortest && ident < best)) {
                 best = ident;
                 shortest = time;
@@ -70,10 +88,6 @@ inline std::string pick(
         lang::fail("nothing to choose from");
     }
     return best;
-}
-
-inline double _unit(std::uint32_t bits) {
-    return (bits + 0.5) / 4294967296.0;
 }
 
 }  // namespace choice

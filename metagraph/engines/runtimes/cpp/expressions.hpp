@@ -140,16 +140,15 @@ inline Ref<Lane> swells_on(
         ? lang::at(before->times, -1) + lang::at(lang::at(before->rows, -1), 0)
         : 0.0;
     while (true) {
-        double gap = expressions::SWELL_GAP
-            * (0.3 + 1.4 * choice::uniform(seed, List<std::string>{"swell", lang::text(number), "gap"}));
+        int key = choice::keyed(seed, List<std::string>{"swell", lang::text(number)});
+        double gap = expressions::SWELL_GAP * (0.3 + 1.4 * choice::chance_of(key, "gap"));
         double at = std::max(cut, over + gap);
         if (at >= drawn) {
             return before->plus(times, rows);
         }
         double length = expressions::SHORTEST_SWELL;
-        length += (expressions::LONGEST_SWELL - expressions::SHORTEST_SWELL)
-            * choice::uniform(seed, List<std::string>{"swell", lang::text(number), "length"});
-        double amount = 0.6 + 0.4 * choice::uniform(seed, List<std::string>{"swell", lang::text(number), "amount"});
+        length += (expressions::LONGEST_SWELL - expressions::SHORTEST_SWELL) * choice::chance_of(key, "length");
+        double amount = 0.6 + 0.4 * choice::chance_of(key, "amount");
         times.push_back(at);
         rows.push_back(List<double>{length, amount, track->told_mode(at) == "listening" ? 1.0 : 0.0});
         over = at + length;

@@ -35,7 +35,7 @@ inline bool performs(
     const Ref<MetaAction>& meta,
     const std::optional<std::string>& mode
 );
-inline double length(const Ref<Markov>& chain, int state, std::uint32_t seed, const std::string& key);
+inline double length(const Ref<Markov>& chain, int state, std::uint32_t key);
 
 }  // namespace markov
 
@@ -63,29 +63,32 @@ inline std::tuple<List<Ref<MetaAction>>, Ref<Cursor>> write(
     for (const auto& [_, kind2] : chain->states) {
         open_to.push_back((!kinds.has_value() || lang::contains(*kinds, kind2)) ? 1.0 : 0.0);
     }
+    Map<int, Map<std::string, double>> rows;
     List<Ref<MetaAction>> out;
-    while (true) {
-        bool is_any = false;
-        for (const auto& p : open_to) {
-            if (p > 0) {
-                is_any = true;
-                break;
-            }
-        }
-        if (!is_any) {
+    bool is_any = false;
+    for (const auto& p : open_to) {
+        if (p > 0) {
+            is_any = true;
             break;
         }
-        std::string key = lang::text("auto/", chain->layer, "/", number);
-        double start = time + chain->gap * (0.35 + 1.3 * choice::uniform(seed, List<std::string>{key, "gap"}));
+    }
+    bool able = is_any;
+    while (able) {
+        std::string ident = lang::text("auto/", chain->layer, "/", number);
+        int key = choice::keyed(seed, List<std::string>{ident});
+        double start = time + chain->gap * (0.35 + 1.3 * choice::chance_of(key, "gap"));
         if (!(start < until)) { // nor when it is no number
             break;
         }
-        state = std::stoi(choice::pick(seed, key, "state", markov::_row(chain, state, open_to)));
+        if (!lang::contains(rows, state)) {
+            rows[state] = markov::_row(chain, state, open_to);
+        }
+        state = std::stoi(choice::picked(key, "state", rows.at(state)));
         auto [limb, kind] = lang::at(chain->states, state);
-        double seconds = markov::length(chain, state, seed, key);
+        double seconds = markov::length(chain, state, key);
         List<std::string> tags = lang::words(chain->tag(state));
         if (kind == "gesture" && lang::len(chain->tags) == 0) {
-            double draw = choice::uniform(seed, List<std::string>{key, "tag"});
+            double draw = choice::chance_of(key, "tag");
             if (draw < chain->positive) {
                 tags = List<std::string>{"positive"};
             } else if (draw < chain->positive + chain->negative) {
@@ -93,7 +96,7 @@ inline std::tuple<List<Ref<MetaAction>>, Ref<Cursor>> write(
             }
         }
         Ref<MetaRequest> request = lang::made<MetaRequest>(
-            key,
+            ident,
             chain->layer,
             kind,
             start,
@@ -111,8 +114,8 @@ inline std::tuple<List<Ref<MetaAction>>, Ref<Cursor>> write(
     return std::tuple<List<Ref<MetaAction>>, Ref<Cursor>>{out, lang::made<Cursor>(number, state, time)};
 }
 
-/// Return how likely each state is after a state (-1: before the first), by its place; any that may be where nothing
-/// leads on.
+/// Return how likely each state is that may come after a state (-1: before the first), by its place; any that may be
+/// where nothing leads on.
 inline Map<std::string, double> _row(const Ref<Markov>& chain, int state, const List<double>& open_to) {
     List<double> row = open_to;
     if (0 <= state && state < lang::len(row)) {
@@ -137,7 +140,9 @@ inline Map<std::string, double> _row(const Ref<Markov>& chain, int state, const 
     Map<std::string, double> found2;
     for (int i = 0; i < lang::len(row); i++) {
         const auto& p = lang::at(row, i);
-        found2[lang::text(i)] = p;
+        if (p > 0) {
+            found2[lang::text(i)] = p;
+        }
     }
     return found2;
 }
@@ -157,21 +162,20 @@ inline bool performs(
     return share >= 1 || choice::uniform(seed, List<std::string>{meta->request->id, "mode"}) < share;
 }
 
-/// Return how many seconds meta action `key` lasts: 1 to 3, evenly, where the model has no lengths.
+/// Return how many seconds a meta action of a key lasts: 1 to 3, evenly, where the model has no lengths.
 ///
 /// Else log-normal with the state's mean m and standard deviation s, from two uniform draws u, v in (0, 1) by Box and
 /// Muller, which any language can do alike: `a = ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z
 /// - a / 2)`.
-inline double length(const Ref<Markov>& chain, int state, std::uint32_t seed, const std::string& key) {
-    double u = choice::uniform(seed, List<std::string>{key, "length"});
+inline double length(const Ref<Markov>& chain, int state, std::uint32_t key) {
+    double u = choice::chance_of(key, "length");
     if (lang::len(chain->lengths) == 0) {
         return 1.0 + 2.0 * u;
     }
     auto [mean, deviation] = lang::at(chain->lengths, state);
     double share = deviation / mean;
     double spread = std::log1p(share * share);
-    double z = std::sqrt(-2.0 * std::log(u))
-        * std::cos(2.0 * lang::PI * choice::uniform(seed, List<std::string>{key, "length2"}));
+    double z = std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * lang::PI * choice::chance_of(key, "length2"));
     return mean * std::exp(std::sqrt(spread) * z - spread / 2.0);
 }
 

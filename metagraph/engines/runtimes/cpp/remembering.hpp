@@ -13,6 +13,7 @@ namespace remembering {
 
 inline constexpr int REMEMBERED = 32; // draws of a stance and kind that spacing can look back on
 inline std::string node(const std::string& stance, const std::string& kind);
+inline bool rested(const List<std::string>& recent, const std::string& ident, int needed);
 inline void remember(
     const Ref<Cue>& cue,
     Map<std::string, int>& uses,
@@ -27,6 +28,15 @@ namespace remembering {
 /// Return what draws of a stance and kind are remembered under.
 inline std::string node(const std::string& stance, const std::string& kind) {
     return lang::text(kind, " ", stance);
+}
+
+/// Whether so many other draws came after an action's last one.
+inline bool rested(const List<std::string>& recent, const std::string& ident, int needed) {
+    if (needed <= 0) {
+        return true;
+    }
+    return needed <= remembering::REMEMBERED
+        && !lang::contains(lang::part(recent, std::max(0, lang::len(recent) - needed)), ident);
 }
 
 /// Note that a cue was played: how often its action was, lately, and until when.

@@ -50,7 +50,8 @@ struct SamplingStep {
 ///
 /// uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun:
 /// keys of meta actions whose chain of transitions plays already. served: keys of those that another's action serves,
-/// too. moods: what it is in the mood for, and when.
+/// too. moods: what it is in the mood for, and when. candidates: the actions of each `node` that may be drawn, as far
+/// as they were asked for.
 struct Performer {
     Ref<Project> project;
     Ref<MetaGraph> graph;
@@ -66,6 +67,7 @@ struct Performer {
     List<Ref<Report>> reports;
     Set<std::string> begun;
     Set<std::string> served;
+    Map<std::string, List<Ref<Action>>> candidates;
 
     Performer(
         Ref<Project> project_,
@@ -81,7 +83,8 @@ struct Performer {
         List<Ref<Rest>> rests_ = List<Ref<Rest>>{},
         List<Ref<Report>> reports_ = List<Ref<Report>>{},
         Set<std::string> begun_ = Set<std::string>{},
-        Set<std::string> served_ = Set<std::string>{}
+        Set<std::string> served_ = Set<std::string>{},
+        Map<std::string, List<Ref<Action>>> candidates_ = Map<std::string, List<Ref<Action>>>{}
     )
         : project(std::move(project_)),
             graph(std::move(graph_)),
@@ -96,7 +99,8 @@ struct Performer {
             rests(std::move(rests_)),
             reports(std::move(reports_)),
             begun(std::move(begun_)),
-            served(std::move(served_)) {}
+            served(std::move(served_)),
+            candidates(std::move(candidates_)) {}
 
     /// Take a cue as played.
     void note(const Ref<Cue>& cue, const std::string& then);
@@ -156,13 +160,13 @@ struct Performer {
     bool _usable(const Ref<Action>& action);
 
     /// Return how an action would play for a request from `now` on, or as a step on the way to it.
-    Ref<CueShape> _shape(const Ref<Action>& action, const Ref<MetaRequest>& request, double now);
+    Ref<CueShape> _shape(const Ref<Action>& action, const Ref<MetaRequest>& request, double now, const Ref<Mood>& mood);
 
     /// Return the mood that something asked for is played in from `at` on, or at its stroke.
     Ref<Mood> _mood(const Ref<MetaRequest>& request, double at);
 
     /// Return how fast an action is played, 1 where it was made for the mood.
-    double _tempo(const Ref<Action>& action, const Ref<MetaRequest>& request, double at);
+    double _tempo(const Ref<Action>& action, const Ref<Mood>& mood);
 
     /// Return how large an action is played. Those that move feet or leave for another stance, touch something or were
     /// made for the mood are played as they were made.
@@ -171,9 +175,6 @@ struct Performer {
     /// Draw with p_k ~ likelihood_k / max(c_k, 1), times what the mood favours, leaving out those used too recently as
     /// long as any others are left.
     Ref<Action> _draw(const List<Ref<Action>>& candidates, const std::string& key, double now, const Ref<Mood>& mood);
-
-    /// Return how much likelier a mood makes an action, 1 in none.
-    double _favour(const Ref<Action>& action, const Ref<Mood>& mood);
 
     /// Leave out what needs more other actions before it plays again; where that leaves nothing, all need one less, and
     /// so on.
@@ -236,21 +237,20 @@ inline void Performer::perform(const List<Ref<MetaAction>>& metas, double end) {
         if (bounds::begins(meta) >= end) {
             continue;
         }
-        if (lang::contains(this->served, meta->key())) {
+        if (lang::len(this->served) > 0 && lang::contains(this->served, meta->key())) {
             continue;
         }
         if (meta->request->late.has_value()) {
             this->_realise(bound, std::max(this->ready(), bounds::begins(meta)));
             continue;
         }
-        if (meta->end <= this->ready() + cue_shapes::FITS
-            && meta->start < this->ready()
-            && !lang::contains(this->begun, meta->key())) {
+        double ready = this->ready();
+        if (meta->start < ready && meta->end <= ready + cue_shapes::FITS && !lang::contains(this->begun, meta->key())) {
             std::string running = "the running action";
             if (lang::len(this->cues) > 0) {
                 running = lang::text("'", lang::at(this->cues, -1)->action->name, "'");
             }
-            double waits = this->ready() - meta->request->start;
+            double waits = ready - meta->request->start;
             // What is wanted for a certain time is over; what is wanted once may come late.
             if (meta->written || meta->request->duration.has_value() || waits > this->project->settings->wait) {
                 this->_tell(
@@ -262,7 +262,7 @@ inline void Performer::perform(const List<Ref<MetaAction>>& metas, double end) {
             }
             this->_tell(meta, "queued", lang::text("waits ", lang::fixed(waits, 2), " s for ", running), true);
         }
-        this->_realise(bound, std::max(this->ready(), meta->start));
+        this->_realise(bound, std::max(ready, meta->start));
     }
 }
 
@@ -278,11 +278,12 @@ inline void Performer::_realise(const Ref<Bound>& bound, double now) {
     for (const auto& step : *steps) {
         bool hops = step->hop != "";
         Ref<MetaRequest> asked = hops ? nullptr : meta->request;
+        Ref<Mood> mood = this->_mood(asked, now);
         List<Ref<Action>> fitting = step->candidates;
         if (limit < INFINITY) { // else all fit
             List<Ref<Action>> found;
             for (const auto& a : step->candidates) {
-                if (cue_shapes::fits_before(this->_shape(a, asked, now), limit)) {
+                if (cue_shapes::fits_before(this->_shape(a, asked, now, mood), limit)) {
                     found.push_back(a);
                 }
             }
@@ -300,7 +301,8 @@ inline void Performer::_realise(const Ref<Bound>& bound, double now) {
         if (!hops && !meta->request->action.has_value()) {
             List<Ref<Action>> warm;
             for (const auto& a : fitting) {
-                if (a->cooldown <= 0 || this->_cooled(a) <= this->_shape(a, asked, now)->start + cue_shapes::FITS) {
+                if (a->cooldown <= 0
+                    || this->_cooled(a) <= this->_shape(a, asked, now, mood)->start + cue_shapes::FITS) {
                     warm.push_back(a);
                 }
             }
@@ -331,14 +333,13 @@ inline void Performer::_realise(const Ref<Bound>& bound, double now) {
                 return;
             }
         }
-        Ref<Mood> mood = this->_mood(asked, now);
         Ref<Action> action = this->_draw(
             fitting,
             hops ? lang::text(meta->key(), "/", step->hop) : meta->key(),
             now,
             mood
         );
-        Ref<CueShape> shape = this->_shape(action, asked, now);
+        Ref<CueShape> shape = this->_shape(action, asked, now, mood);
         Ref<Cue> cue = this->_cue(action, shape, bound, hops, stance, mood);
         cues.push_back(cue);
         now = cue->end;
@@ -353,9 +354,10 @@ inline List<Ref<Action>> Performer::_timely(const Ref<Bound>& bound, const List<
     Ref<MetaAction> meta = bound->meta;
     Ref<MetaRequest> request = meta->request;
     double allowed = cue_shapes::slack_of(request);
+    Ref<Mood> mood = this->_mood(request, now);
     Map<std::string, double> late;
     for (const auto& a : fitting) {
-        late[a->id] = cue_shapes::lateness(this->project, a, request, this->_shape(a, request, now));
+        late[a->id] = cue_shapes::lateness(this->project, a, request, this->_shape(a, request, now, mood));
     }
     List<double> found;
     for (const auto& a : fitting) {
@@ -474,19 +476,23 @@ inline double Performer::_latest(const Ref<MetaRequest>& request) {
         if (fits && this->_usable(action)) {
             Ref<Phases> found = phases::phases(this->project, action);
             double lead = found->stroke - found->skip(action->timing->blend_in);
-            least = std::min(least, lead + mood::drag(lead, this->_tempo(action, request, *request->stroke)));
+            double speed = this->_tempo(action, this->_mood(request, *request->stroke));
+            least = std::min(least, lead + mood::drag(lead, speed));
         }
     }
     return *request->stroke - least;
 }
 
 inline double Performer::_over(const Ref<Action>& action, const Ref<MetaRequest>& request, double now) {
-    Ref<CueShape> shape = this->_shape(action, request, now);
+    Ref<CueShape> shape = this->_shape(action, request, now, this->_mood(request, now));
     return shape->start + cue_shapes::hurried(this->project, action, shape) + this->project->settings->rest
         - cue_shapes::FITS;
 }
 
 inline double Performer::_until(const Ref<Action>& action, const Ref<CueShape>& shape, const Ref<Bound>& bound) {
+    if (lang::len(bound->after) == 0) {
+        return INFINITY;
+    }
     double rest = this->project->settings->rest;
     double soonest = shape->start + cue_shapes::hurried(this->project, action, shape);
     for (const auto& other : bound->after) {
@@ -602,24 +608,29 @@ inline std::optional<List<Ref<SamplingStep>>> Performer::_steps(const Ref<MetaAc
         }
         return this->_way(meta, *request->stance);
     }
-    List<Ref<Action>> every;
-    for (const auto& a : graph->of(this->stance, request->kind)) {
-        if (this->_usable(a)) {
-            every.push_back(a);
-        }
-    }
-    if (lang::len(request->among) > 0) {
+    std::string here = remembering::node(this->stance, request->kind);
+    if (!lang::contains(this->candidates, here)) {
         List<Ref<Action>> found2;
-        for (const auto& a : every) {
-            if (lang::contains(request->among, a->id)) {
+        for (const auto& a : graph->of(this->stance, request->kind)) {
+            if (this->_usable(a)) {
                 found2.push_back(a);
             }
         }
-        every = found2;
+        this->candidates[here] = found2;
+    }
+    List<Ref<Action>> every = this->candidates.at(here);
+    if (lang::len(request->among) > 0) {
+        List<Ref<Action>> found3;
+        for (const auto& a : every) {
+            if (lang::contains(request->among, a->id)) {
+                found3.push_back(a);
+            }
+        }
+        every = found3;
     }
     List<Ref<Action>> found = every;
     if (lang::len(request->tags) > 0) {
-        List<Ref<Action>> found3;
+        List<Ref<Action>> found4;
         for (const auto& a : every) {
             bool are_all = true;
             for (const auto& tag : request->tags) {
@@ -629,26 +640,23 @@ inline std::optional<List<Ref<SamplingStep>>> Performer::_steps(const Ref<MetaAc
                 }
             }
             if (are_all) {
-                found3.push_back(a);
-            }
-        }
-        found = found3;
-    }
-    List<Ref<Action>> exact = found;
-    if (request->limb.has_value()) {
-        List<Ref<Action>> found4;
-        for (const auto& a : found) {
-            if (a->limb == *request->limb) {
                 found4.push_back(a);
             }
         }
-        exact = found4;
+        found = found4;
+    }
+    List<Ref<Action>> exact = found;
+    if (request->limb.has_value()) {
+        List<Ref<Action>> found5;
+        for (const auto& a : found) {
+            if (a->limb == *request->limb) {
+                found5.push_back(a);
+            }
+        }
+        exact = found5;
     }
     if (meta->written) { // the model's limb and tags are wishes, not orders, nor worth playing the same again
-        List<std::string> again = lang::part(
-            lang::get_or(this->recent, remembering::node(this->stance, request->kind), List<std::string>{}),
-            -1
-        );
+        List<std::string> again = lang::part(lang::get_or(this->recent, here, List<std::string>{}), -1);
         bool is_any = false;
         for (const auto& a : exact) {
             if (!lang::contains(again, a->id)) {
@@ -785,8 +793,13 @@ inline bool Performer::_usable(const Ref<Action>& action) {
     return action->likelihood > 0 && this->_arrives(action);
 }
 
-inline Ref<CueShape> Performer::_shape(const Ref<Action>& action, const Ref<MetaRequest>& request, double now) {
-    return cue_shapes::shape_of(this->project, action, request, now, this->_tempo(action, request, now));
+inline Ref<CueShape> Performer::_shape(
+    const Ref<Action>& action,
+    const Ref<MetaRequest>& request,
+    double now,
+    const Ref<Mood>& mood
+) {
+    return cue_shapes::shape_of(this->project, action, request, now, this->_tempo(action, mood));
 }
 
 inline Ref<Mood> Performer::_mood(const Ref<MetaRequest>& request, double at) {
@@ -800,8 +813,7 @@ inline Ref<Mood> Performer::_mood(const Ref<MetaRequest>& request, double at) {
     return mood::changed(mood, request->valence, request->arousal, request->intensity);
 }
 
-inline double Performer::_tempo(const Ref<Action>& action, const Ref<MetaRequest>& request, double at) {
-    Ref<Mood> mood = this->_mood(request, at);
+inline double Performer::_tempo(const Ref<Action>& action, const Ref<Mood>& mood) {
     return (mood->neutral() || mood::made_for(mood, action->tags)) ? 1.0 : mood::tempo(mood);
 }
 
@@ -823,9 +835,14 @@ inline Ref<Action> Performer::_draw(
     const Ref<Mood>& mood
 ) {
     List<Ref<Action>> left = this->_spaced(candidates);
+    if (lang::len(left) == 1) {
+        return lang::at(left, 0);
+    }
+    bool neutral = mood->neutral();
     Map<std::string, double> weights;
     for (const auto& a : left) {
-        weights[a->id] = a->likelihood / std::max(this->_count(a->id, now), 1.0) * this->_favour(a, mood);
+        double favoured = neutral ? 1.0 : mood::favour(mood, a->tags, vigour::vigour(this->project, a));
+        weights[a->id] = a->likelihood / std::max(this->_count(a->id, now), 1.0) * favoured;
     }
     bool is_any = false;
     for (const auto& w : lang::values(weights)) {
@@ -839,17 +856,13 @@ inline Ref<Action> Performer::_draw(
     }
     std::string chosen = choice::pick(this->seed, key, "action", weights);
     Ref<Action> first;
-    for (const auto& a : left) {
-        if (a->id == chosen) {
-            first = a;
+    for (const auto& a2 : left) {
+        if (a2->id == chosen) {
+            first = a2;
             break;
         }
     }
     return first;
-}
-
-inline double Performer::_favour(const Ref<Action>& action, const Ref<Mood>& mood) {
-    return mood->neutral() ? 1.0 : mood::favour(mood, action->tags, vigour::vigour(this->project, action));
 }
 
 inline List<Ref<Action>> Performer::_spaced(const List<Ref<Action>>& candidates) {
@@ -858,12 +871,6 @@ inline List<Ref<Action>> Performer::_spaced(const List<Ref<Action>>& candidates)
     List<std::string> before = lang::get_or(this->recent, remembering::node(first->stance, first->kind), List<std::string>{});
     if (lang::len(candidates) < 2 || lang::len(before) == 0) {
         return candidates;
-    }
-    // How many came after each.
-    Map<std::string, int> since;
-    for (int place = 0; place < lang::len(before); place++) {
-        const auto& ident = lang::at(before, place);
-        since[ident] = lang::len(before) - 1 - place;
     }
     Map<std::string, int> needs;
     for (const auto& a : candidates) {
@@ -876,7 +883,7 @@ inline List<Ref<Action>> Performer::_spaced(const List<Ref<Action>>& candidates)
     for (int less = 0; less < lang::max_of(found) + 1; less++) {
         List<Ref<Action>> left;
         for (const auto& a : candidates) {
-            if (lang::get_or(since, a->id, remembering::REMEMBERED) >= needs.at(a->id) - less) {
+            if (remembering::rested(before, a->id, needs.at(a->id) - less)) {
                 left.push_back(a);
             }
         }
@@ -977,6 +984,9 @@ inline void Performer::_keep(const Ref<Cue>& cue) {
 
 inline Ref<Action> Performer::loop(const std::string& stance, const std::string& key) {
     List<Ref<Action>> loops = this->graph->of(stance, "stance");
+    if (lang::len(loops) == 1) {
+        return lang::at(loops, 0);
+    }
     Map<std::string, double> weights;
     for (const auto& a : loops) {
         if (a->likelihood > 0) {

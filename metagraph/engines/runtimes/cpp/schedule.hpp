@@ -186,8 +186,8 @@ struct LifeDraw {
     /// Lay modes, moods and strict looks out in one row of segments.
     void begin(double cut);
 
-    /// Return the chance of something about an event: 0..1, without the ends.
-    double chance(const std::string& what, int number, const std::string& purpose);
+    /// Return what keys the chances of an event: those of `chance_of`, 0..1, without the ends.
+    std::uint32_t key(const std::string& what, int number);
 
     /// Return the place of the segment that a time is in.
     int place_at(double seconds);
@@ -306,8 +306,8 @@ inline void LifeDraw::begin(double cut) {
     }
 }
 
-inline double LifeDraw::chance(const std::string& what, int number, const std::string& purpose) {
-    return choice::uniform(this->seed, List<std::string>{what, lang::text(number), purpose});
+inline std::uint32_t LifeDraw::key(const std::string& what, int number) {
+    return choice::keyed(this->seed, List<std::string>{what, lang::text(number)});
 }
 
 inline int LifeDraw::place_at(double seconds) {
@@ -352,10 +352,10 @@ inline Ref<Lane> LifeDraw::breaths(const Ref<Lane>& lane) {
             begun = true;
             continue;
         }
-        double length = (schedule::BREATH + schedule::BREATH_CHANCE * this->chance("breath", number, "length")) / rate;
+        int key = this->key("breath", number);
+        double length = (schedule::BREATH + schedule::BREATH_CHANCE * choice::chance_of(key, "length")) / rate;
         length *= 1.0 + 2.0 * this->life->stillness; // slower, too, but never halting
-        double depth = ways->breathing
-            * (schedule::BREATH + schedule::BREATH_CHANCE * this->chance("breath", number, "depth"));
+        double depth = ways->breathing * (schedule::BREATH + schedule::BREATH_CHANCE * choice::chance_of(key, "depth"));
         if (!begun) {
             at = -length * choice::uniform(this->seed, List<std::string>{"breath", "first"});
             begun = true;
@@ -385,18 +385,19 @@ inline Ref<Lane> LifeDraw::saccades(const Ref<Lane>& lane) {
     int number = lane->next();
     double last = lang::len(lane->times) > 0 ? lang::at(lane->times, -1) : 0.0;
     while (true) {
+        int key = this->key("saccade", number);
         double need = schedule::FIXATION
-            + (mean - schedule::FIXATION) * std::min(4.0, -std::log(this->chance("saccade", number, "gap")));
+            + (mean - schedule::FIXATION) * std::min(4.0, -std::log(choice::chance_of(key, "gap")));
         last = std::max(this->cut, this->after(last, need, rates));
         if (!(last < this->drawn)) {
             return lane->plus(times, rows);
         }
         double size = std::min(
             schedule::LARGEST_SACCADE,
-            -schedule::SACCADE * std::log(this->chance("saccade", number, "size"))
+            -schedule::SACCADE * std::log(choice::chance_of(key, "size"))
         );
         size *= lang::at(this->manners, this->place_at(last))->saccades;
-        double turn = 2.0 * lang::PI * this->chance("saccade", number, "way");
+        double turn = 2.0 * lang::PI * choice::chance_of(key, "way");
         times.push_back(last);
         rows.push_back(List<double>{size * std::sin(turn + lang::PI / 2.0), schedule::UPRIGHT * size * std::sin(turn)});
         number += 1;
@@ -428,17 +429,18 @@ inline Ref<Lane> LifeDraw::aversions(const Ref<Lane>& lane) {
     int number = lane->next();
     double last = lang::len(lane->rows) > 0 ? lang::at(lang::at(lane->rows, -1), 0) : 0.0;
     while (true) {
-        double need = schedule::AVERSION_GAP + schedule::AVERSION_CHANCE * this->chance("aversion", number, "gap");
+        int key = this->key("aversion", number);
+        double need = schedule::AVERSION_GAP + schedule::AVERSION_CHANCE * choice::chance_of(key, "gap");
         double at = std::max(this->cut, std::max(last + schedule::BETWEEN_AVERSIONS, this->after(last, need, rates)));
         if (!(at < this->drawn)) {
             return lane->plus(times, rows);
         }
         Ref<Manner> own = lang::at(this->manners, this->place_at(at));
         double length = life->aversion_length * own->aversion_length;
-        length *= 0.6 + 0.8 * this->chance("aversion", number, "length");
+        length *= 0.6 + 0.8 * choice::chance_of(key, "length");
         last = at + std::max(schedule::SHORTEST_AVERSION, length);
-        double size = own->aversion_angle * (0.7 + 0.6 * this->chance("aversion", number, "size"));
-        double turn = 2.0 * lang::PI * this->chance("aversion", number, "way");
+        double size = own->aversion_angle * (0.7 + 0.6 * choice::chance_of(key, "size"));
+        double turn = 2.0 * lang::PI * choice::chance_of(key, "way");
         times.push_back(at);
         rows.push_back(List<double>{
             last,
@@ -476,7 +478,8 @@ inline Ref<Lane> LifeDraw::blinks(const Ref<Lane>& lane) {
     while (true) {
         double own = INFINITY;
         if (mean < INFINITY) {
-            double need = mean * (schedule::BLINK_GAP + schedule::BLINK_CHANCE * this->chance("blink", number, "gap"));
+            int key = this->key("blink", number);
+            double need = mean * (schedule::BLINK_GAP + schedule::BLINK_CHANCE * choice::chance_of(key, "gap"));
             own = std::max(this->cut, this->after(last, need, rates));
         }
         // A stressed syllable may bring a blink: the first of a speech always, the others some time after

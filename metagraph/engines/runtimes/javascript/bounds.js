@@ -49,24 +49,28 @@ export function bounds(metas) {
     let wish = Infinity;
     let own = null;
     const start = begins(meta);
+    const rank = meta.rank;
     for (const one of first) {
-      if (one.rank > meta.rank) {
+      if (one.rank > rank) {
         limit = Math.min(limit, one.start);
       }
-      if (one.rank >= meta.rank && !one.written) {
+      if (one.rank >= rank && !one.written) {
         wish = Math.min(wish, one.start);
       }
-      if (one.rank === meta.rank && one.written === meta.written) {
+      if (one.rank === rank && one.written === meta.written) {
         own = one;
       }
     }
-    const after = [...pressing.slice(-LOOKED_AT)].reverse().filter((one) => one.rank >= meta.rank);
+    let after = [];
+    if (pressing.length > 0) {
+      after = [...pressing.slice(-LOOKED_AT)].reverse().filter((one) => one.rank >= rank);
+    }
     out.push(new Bound(meta, limit, wish, after));
     if (meta.request.late !== null) {
       pressing.push(meta);
     }
     if (own === null) {
-      first.push(new _First(meta.rank, meta.written, start));
+      first.push(new _First(rank, meta.written, start));
     } else {
       own.start = start;
     }

@@ -9,6 +9,8 @@
 import { absorb, begun, mix } from "./hashing.js";
 import { compareText } from "./basics.js";
 
+export const ALL = 4294967296; // numbers of 32 bits
+
 /**
  * Return the 32-bit hash of a seed and words: FNV-1a over their UTF-8 bytes, each word closed by a zero byte, then mixed.
  *
@@ -18,11 +20,21 @@ import { compareText } from "./basics.js";
  * @returns {number}
  */
 export function key32(seed, ...words) {
+  return mix(keyed(seed, ...words));
+}
+
+/**
+ * Return what draws of one key have in common: the hash of a seed and words before it is mixed.
+ * @param {number} seed
+ * @param {...string} words
+ * @returns {number}
+ */
+export function keyed(seed, ...words) {
   let value = begun(seed);
   for (const word of words) {
     value = absorb(value, word);
   }
-  return mix(value);
+  return value;
 }
 
 /**
@@ -32,14 +44,21 @@ export function key32(seed, ...words) {
  * @returns {number}
  */
 export function uniform(seed, ...words) {
-  return _unit(key32(seed, ...words));
+  return (mix(keyed(seed, ...words)) + 0.5) / ALL;
 }
 
 /**
- * Return one of the ids, id k with probability weight_k / sum.
- *
- * Each id runs its own race, the shortest of exponential times -log(u_k) / weight_k wins; so adding or removing one
- * candidate changes the choice only where that candidate wins. Raises ValueError when no weight is positive.
+ * Return what `uniform` does with one word more than a key has.
+ * @param {number} key
+ * @param {string} purpose
+ * @returns {number}
+ */
+export function chanceOf(key, purpose) {
+  return (mix(absorb(key, purpose)) + 0.5) / ALL;
+}
+
+/**
+ * Return one of the ids, as `picked` does.
  * @param {number} seed
  * @param {string} key
  * @param {string} purpose
@@ -47,12 +66,26 @@ export function uniform(seed, ...words) {
  * @returns {string}
  */
 export function pick(seed, key, purpose, weights) {
+  return picked(keyed(seed, key), purpose, weights);
+}
+
+/**
+ * Return one of the ids, id k with probability weight_k / sum.
+ *
+ * Each id runs its own race, the shortest of exponential times -log(u_k) / weight_k wins; so adding or removing one
+ * candidate changes the choice only where that candidate wins. Raises ValueError when no weight is positive.
+ * @param {number} key
+ * @param {string} purpose
+ * @param {Map<string, number>} weights
+ * @returns {string}
+ */
+export function picked(key, purpose, weights) {
   let best = "";
   let shortest = Infinity;
-  const start = absorb(absorb(begun(seed), key), purpose);
+  const start = absorb(key, purpose);
   for (const [ident, weight] of weights) {
     if (weight > 0) {
-      const time = -Math.log(_unit(mix(absorb(start, ident)))) / weight;
+      const time = -Math.log((mix(absorb(start, ident)) + 0.5) / ALL) / weight;
       if (time < shortest || (time === shortest && compareText(ident, best) < 0)) {
         best = ident;
         shortest = time;
@@ -63,12 +96,4 @@ export function pick(seed, key, purpose, weights) {
     throw new Error("nothing to choose from");
   }
   return best;
-}
-
-/**
- * @param {number} bits
- * @returns {number}
- */
-function _unit(bits) {
-  return (bits + 0.5) / 4294967296;
 }

@@ -12,7 +12,7 @@
  * Translated from metagraph/playback/life/expressions.py; change that, and translate anew.
  */
 
-import { uniform } from "./choice.js";
+import { chanceOf, keyed, uniform } from "./choice.js";
 import { stressed } from "./voice.js";
 import { faded, within } from "./mood.js";
 import { bisectRight, partedLast, sortedBy } from "./basics.js";
@@ -87,14 +87,15 @@ export function swellsOn(track, seed, cut, drawn, before) {
   let number = before.next;
   let over = before.times.length > 0 ? before.times[before.times.length - 1] + before.rows[before.rows.length - 1][0] : 0;
   while (true) {
-    const gap = SWELL_GAP * (0.3 + 1.4 * uniform(seed, "swell", String(number), "gap"));
+    const key = keyed(seed, "swell", String(number));
+    const gap = SWELL_GAP * (0.3 + 1.4 * chanceOf(key, "gap"));
     const at = Math.max(cut, over + gap);
     if (at >= drawn) {
       return before.plus(times, rows);
     }
     let length = SHORTEST_SWELL;
-    length += (LONGEST_SWELL - SHORTEST_SWELL) * uniform(seed, "swell", String(number), "length");
-    const amount = 0.6 + 0.4 * uniform(seed, "swell", String(number), "amount");
+    length += (LONGEST_SWELL - SHORTEST_SWELL) * chanceOf(key, "length");
+    const amount = 0.6 + 0.4 * chanceOf(key, "amount");
     times.push(at);
     rows.push([length, amount, track.toldMode(at) === "listening" ? 1 : 0]);
     over = at + length;

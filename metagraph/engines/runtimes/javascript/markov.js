@@ -10,7 +10,7 @@
  */
 
 import { MODES } from "./words.js";
-import { pick, uniform } from "./choice.js";
+import { chanceOf, keyed, picked, uniform } from "./choice.js";
 import { Cursor, MetaAction, MetaRequest, WRITTEN } from "./meta_plan.js";
 import { splitWords, zip } from "./basics.js";
 
@@ -38,26 +38,32 @@ export function write(chain, seed, until, kinds = null, cursor = BEGIN) {
   let state = cursor.state;
   let time = cursor.time;
   const openTo = chain.states.map(([, kind]) => (kinds === null || kinds.has(kind)) ? 1 : 0);
+  const rows = new Map();
   const out = [];
-  while (openTo.some((p) => p > 0)) {
-    const key = `auto/${chain.layer}/${number}`;
-    const start = time + chain.gap * (0.35 + 1.3 * uniform(seed, key, "gap"));
+  const able = openTo.some((p) => p > 0);
+  while (able) {
+    const ident = `auto/${chain.layer}/${number}`;
+    const key = keyed(seed, ident);
+    const start = time + chain.gap * (0.35 + 1.3 * chanceOf(key, "gap"));
     if (!(start < until)) { // nor when it is no number
       break;
     }
-    state = Number(pick(seed, key, "state", _row(chain, state, openTo)));
+    if (!rows.has(state)) {
+      rows.set(state, _row(chain, state, openTo));
+    }
+    state = Number(picked(key, "state", rows.get(state)));
     const [limb, kind] = chain.states[state];
-    const seconds = length(chain, state, seed, key);
+    const seconds = length(chain, state, key);
     let tags = [...splitWords(chain.tag(state))];
     if (kind === "gesture" && chain.tags.length === 0) {
-      const draw = uniform(seed, key, "tag");
+      const draw = chanceOf(key, "tag");
       if (draw < chain.positive) {
         tags = ["positive"];
       } else if (draw < chain.positive + chain.negative) {
         tags = ["negative"];
       }
     }
-    const request = new MetaRequest(key, chain.layer, kind, start, seconds, null, tags, limb, null, WRITTEN);
+    const request = new MetaRequest(ident, chain.layer, kind, start, seconds, null, tags, limb, null, WRITTEN);
     out.push(new MetaAction(request, start, start + seconds, 0, true));
     number = number + 1;
     time = start + seconds;
@@ -66,8 +72,8 @@ export function write(chain, seed, until, kinds = null, cursor = BEGIN) {
 }
 
 /**
- * Return how likely each state is after a state (-1: before the first), by its place; any that may be where nothing leads
- * on.
+ * Return how likely each state is that may come after a state (-1: before the first), by its place; any that may be where
+ * nothing leads on.
  * @param {Markov} chain
  * @param {number} state
  * @param {number[]} openTo
@@ -81,7 +87,7 @@ function _row(chain, state, openTo) {
   if (!row.some((p) => p > 0)) {
     row = [...openTo];
   }
-  return new Map(row.map((p, i) => [String(i), p]));
+  return new Map([...row.entries()].filter(([i, p]) => p > 0).map(([i, p]) => [String(i), p]));
 }
 
 /**
@@ -102,24 +108,23 @@ export function performs(chain, seed, meta, mode) {
 }
 
 /**
- * Return how many seconds meta action `key` lasts: 1 to 3, evenly, where the model has no lengths.
+ * Return how many seconds a meta action of a key lasts: 1 to 3, evenly, where the model has no lengths.
  *
  * Else log-normal with the state's mean m and standard deviation s, from two uniform draws u, v in (0, 1) by Box and Muller,
  * which any language can do alike: `a = ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z - a / 2)`.
  * @param {Markov} chain
  * @param {number} state
- * @param {number} seed
- * @param {string} key
+ * @param {number} key
  * @returns {number}
  */
-export function length(chain, state, seed, key) {
-  const u = uniform(seed, key, "length");
+export function length(chain, state, key) {
+  const u = chanceOf(key, "length");
   if (chain.lengths.length === 0) {
     return 1 + 2 * u;
   }
   const [mean, deviation] = chain.lengths[state];
   const share = deviation / mean;
   const spread = Math.log1p(share * share);
-  const z = Math.sqrt(-2 * Math.log(u)) * Math.cos(2 * Math.PI * uniform(seed, key, "length2"));
+  const z = Math.sqrt(-2 * Math.log(u)) * Math.cos(2 * Math.PI * chanceOf(key, "length2"));
   return mean * Math.exp(Math.sqrt(spread) * z - spread / 2);
 }

@@ -18,6 +18,20 @@ export function node(stance, kind) {
 }
 
 /**
+ * Whether so many other draws came after an action's last one.
+ * @param {string[]} recent
+ * @param {string} ident
+ * @param {number} needed
+ * @returns {boolean}
+ */
+export function rested(recent, ident, needed) {
+  if (needed <= 0) {
+    return true;
+  }
+  return needed <= REMEMBERED && !recent.slice(Math.max(0, recent.length - needed)).includes(ident);
+}
+
+/**
  * Note that a cue was played: how often its action was, lately, and until when.
  * @param {Cue} cue
  * @param {Map<string, number>} uses

@@ -11,7 +11,7 @@ import { HELD, changed, drag, extent, favour, madeFor, moodAt, tempo } from "./m
 import { LEAST_BLEND } from "./phase_times.js";
 import { phases } from "./phases.js";
 import { Cue, Report, Rest } from "./meta_plan.js";
-import { REMEMBERED, node, remember } from "./remembering.js";
+import { node, remember, rested } from "./remembering.js";
 import { vigour } from "./vigour.js";
 import { but, maxOf, minOf, thousandths } from "./basics.js";
 
@@ -34,11 +34,12 @@ export class SamplingStep {
  *
  * uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun: keys of
  * meta actions whose chain of transitions plays already. served: keys of those that another's action serves, too. moods:
- * what it is in the mood for, and when.
+ * what it is in the mood for, and when. candidates: the actions of each `node` that may be drawn, as far as they were asked
+ * for.
  *
  * project: Project; graph: MetaGraph; seed: number; stance: string; moods: Moods; free: number; uses: Map<string, number>;
  * recent: Map<string, string[]>; ended: Map<string, number>; cues: Cue[]; rests: Rest[]; reports: Report[]; begun:
- * Set<string>; served: Set<string>.
+ * Set<string>; served: Set<string>; candidates: Map<string, Action[]>.
  */
 export class Performer {
   constructor(
@@ -56,6 +57,7 @@ export class Performer {
     reports = [],
     begun = new Set([]),
     served = new Set([]),
+    candidates = new Map(),
   ) {
     this.project = project;
     this.graph = graph;
@@ -71,6 +73,7 @@ export class Performer {
     this.reports = reports;
     this.begun = begun;
     this.served = served;
+    this.candidates = candidates;
   }
 
   /** Take a cue as played. */
@@ -103,19 +106,20 @@ export class Performer {
       if (begins(meta) >= end) {
         continue;
       }
-      if (this.served.has(meta.key)) {
+      if (this.served.size > 0 && this.served.has(meta.key)) {
         continue;
       }
       if (meta.request.late !== null) {
         this.realise(bound, Math.max(this.ready, begins(meta)));
         continue;
       }
-      if (meta.end <= this.ready + FITS && meta.start < this.ready && !this.begun.has(meta.key)) {
+      const ready = this.ready;
+      if (meta.start < ready && meta.end <= ready + FITS && !this.begun.has(meta.key)) {
         let running = "the running action";
         if (this.cues.length > 0) {
           running = `'${this.cues[this.cues.length - 1].action.name}'`;
         }
-        const waits = this.ready - meta.request.start;
+        const waits = ready - meta.request.start;
         // What is wanted for a certain time is over; what is wanted once may come late.
         if (meta.written || meta.request.duration !== null || waits > this.project.settings.wait) {
           this.tell(meta, "covered", `wholly covered by ${running}, which plays until ${this.free.toFixed(2)} s`);
@@ -123,7 +127,7 @@ export class Performer {
         }
         this.tell(meta, "queued", `waits ${waits.toFixed(2)} s for ${running}`, true);
       }
-      this.realise(bound, Math.max(this.ready, meta.start));
+      this.realise(bound, Math.max(ready, meta.start));
     }
   }
 
@@ -139,9 +143,10 @@ export class Performer {
     for (const step of steps) {
       const hops = step.hop !== "";
       const asked = hops ? null : meta.request;
+      const mood = this.mood(asked, now);
       let fitting = [...step.candidates];
       if (limit < Infinity) { // else all fit
-        fitting = step.candidates.filter((a) => fitsBefore(this.shape(a, asked, now), limit));
+        fitting = step.candidates.filter((a) => fitsBefore(this.shape(a, asked, now, mood), limit));
       }
       if (fitting.length === 0) {
         const before = meta.written ? "" : " before something more important";
@@ -149,7 +154,8 @@ export class Performer {
         return;
       }
       if (!hops && meta.request.action === null) {
-        const warm = fitting.filter((a) => a.cooldown <= 0 || this.cooled(a) <= this.shape(a, asked, now).start + FITS);
+        const warm = fitting.filter((a) =>
+          a.cooldown <= 0 || this.cooled(a) <= this.shape(a, asked, now, mood).start + FITS);
         if (warm.length === 0) {
           const soonest = minOf(fitting.map((a) => this.cooled(a)));
           this.tell(meta, "cooling", `all that fit are cooling down; the first may play again at ${soonest.toFixed(2)} s`);
@@ -164,9 +170,8 @@ export class Performer {
           return;
         }
       }
-      const mood = this.mood(asked, now);
       const action = this.draw(fitting, hops ? `${meta.key}/${step.hop}` : meta.key, now, mood);
-      const shape = this.shape(action, asked, now);
+      const shape = this.shape(action, asked, now, mood);
       const cue = this.cue(action, shape, bound, hops, stance, mood);
       cues.push(cue);
       now = cue.end;
@@ -185,7 +190,8 @@ export class Performer {
     const meta = bound.meta;
     const request = meta.request;
     const allowed = slackOf(request);
-    const late = new Map(fitting.map((a) => [a.id, lateness(this.project, a, request, this.shape(a, request, now))]));
+    const mood = this.mood(request, now);
+    const late = new Map(fitting.map((a) => [a.id, lateness(this.project, a, request, this.shape(a, request, now, mood))]));
     const least = minOf(fitting.map((a) => late.get(a.id)));
     let waits;
     if (least > allowed + FITS) {
@@ -261,7 +267,8 @@ export class Performer {
       if (fits && this.usable(action)) {
         const found = phases(this.project, action);
         const lead = found.stroke - found.skip(action.timing.blendIn);
-        least = Math.min(least, lead + drag(lead, this.tempo(action, request, request.stroke)));
+        const speed = this.tempo(action, this.mood(request, request.stroke));
+        least = Math.min(least, lead + drag(lead, speed));
       }
     }
     return request.stroke - least;
@@ -269,7 +276,7 @@ export class Performer {
 
   /** Return when what follows an action could begin at the earliest. */
   over(action, request, now) {
-    const shape = this.shape(action, request, now);
+    const shape = this.shape(action, request, now, this.mood(request, now));
     return shape.start + hurried(this.project, action, shape) + this.project.settings.rest - FITS;
   }
 
@@ -278,6 +285,9 @@ export class Performer {
    * can be in time then, late enough for its own stroke; infinity for never.
    */
   until(action, shape, bound) {
+    if (bound.after.length === 0) {
+      return Infinity;
+    }
     const rest = this.project.settings.rest;
     const soonest = shape.start + hurried(this.project, action, shape);
     for (const other of bound.after) {
@@ -369,7 +379,11 @@ export class Performer {
       }
       return this.way(meta, request.stance);
     }
-    let every = graph.of(this.stance, request.kind).filter((a) => this.usable(a));
+    const here = node(this.stance, request.kind);
+    if (!this.candidates.has(here)) {
+      this.candidates.set(here, graph.of(this.stance, request.kind).filter((a) => this.usable(a)));
+    }
+    let every = this.candidates.get(here);
     if (request.among.length > 0) {
       every = every.filter((a) => request.among.includes(a.id));
     }
@@ -382,7 +396,7 @@ export class Performer {
       exact = found.filter((a) => a.limb === request.limb);
     }
     if (meta.written) { // the model's limb and tags are wishes, not orders, nor worth playing the same again
-      const again = (this.recent.get(node(this.stance, request.kind)) ?? []).slice(-1);
+      const again = (this.recent.get(here) ?? []).slice(-1);
       if (!exact.some((a) => !again.includes(a.id))) {
         exact = found.some((a) => !again.includes(a.id)) ? found : every;
       }
@@ -488,8 +502,8 @@ export class Performer {
   }
 
   /** Return how an action would play for a request from `now` on, or as a step on the way to it. */
-  shape(action, request, now) {
-    return shapeOf(this.project, action, request, now, this.tempo(action, request, now));
+  shape(action, request, now, mood) {
+    return shapeOf(this.project, action, request, now, this.tempo(action, mood));
   }
 
   /** Return the mood that something asked for is played in from `at` on, or at its stroke. */
@@ -505,8 +519,7 @@ export class Performer {
   }
 
   /** Return how fast an action is played, 1 where it was made for the mood. */
-  tempo(action, request, at) {
-    const mood = this.mood(request, at);
+  tempo(action, mood) {
     return (mood.neutral || madeFor(mood, action.tags)) ? 1 : tempo(mood);
   }
 
@@ -527,18 +540,20 @@ export class Performer {
    */
   draw(candidates, key, now, mood) {
     const left = this.spaced(candidates);
-    const weights = new Map(left.map((a) =>
-      [a.id, a.likelihood / Math.max(this.count(a.id, now), 1) * this.favour(a, mood)]));
+    if (left.length === 1) {
+      return left[0];
+    }
+    const neutral = mood.neutral;
+    const weights = new Map();
+    for (const a of left) {
+      const favoured = neutral ? 1 : favour(mood, a.tags, vigour(this.project, a));
+      weights.set(a.id, a.likelihood / Math.max(this.count(a.id, now), 1) * favoured);
+    }
     if (![...weights.values()].some((w) => w > 0)) {
       return left[0];
     }
     const chosen = pick(this.seed, key, "action", weights);
     return left.find((a) => a.id === chosen);
-  }
-
-  /** Return how much likelier a mood makes an action, 1 in none. */
-  favour(action, mood) {
-    return mood.neutral ? 1 : favour(mood, action.tags, vigour(this.project, action));
   }
 
   /** Leave out what needs more other actions before it plays again; where that leaves nothing, all need one less, and so on. */
@@ -549,11 +564,9 @@ export class Performer {
     if (candidates.length < 2 || before.length === 0) {
       return candidates;
     }
-    // How many came after each.
-    const since = new Map(before.map((ident, place) => [ident, before.length - 1 - place]));
     const needs = new Map(candidates.map((a) => [a.id, a.spacing === null ? default_ : a.spacing]));
     for (let less = 0; less < maxOf(candidates.map((a) => needs.get(a.id))) + 1; less++) {
-      const left = candidates.filter((a) => (since.get(a.id) ?? REMEMBERED) >= needs.get(a.id) - less);
+      const left = candidates.filter((a) => rested(before, a.id, needs.get(a.id) - less));
       if (left.length > 0) {
         return left;
       }
@@ -643,6 +656,9 @@ export class Performer {
   /** Return one of a stance's loops, drawn by likelihood; None where it has none. */
   loop(stance, key) {
     const loops = this.graph.of(stance, "stance");
+    if (loops.length === 1) {
+      return loops[0];
+    }
     const weights = new Map(loops.filter((a) => a.likelihood > 0).map((a) => [a.id, a.likelihood]));
     if (weights.size === 0) {
       return loops.length > 0 ? loops[0] : null;

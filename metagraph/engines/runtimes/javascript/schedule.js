@@ -9,7 +9,7 @@
 
 import { manner, sameLife } from "./life.js";
 import { MODES } from "./words.js";
-import { uniform } from "./choice.js";
+import { chanceOf, keyed, uniform } from "./choice.js";
 import { emphasesOn, swellsOn } from "./expressions.js";
 import { Lane } from "./lane.js";
 import { sameVoices, stressed } from "./voice.js";
@@ -241,9 +241,9 @@ export class LifeDraw {
     }
   }
 
-  /** Return the chance of something about an event: 0..1, without the ends. */
-  chance(what, number, purpose) {
-    return uniform(this.seed, what, String(number), purpose);
+  /** Return what keys the chances of an event: those of `chance_of`, 0..1, without the ends. */
+  key(what, number) {
+    return keyed(this.seed, what, String(number));
   }
 
   /** Return the place of the segment that a time is in. */
@@ -294,9 +294,10 @@ export class LifeDraw {
         begun = true;
         continue;
       }
-      let length = (BREATH + BREATH_CHANCE * this.chance("breath", number, "length")) / rate;
+      const key = this.key("breath", number);
+      let length = (BREATH + BREATH_CHANCE * chanceOf(key, "length")) / rate;
       length *= 1 + 2 * this.life.stillness; // slower, too, but never halting
-      const depth = ways.breathing * (BREATH + BREATH_CHANCE * this.chance("breath", number, "depth"));
+      const depth = ways.breathing * (BREATH + BREATH_CHANCE * chanceOf(key, "depth"));
       if (!begun) {
         at = -length * uniform(this.seed, "breath", "first");
         begun = true;
@@ -324,14 +325,15 @@ export class LifeDraw {
     let number = lane.next;
     let last = lane.times.length > 0 ? lane.times[lane.times.length - 1] : 0;
     while (true) {
-      const need = FIXATION + (mean - FIXATION) * Math.min(4, -Math.log(this.chance("saccade", number, "gap")));
+      const key = this.key("saccade", number);
+      const need = FIXATION + (mean - FIXATION) * Math.min(4, -Math.log(chanceOf(key, "gap")));
       last = Math.max(this.cut, this.after(last, need, rates));
       if (!(last < this.drawn)) {
         return lane.plus(times, rows);
       }
-      let size = Math.min(LARGEST_SACCADE, -SACCADE * Math.log(this.chance("saccade", number, "size")));
+      let size = Math.min(LARGEST_SACCADE, -SACCADE * Math.log(chanceOf(key, "size")));
       size *= this.manners[this.placeAt(last)].saccades;
-      const turn = 2 * Math.PI * this.chance("saccade", number, "way");
+      const turn = 2 * Math.PI * chanceOf(key, "way");
       times.push(last);
       rows.push([size * Math.sin(turn + Math.PI / 2), UPRIGHT * size * Math.sin(turn)]);
       number += 1;
@@ -359,17 +361,18 @@ export class LifeDraw {
     let number = lane.next;
     let last = lane.rows.length > 0 ? lane.rows[lane.rows.length - 1][0] : 0;
     while (true) {
-      const need = AVERSION_GAP + AVERSION_CHANCE * this.chance("aversion", number, "gap");
+      const key = this.key("aversion", number);
+      const need = AVERSION_GAP + AVERSION_CHANCE * chanceOf(key, "gap");
       const at = Math.max(this.cut, last + BETWEEN_AVERSIONS, this.after(last, need, rates));
       if (!(at < this.drawn)) {
         return lane.plus(times, rows);
       }
       const own = this.manners[this.placeAt(at)];
       let length = life.aversionLength * own.aversionLength;
-      length *= 0.6 + 0.8 * this.chance("aversion", number, "length");
+      length *= 0.6 + 0.8 * chanceOf(key, "length");
       last = at + Math.max(SHORTEST_AVERSION, length);
-      const size = own.aversionAngle * (0.7 + 0.6 * this.chance("aversion", number, "size"));
-      const turn = 2 * Math.PI * this.chance("aversion", number, "way");
+      const size = own.aversionAngle * (0.7 + 0.6 * chanceOf(key, "size"));
+      const turn = 2 * Math.PI * chanceOf(key, "way");
       times.push(at);
       rows.push([last, size * Math.sin(turn + Math.PI / 2), UPRIGHT * size * Math.sin(turn)]);
       number += 1;
@@ -398,7 +401,8 @@ export class LifeDraw {
     while (true) {
       let own = Infinity;
       if (mean < Infinity) {
-        const need = mean * (BLINK_GAP + BLINK_CHANCE * this.chance("blink", number, "gap"));
+        const key = this.key("blink", number);
+        const need = mean * (BLINK_GAP + BLINK_CHANCE * chanceOf(key, "gap"));
         own = Math.max(this.cut, this.after(last, need, rates));
       }
       // A stressed syllable may bring a blink: the first of a speech always, the others some time after

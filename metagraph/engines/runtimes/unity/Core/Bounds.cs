@@ -56,23 +56,28 @@ namespace Metagraph
                 var wish = double.PositiveInfinity;
                 _First own = null;
                 var start = Begins(meta);
+                var rank = meta.Rank;
                 foreach (_First one in first)
                 {
-                    if (one.Rank > meta.Rank)
+                    if (one.Rank > rank)
                     {
                         limit = Math.Min(limit, one.Start);
                     }
-                    if (one.Rank >= meta.Rank && !one.Written)
+                    if (one.Rank >= rank && !one.Written)
                     {
                         wish = Math.Min(wish, one.Start);
                     }
-                    if (one.Rank == meta.Rank && one.Written == meta.Written)
+                    if (one.Rank == rank && one.Written == meta.Written)
                     {
                         own = one;
                     }
                 }
-                var after = PlainLists.Part(pressing, -LookedAt).AsEnumerable().Reverse().ToList().Where(one => one.Rank
-                    >= meta.Rank).ToList();
+                var after = new List<MetaAction>();
+                if (pressing.Count > 0)
+                {
+                    after = PlainLists.Part(pressing, -LookedAt).AsEnumerable().Reverse().ToList().Where(one => one.Rank
+                        >= rank).ToList();
+                }
                 out_.Add(new Bound(meta, limit, wish, after));
                 if (meta.Request.Late != null)
                 {
@@ -80,7 +85,7 @@ namespace Metagraph
                 }
                 if (own == null)
                 {
-                    first.Add(new _First(meta.Rank, meta.Written, start));
+                    first.Add(new _First(rank, meta.Written, start));
                 }
                 else
                 {

@@ -12,6 +12,8 @@ namespace Metagraph
     /// </summary>
     public static class ChoiceRules
     {
+        public const double All = 4294967296.0; // numbers of 32 bits
+
         /// <summary>
         /// Return the 32-bit hash of a seed and words: FNV-1a over their UTF-8 bytes, each word closed by a zero byte, then
         /// mixed.
@@ -20,18 +22,36 @@ namespace Metagraph
         /// </summary>
         public static uint Key32(uint seed, params string[] words)
         {
+            return HashingRules.Mix(Keyed(seed, words));
+        }
+
+        /// <summary>Return what draws of one key have in common: the hash of a seed and words before it is mixed.</summary>
+        public static uint Keyed(uint seed, params string[] words)
+        {
             var value = HashingRules.Begun(seed);
             foreach (string word in words)
             {
                 value = HashingRules.Absorb(value, word);
             }
-            return HashingRules.Mix(value);
+            return value;
         }
 
         /// <summary>Return a number in the open interval (0, 1).</summary>
         public static double Uniform(uint seed, params string[] words)
         {
-            return Unit(Key32(seed, words));
+            return (HashingRules.Mix(Keyed(seed, words)) + 0.5) / All;
+        }
+
+        /// <summary>Return what `uniform` does with one word more than a key has.</summary>
+        public static double ChanceOf(uint key, string purpose)
+        {
+            return (HashingRules.Mix(HashingRules.Absorb(key, purpose)) + 0.5) / All;
+        }
+
+        /// <summary>Return one of the ids, as `picked` does.</summary>
+        public static string Pick(uint seed, string key, string purpose, Dictionary<string, double> weights)
+        {
+            return Picked(Keyed(seed, key), purpose, weights);
         }
 
         /// <summary>
@@ -40,18 +60,18 @@ namespace Metagraph
         /// Each id runs its own race, the shortest of exponential times -log(u_k) / weight_k wins; so adding or removing one
         /// candidate changes the choice only where that candidate wins. Raises ValueError when no weight is positive.
         /// </summary>
-        public static string Pick(uint seed, string key, string purpose, Dictionary<string, double> weights)
+        public static string Picked(uint key, string purpose, Dictionary<string, double> weights)
         {
             var best = "";
             var shortest = double.PositiveInfinity;
-            var start = HashingRules.Absorb(HashingRules.Absorb(HashingRules.Begun(seed), key), purpose);
+            var start = HashingRules.Absorb(key, purpose);
             foreach (var one in weights)
             {
                 var ident = one.Key;
                 var weight = one.Value;
                 if (weight > 0)
                 {
-                    var time = -Math.Log(Unit(HashingRules.Mix(HashingRules.Absorb(start, ident)))) / weight;
+                    var time = -Math.Log((HashingRules.Mix(HashingRules.Absorb(start, ident)) + 0.5) / All) / weight;
                     if (time < shortest || (time == shortest && PlainText.Compare(ident, best) < 0))
                     {
                         best = ident;
@@ -64,11 +84,6 @@ namespace Metagraph
                 throw new InvalidOperationException("nothing to choose from");
             }
             return best;
-        }
-
-        private static double Unit(uint bits)
-        {
-            return (bits + 0.5) / 4294967296.0;
         }
     }
 }

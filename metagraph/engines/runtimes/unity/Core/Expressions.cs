@@ -88,15 +88,16 @@ namespace Metagraph
                 : 0.0;
             while (true)
             {
-                var gap = SwellGap * (0.3 + 1.4 * ChoiceRules.Uniform(seed, "swell", PlainText.Of(number), "gap"));
+                var key = ChoiceRules.Keyed(seed, "swell", PlainText.Of(number));
+                var gap = SwellGap * (0.3 + 1.4 * ChoiceRules.ChanceOf(key, "gap"));
                 var at = Math.Max(cut, over + gap);
                 if (at >= drawn)
                 {
                     return before.Plus(times, rows);
                 }
                 var length = ShortestSwell;
-                length += (LongestSwell - ShortestSwell) * ChoiceRules.Uniform(seed, "swell", PlainText.Of(number), "length");
-                var amount = 0.6 + 0.4 * ChoiceRules.Uniform(seed, "swell", PlainText.Of(number), "amount");
+                length += (LongestSwell - ShortestSwell) * ChoiceRules.ChanceOf(key, "length");
+                var amount = 0.6 + 0.4 * ChoiceRules.ChanceOf(key, "amount");
                 times.Add(at);
                 rows.Add(new List<double> { length, amount, track.ToldMode(at) == "listening" ? 1.0 : 0.0 });
                 over = at + length;

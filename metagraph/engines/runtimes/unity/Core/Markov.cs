@@ -42,24 +42,31 @@ namespace Metagraph
             var state = cursor.State;
             var time = cursor.Time;
             var openTo = chain.States.Select(pair => (kinds == null || kinds.Contains(pair.Item2)) ? 1.0 : 0.0).ToList();
+            var rows = new Dictionary<int, Dictionary<string, double>>();
             var out_ = new List<MetaAction>();
-            while (openTo.Any(p => p > 0))
+            var able = openTo.Any(p => p > 0);
+            while (able)
             {
-                var key = "auto/" + chain.Layer + "/" + PlainText.Of(number);
-                var start = time + chain.Gap * (0.35 + 1.3 * ChoiceRules.Uniform(seed, key, "gap"));
+                var ident = "auto/" + chain.Layer + "/" + PlainText.Of(number);
+                var key = ChoiceRules.Keyed(seed, ident);
+                var start = time + chain.Gap * (0.35 + 1.3 * ChoiceRules.ChanceOf(key, "gap"));
                 if (!(start < until)) // nor when it is no number
                 {
                     break;
                 }
-                state = PlainText.Whole(ChoiceRules.Pick(seed, key, "state", Row(chain, state, openTo)));
+                if (!rows.ContainsKey(state))
+                {
+                    rows[state] = Row(chain, state, openTo);
+                }
+                state = PlainText.Whole(ChoiceRules.Picked(key, "state", rows[state]));
                 var found = chain.States[state];
                 string limb = found.Item1;
                 string kind = found.Item2;
-                var seconds = Length(chain, state, seed, key);
+                var seconds = Length(chain, state, key);
                 var tags = PlainText.Words(chain.Tag(state)).ToList();
                 if (kind == "gesture" && chain.Tags.Count == 0)
                 {
-                    var draw = ChoiceRules.Uniform(seed, key, "tag");
+                    var draw = ChoiceRules.ChanceOf(key, "tag");
                     if (draw < chain.Positive)
                     {
                         tags = new List<string> { "positive" };
@@ -70,7 +77,7 @@ namespace Metagraph
                     }
                 }
                 var request = new MetaRequest(
-                    key,
+                    ident,
                     chain.Layer,
                     kind,
                     start,
@@ -89,8 +96,8 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return how likely each state is after a state (-1: before the first), by its place; any that may be where nothing
-        /// leads on.
+        /// Return how likely each state is that may come after a state (-1: before the first), by its place; any that may be
+        /// where nothing leads on.
         /// </summary>
         private static Dictionary<string, double> Row(Markov chain, int state, List<double> openTo)
         {
@@ -103,7 +110,10 @@ namespace Metagraph
             {
                 row = openTo.ToList();
             }
-            return row.Select((p, i) => (PlainText.Of(i), p)).ToMap();
+            return row.Select((item, n) => (n, item)).Where(pair => pair.Item2 > 0).Select(pair => (
+                PlainText.Of(pair.Item1),
+                pair.Item2
+            )).ToMap();
         }
 
         /// <summary>
@@ -121,15 +131,15 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return how many seconds meta action `key` lasts: 1 to 3, evenly, where the model has no lengths.
+        /// Return how many seconds a meta action of a key lasts: 1 to 3, evenly, where the model has no lengths.
         ///
         /// Else log-normal with the state's mean m and standard deviation s, from two uniform draws u, v in (0, 1) by Box and
         /// Muller, which any language can do alike: `a = ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z -
         /// a / 2)`.
         /// </summary>
-        public static double Length(Markov chain, int state, uint seed, string key)
+        public static double Length(Markov chain, int state, uint key)
         {
-            var u = ChoiceRules.Uniform(seed, key, "length");
+            var u = ChoiceRules.ChanceOf(key, "length");
             if (chain.Lengths.Count == 0)
             {
                 return 1.0 + 2.0 * u;
@@ -139,7 +149,7 @@ namespace Metagraph
             double deviation = found.Item2;
             var share = deviation / mean;
             var spread = PlainNumbers.Log1P(share * share);
-            var z = Math.Sqrt(-2.0 * Math.Log(u)) * Math.Cos(2.0 * Math.PI * ChoiceRules.Uniform(seed, key, "length2"));
+            var z = Math.Sqrt(-2.0 * Math.Log(u)) * Math.Cos(2.0 * Math.PI * ChoiceRules.ChanceOf(key, "length2"));
             return mean * Math.Exp(Math.Sqrt(spread) * z - spread / 2.0);
         }
     }

@@ -16,6 +16,16 @@ namespace Metagraph
             return kind + " " + stance;
         }
 
+        /// <summary>Whether so many other draws came after an action's last one.</summary>
+        public static bool Rested(List<string> recent, string ident, int needed)
+        {
+            if (needed <= 0)
+            {
+                return true;
+            }
+            return needed <= Remembered && !PlainLists.Part(recent, Math.Max(0, recent.Count - needed)).Contains(ident);
+        }
+
         /// <summary>Note that a cue was played: how often its action was, lately, and until when.</summary>
         public static void Remember(
             Cue cue,

@@ -23,7 +23,8 @@ namespace Metagraph
     ///
     /// uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun: keys of
     /// meta actions whose chain of transitions plays already. served: keys of those that another's action serves, too. moods:
-    /// what it is in the mood for, and when.
+    /// what it is in the mood for, and when. candidates: the actions of each `node` that may be drawn, as far as they were asked
+    /// for.
     /// </summary>
     public sealed class Performer
     {
@@ -41,6 +42,7 @@ namespace Metagraph
         public List<Report> Reports;
         public HashSet<string> Begun;
         public HashSet<string> Served;
+        public Dictionary<string, List<GraphAction>> Candidates;
 
         public Performer(
             Graph project,
@@ -56,7 +58,8 @@ namespace Metagraph
             List<Rest> rests = null,
             List<Report> reports = null,
             HashSet<string> begun = null,
-            HashSet<string> served = null
+            HashSet<string> served = null,
+            Dictionary<string, List<GraphAction>> candidates = null
         )
         {
             Project = project;
@@ -73,6 +76,7 @@ namespace Metagraph
             Reports = reports ?? new List<Report>();
             Begun = begun ?? new HashSet<string>();
             Served = served ?? new HashSet<string>();
+            Candidates = candidates ?? new Dictionary<string, List<GraphAction>>();
         }
 
         /// <summary>Take a cue as played.</summary>
@@ -115,7 +119,7 @@ namespace Metagraph
                 {
                     continue;
                 }
-                if (Served.Contains(meta.Key))
+                if (Served.Count > 0 && Served.Contains(meta.Key))
                 {
                     continue;
                 }
@@ -124,14 +128,15 @@ namespace Metagraph
                     Realise(bound, Math.Max(Ready, BoundsRules.Begins(meta)));
                     continue;
                 }
-                if (meta.End <= Ready + CueShapesRules.Fits && meta.Start < Ready && !Begun.Contains(meta.Key))
+                var ready = Ready;
+                if (meta.Start < ready && meta.End <= ready + CueShapesRules.Fits && !Begun.Contains(meta.Key))
                 {
                     var running = "the running action";
                     if (Cues.Count > 0)
                     {
                         running = "'" + Cues[Cues.Count - 1].Action.Name + "'";
                     }
-                    var waits = Ready - meta.Request.Start;
+                    var waits = ready - meta.Request.Start;
                     // What is wanted for a certain time is over; what is wanted once may come late.
                     if (meta.Written || meta.Request.Duration != null || waits > Project.Settings.Wait)
                     {
@@ -144,7 +149,7 @@ namespace Metagraph
                     }
                     Tell(meta, "queued", "waits " + PlainText.Fixed(waits, 2) + " s for " + running, true);
                 }
-                Realise(bound, Math.Max(Ready, meta.Start));
+                Realise(bound, Math.Max(ready, meta.Start));
             }
         }
 
@@ -163,10 +168,11 @@ namespace Metagraph
             {
                 var hops = step.Hop != "";
                 var asked = hops ? null : meta.Request;
+                var mood = Mood(asked, now);
                 var fitting = step.Candidates.ToList();
                 if (limit < double.PositiveInfinity) // else all fit
                 {
-                    fitting = step.Candidates.Where(a => CueShapesRules.FitsBefore(Shape(a, asked, now), limit)).ToList();
+                    fitting = step.Candidates.Where(a => CueShapesRules.FitsBefore(Shape(a, asked, now, mood), limit)).ToList();
                 }
                 if (fitting.Count == 0)
                 {
@@ -181,7 +187,7 @@ namespace Metagraph
                 if (!hops && meta.Request.Action == null)
                 {
                     var warm = fitting.Where(a => a.Cooldown <= 0
-                        || Cooled(a) <= Shape(a, asked, now).Start + CueShapesRules.Fits).ToList();
+                        || Cooled(a) <= Shape(a, asked, now, mood).Start + CueShapesRules.Fits).ToList();
                     if (warm.Count == 0)
                     {
                         var soonest = PlainNumbers.MinOf(fitting.Select(a => Cooled(a)).ToList());
@@ -203,9 +209,8 @@ namespace Metagraph
                         return;
                     }
                 }
-                var mood = Mood(asked, now);
                 var action = Draw(fitting, hops ? meta.Key + "/" + step.Hop : meta.Key, now, mood);
-                var shape = Shape(action, asked, now);
+                var shape = Shape(action, asked, now, mood);
                 var cue = Cue(action, shape, bound, hops, stance, mood);
                 cues.Add(cue);
                 now = cue.End;
@@ -226,7 +231,11 @@ namespace Metagraph
             var meta = bound.Meta;
             var request = meta.Request;
             var allowed = CueShapesRules.SlackOf(request);
-            var late = fitting.Select(a => (a.Id, CueShapesRules.Lateness(Project, a, request, Shape(a, request, now)))).ToMap();
+            var mood = Mood(request, now);
+            var late = fitting.Select(a => (
+                a.Id,
+                CueShapesRules.Lateness(Project, a, request, Shape(a, request, now, mood))
+            )).ToMap();
             var least = PlainNumbers.MinOf(fitting.Select(a => late[a.Id]).ToList());
             string waits = default(string);
             if (least > allowed + CueShapesRules.Fits)
@@ -324,7 +333,8 @@ namespace Metagraph
                 {
                     var found = PhasesRules.Phases(Project, action);
                     var lead = found.Stroke - found.Skip(action.Timing.BlendIn);
-                    least = Math.Min(least, lead + MoodRules.Drag(lead, Tempo(action, request, request.Stroke.Value)));
+                    var speed = Tempo(action, Mood(request, request.Stroke.Value));
+                    least = Math.Min(least, lead + MoodRules.Drag(lead, speed));
                 }
             }
             return request.Stroke.Value - least;
@@ -333,7 +343,7 @@ namespace Metagraph
         /// <summary>Return when what follows an action could begin at the earliest.</summary>
         public double Over(GraphAction action, MetaRequest request, double now)
         {
-            var shape = Shape(action, request, now);
+            var shape = Shape(action, request, now, Mood(request, now));
             return shape.Start + CueShapesRules.Hurried(Project, action, shape) + Project.Settings.Rest - CueShapesRules.Fits;
         }
 
@@ -343,6 +353,10 @@ namespace Metagraph
         /// </summary>
         public double Until(GraphAction action, CueShape shape, Bound bound)
         {
+            if (bound.After.Count == 0)
+            {
+                return double.PositiveInfinity;
+            }
             var rest = Project.Settings.Rest;
             var soonest = shape.Start + CueShapesRules.Hurried(Project, action, shape);
             foreach (MetaAction other in bound.After)
@@ -471,7 +485,12 @@ namespace Metagraph
                 }
                 return Way(meta, request.Stance);
             }
-            var every = graph.Of(Stance, request.Kind).Where(a => Usable(a)).ToList();
+            var here = RememberingRules.Node(Stance, request.Kind);
+            if (!Candidates.ContainsKey(here))
+            {
+                Candidates[here] = graph.Of(Stance, request.Kind).Where(a => Usable(a)).ToList();
+            }
+            var every = Candidates[here];
             if (request.Among.Count > 0)
             {
                 every = every.Where(a => request.Among.Contains(a.Id)).ToList();
@@ -488,10 +507,7 @@ namespace Metagraph
             }
             if (meta.Written) // the model's limb and tags are wishes, not orders, nor worth playing the same again
             {
-                var again = PlainLists.Part(
-                    PlainMaps.GetOr(Recent, RememberingRules.Node(Stance, request.Kind), new List<string>()),
-                    -1
-                );
+                var again = PlainLists.Part(PlainMaps.GetOr(Recent, here, new List<string>()), -1);
                 if (!exact.Any(a => !again.Contains(a.Id)))
                 {
                     exact = found.Any(a => !again.Contains(a.Id)) ? found : every;
@@ -618,9 +634,9 @@ namespace Metagraph
         }
 
         /// <summary>Return how an action would play for a request from `now` on, or as a step on the way to it.</summary>
-        public CueShape Shape(GraphAction action, MetaRequest request, double now)
+        public CueShape Shape(GraphAction action, MetaRequest request, double now, Mood mood)
         {
-            return CueShapesRules.ShapeOf(Project, action, request, now, Tempo(action, request, now));
+            return CueShapesRules.ShapeOf(Project, action, request, now, Tempo(action, mood));
         }
 
         /// <summary>Return the mood that something asked for is played in from `at` on, or at its stroke.</summary>
@@ -639,9 +655,8 @@ namespace Metagraph
         }
 
         /// <summary>Return how fast an action is played, 1 where it was made for the mood.</summary>
-        public double Tempo(GraphAction action, MetaRequest request, double at)
+        public double Tempo(GraphAction action, Mood mood)
         {
-            var mood = Mood(request, at);
             return (mood.Neutral || MoodRules.MadeFor(mood, action.Tags)) ? 1.0 : MoodRules.Tempo(mood);
         }
 
@@ -667,19 +682,23 @@ namespace Metagraph
         public GraphAction Draw(List<GraphAction> candidates, string key, double now, Mood mood)
         {
             var left = Spaced(candidates);
-            var weights = left.Select(a => (a.Id, a.Likelihood / Math.Max(Count(a.Id, now), 1.0) * Favour(a, mood))).ToMap();
+            if (left.Count == 1)
+            {
+                return left[0];
+            }
+            var neutral = mood.Neutral;
+            var weights = new Dictionary<string, double>();
+            foreach (GraphAction a in left)
+            {
+                var favoured = neutral ? 1.0 : MoodRules.Favour(mood, a.Tags, VigourRules.Vigour(Project, a));
+                weights[a.Id] = a.Likelihood / Math.Max(Count(a.Id, now), 1.0) * favoured;
+            }
             if (!weights.Values.ToList().Any(w => w > 0))
             {
                 return left[0];
             }
             var chosen = ChoiceRules.Pick(Seed, key, "action", weights);
             return left.Where(a => a.Id == chosen).First();
-        }
-
-        /// <summary>Return how much likelier a mood makes an action, 1 in none.</summary>
-        public double Favour(GraphAction action, Mood mood)
-        {
-            return mood.Neutral ? 1.0 : MoodRules.Favour(mood, action.Tags, VigourRules.Vigour(Project, action));
         }
 
         /// <summary>
@@ -695,13 +714,10 @@ namespace Metagraph
             {
                 return candidates;
             }
-            // How many came after each.
-            var since = before.Select((ident, place) => (ident, before.Count - 1 - place)).ToMap();
             var needs = candidates.Select(a => (a.Id, a.Spacing == null ? default_ : a.Spacing.Value)).ToMap();
             for (int less = 0; less < PlainNumbers.MaxOf(candidates.Select(a => needs[a.Id]).ToList()) + 1; less++)
             {
-                var left = candidates.Where(a => PlainMaps.GetOr(since, a.Id, RememberingRules.Remembered)
-                    >= needs[a.Id] - less).ToList();
+                var left = candidates.Where(a => RememberingRules.Rested(before, a.Id, needs[a.Id] - less)).ToList();
                 if (left.Count > 0)
                 {
                     return left;
@@ -808,6 +824,10 @@ namespace Metagraph
         public GraphAction Loop(string stance, string key)
         {
             var loops = Graph.Of(stance, "stance");
+            if (loops.Count == 1)
+            {
+                return loops[0];
+            }
             var weights = loops.Where(a => a.Likelihood > 0).Select(a => (a.Id, a.Likelihood)).ToMap();
             if (weights.Count == 0)
             {

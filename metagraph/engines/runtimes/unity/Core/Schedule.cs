@@ -193,10 +193,10 @@ namespace Metagraph
             }
         }
 
-        /// <summary>Return the chance of something about an event: 0..1, without the ends.</summary>
-        public double Chance(string what, int number, string purpose)
+        /// <summary>Return what keys the chances of an event: those of `chance_of`, 0..1, without the ends.</summary>
+        public uint Key(string what, int number)
         {
-            return ChoiceRules.Uniform(Seed, what, PlainText.Of(number), purpose);
+            return ChoiceRules.Keyed(Seed, what, PlainText.Of(number));
         }
 
         /// <summary>Return the place of the segment that a time is in.</summary>
@@ -258,10 +258,11 @@ namespace Metagraph
                     begun = true;
                     continue;
                 }
-                var length = (ScheduleRules.Breath + ScheduleRules.BreathChance * Chance("breath", number, "length")) / rate;
+                var key = Key("breath", number);
+                var length = (ScheduleRules.Breath + ScheduleRules.BreathChance * ChoiceRules.ChanceOf(key, "length")) / rate;
                 length *= 1.0 + 2.0 * Life.Stillness; // slower, too, but never halting
                 var depth = ways.Breathing
-                    * (ScheduleRules.Breath + ScheduleRules.BreathChance * Chance("breath", number, "depth"));
+                    * (ScheduleRules.Breath + ScheduleRules.BreathChance * ChoiceRules.ChanceOf(key, "depth"));
                 if (!begun)
                 {
                     at = -length * ChoiceRules.Uniform(Seed, "breath", "first");
@@ -294,8 +295,9 @@ namespace Metagraph
             var last = lane.Times.Count > 0 ? lane.Times[lane.Times.Count - 1] : 0.0;
             while (true)
             {
+                var key = Key("saccade", number);
                 var need = ScheduleRules.Fixation
-                    + (mean - ScheduleRules.Fixation) * Math.Min(4.0, -Math.Log(Chance("saccade", number, "gap")));
+                    + (mean - ScheduleRules.Fixation) * Math.Min(4.0, -Math.Log(ChoiceRules.ChanceOf(key, "gap")));
                 last = Math.Max(Cut, After(last, need, rates));
                 if (!(last < Drawn))
                 {
@@ -303,10 +305,10 @@ namespace Metagraph
                 }
                 var size = Math.Min(
                     ScheduleRules.LargestSaccade,
-                    -ScheduleRules.Saccade * Math.Log(Chance("saccade", number, "size"))
+                    -ScheduleRules.Saccade * Math.Log(ChoiceRules.ChanceOf(key, "size"))
                 );
                 size *= Manners[PlaceAt(last)].Saccades;
-                var turn = 2.0 * Math.PI * Chance("saccade", number, "way");
+                var turn = 2.0 * Math.PI * ChoiceRules.ChanceOf(key, "way");
                 times.Add(last);
                 rows.Add(new List<double> {
                     size * Math.Sin(turn + Math.PI / 2.0),
@@ -346,7 +348,8 @@ namespace Metagraph
             var last = lane.Rows.Count > 0 ? lane.Rows[lane.Rows.Count - 1][0] : 0.0;
             while (true)
             {
-                var need = ScheduleRules.AversionGap + ScheduleRules.AversionChance * Chance("aversion", number, "gap");
+                var key = Key("aversion", number);
+                var need = ScheduleRules.AversionGap + ScheduleRules.AversionChance * ChoiceRules.ChanceOf(key, "gap");
                 var at = Math.Max(Cut, Math.Max(last + ScheduleRules.BetweenAversions, After(last, need, rates)));
                 if (!(at < Drawn))
                 {
@@ -354,10 +357,10 @@ namespace Metagraph
                 }
                 var own = Manners[PlaceAt(at)];
                 var length = life.AversionLength * own.AversionLength;
-                length *= 0.6 + 0.8 * Chance("aversion", number, "length");
+                length *= 0.6 + 0.8 * ChoiceRules.ChanceOf(key, "length");
                 last = at + Math.Max(ScheduleRules.ShortestAversion, length);
-                var size = own.AversionAngle * (0.7 + 0.6 * Chance("aversion", number, "size"));
-                var turn = 2.0 * Math.PI * Chance("aversion", number, "way");
+                var size = own.AversionAngle * (0.7 + 0.6 * ChoiceRules.ChanceOf(key, "size"));
+                var turn = 2.0 * Math.PI * ChoiceRules.ChanceOf(key, "way");
                 times.Add(at);
                 rows.Add(new List<double> {
                     last,
@@ -395,7 +398,8 @@ namespace Metagraph
                 var own = double.PositiveInfinity;
                 if (mean < double.PositiveInfinity)
                 {
-                    var need = mean * (ScheduleRules.BlinkGap + ScheduleRules.BlinkChance * Chance("blink", number, "gap"));
+                    var key = Key("blink", number);
+                    var need = mean * (ScheduleRules.BlinkGap + ScheduleRules.BlinkChance * ChoiceRules.ChanceOf(key, "gap"));
                     own = Math.Max(Cut, After(last, need, rates));
                 }
                 // A stressed syllable may bring a blink: the first of a speech always, the others some time after

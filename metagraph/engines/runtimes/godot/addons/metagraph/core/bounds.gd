@@ -43,22 +43,26 @@ static func bounds(metas):
 		var wish = INF
 		var own = null
 		var start = begins(meta)
+		var rank = meta.rank
 		for one in first:
-			if one.rank > meta.rank:
+			if one.rank > rank:
 				limit = Util.least(limit, one.start)
-			if one.rank >= meta.rank and not one.written:
+			if one.rank >= rank and not one.written:
 				wish = Util.least(wish, one.start)
-			if one.rank == meta.rank and one.written == meta.written:
+			if one.rank == rank and one.written == meta.written:
 				own = one
 		var after = []
-		for one2 in Util.backwards(Util.part(pressing, -LOOKED_AT, pressing.size())):
-			if one2.rank >= meta.rank:
-				after.append(one2)
+		if pressing.size() > 0:
+			var found = []
+			for one2 in Util.backwards(Util.part(pressing, -LOOKED_AT, pressing.size())):
+				if one2.rank >= rank:
+					found.append(one2)
+			after = found
 		out.append(Bound.new(meta, limit, wish, after))
 		if meta.request.late != null:
 			pressing.append(meta)
 		if own == null:
-			first.append(_First.new(meta.rank, meta.written, start))
+			first.append(_First.new(rank, meta.written, start))
 		else:
 			own.start = start
 	return Util.list(Util.backwards(out))

@@ -5,35 +5,51 @@
 # Translated from metagraph/playback/choice.py; change that, and translate anew.
 
 const Hashing = preload("hashing.gd")
+const ALL = 4294967296.0  # numbers of 32 bits
 
 
 # Return the 32-bit hash of a seed and words: FNV-1a over their UTF-8 bytes, each word closed by a zero byte, then mixed.
 #
 # The seed, mixed, is xored into FNV's offset basis.
 static func key32(seed_, words):
+	return Hashing.mix(keyed(seed_, words))
+
+
+# Return what draws of one key have in common: the hash of a seed and words before it is mixed.
+static func keyed(seed_, words):
 	var value = Hashing.begun(seed_)
 	for word in words:
 		value = Hashing.absorb(value, word)
-	return Hashing.mix(value)
+	return value
 
 
 # Return a number in the open interval (0, 1).
 static func uniform(seed_, words):
-	return _unit(key32(seed_, words))
+	return (Hashing.mix(keyed(seed_, words)) + 0.5) / ALL
+
+
+# Return what `uniform` does with one word more than a key has.
+static func chance_of(key, purpose):
+	return (Hashing.mix(Hashing.absorb(key, purpose)) + 0.5) / ALL
+
+
+# Return one of the ids, as `picked` does.
+static func pick(seed_, key, purpose, weights):
+	return picked(keyed(seed_, [key]), purpose, weights)
 
 
 # Return one of the ids, id k with probability weight_k / sum.
 #
 # Each id runs its own race, the shortest of exponential times -log(u_k) / weight_k wins; so adding or removing one candidate
 # changes the choice only where that candidate wins. Raises ValueError when no weight is positive.
-static func pick(seed_, key, purpose, weights):
+static func picked(key, purpose, weights):
 	var best = ""
 	var shortest = INF
-	var start = Hashing.absorb(Hashing.absorb(Hashing.begun(seed_), key), purpose)
+	var start = Hashing.absorb(key, purpose)
 	for ident in weights:
 		var weight = weights[ident]
 		if weight > 0:
-			var time = -log(_unit(Hashing.mix(Hashing.absorb(start, ident)))) / weight
+			var time = -log((Hashing.mix(Hashing.absorb(start, ident)) + 0.5) / ALL) / weight
 			if time < shortest or (time == shortest and ident < best):
 				best = ident
 				shortest = time
@@ -41,7 +57,3 @@ static func pick(seed_, key, purpose, weights):
 		push_error("nothing to choose from")
 		return null
 	return best
-
-
-static func _unit(bits):
-	return (bits + 0.5) / 4294967296.0

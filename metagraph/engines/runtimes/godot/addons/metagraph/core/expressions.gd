@@ -79,13 +79,14 @@ static func swells_on(track, seed_, cut, drawn, before):
 	var number = before.next
 	var over = before.times[-1] + before.rows[-1][0] if before.times.size() > 0 else 0.0
 	while true:
-		var gap = SWELL_GAP * (0.3 + 1.4 * Choice.uniform(seed_, ["swell", str(number), "gap"]))
+		var key = Choice.keyed(seed_, ["swell", str(number)])
+		var gap = SWELL_GAP * (0.3 + 1.4 * Choice.chance_of(key, "gap"))
 		var at = Util.most(cut, over + gap)
 		if at >= drawn:
 			return before.plus(times, rows)
 		var length = SHORTEST_SWELL
-		length += (LONGEST_SWELL - SHORTEST_SWELL) * Choice.uniform(seed_, ["swell", str(number), "length"])
-		var amount = 0.6 + 0.4 * Choice.uniform(seed_, ["swell", str(number), "amount"])
+		length += (LONGEST_SWELL - SHORTEST_SWELL) * Choice.chance_of(key, "length")
+		var amount = 0.6 + 0.4 * Choice.chance_of(key, "amount")
 		times.append(at)
 		rows.append([length, amount, 1.0 if track.told_mode(at) == "listening" else 0.0])
 		over = at + length

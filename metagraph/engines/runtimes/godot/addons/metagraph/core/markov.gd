@@ -35,39 +35,43 @@ static func write(chain, seed_, until, kinds = null, cursor = null):
 	for pair in chain.states:
 		var kind2 = pair[1]
 		open_to.append(1.0 if (kinds == null or kinds.has(kind2)) else 0.0)
+	var rows = {}
 	var out = []
-	while true:
-		var is_any = false
-		for p in open_to:
-			if p > 0:
-				is_any = true
-				break
-		if not is_any:
+	var is_any = false
+	for p in open_to:
+		if p > 0:
+			is_any = true
 			break
-		var key = "auto/%s/%d" % [chain.layer, number]
-		var start = time + chain.gap * (0.35 + 1.3 * Choice.uniform(seed_, [key, "gap"]))
+	var able = is_any
+	while able:
+		var ident = "auto/%s/%d" % [chain.layer, number]
+		var key = Choice.keyed(seed_, [ident])
+		var start = time + chain.gap * (0.35 + 1.3 * Choice.chance_of(key, "gap"))
 		if not (start < until):  # nor when it is no number
 			break
-		state = int(Choice.pick(seed_, key, "state", _row(chain, state, open_to)))
+		if not rows.has(state):
+			rows[state] = _row(chain, state, open_to)
+		state = int(Choice.picked(key, "state", rows[state]))
 		var both = chain.states[state]
 		var limb = both[0]
 		var kind = both[1]
-		var seconds = length(chain, state, seed_, key)
+		var seconds = length(chain, state, key)
 		var tags = Util.list(Util.words(chain.tag(state)))
 		if kind == "gesture" and chain.tags.size() == 0:
-			var draw = Choice.uniform(seed_, [key, "tag"])
+			var draw = Choice.chance_of(key, "tag")
 			if draw < chain.positive:
 				tags = ["positive"]
 			elif draw < chain.positive + chain.negative:
 				tags = ["negative"]
-		var request = MetaPlan.MetaRequest.new(key, chain.layer, kind, start, seconds, null, tags, limb, null, MetaPlan.WRITTEN)
+		var request = MetaPlan.MetaRequest.new(ident, chain.layer, kind, start, seconds, null, tags, limb, null, MetaPlan.WRITTEN)
 		out.append(MetaPlan.MetaAction.new(request, start, start + seconds, 0, true))
 		number = number + 1
 		time = start + seconds
 	return [out, MetaPlan.Cursor.new(number, state, time)]
 
 
-# Return how likely each state is after a state (-1: before the first), by its place; any that may be where nothing leads on.
+# Return how likely each state is that may come after a state (-1: before the first), by its place; any that may be where nothing
+# leads on.
 static func _row(chain, state, open_to):
 	var row = Util.list(open_to)
 	if 0 <= state and state < row.size():
@@ -87,7 +91,8 @@ static func _row(chain, state, open_to):
 	var found2 = {}
 	for i in range(row.size()):
 		var p = row[i]
-		found2[str(i)] = p
+		if p > 0:
+			found2[str(i)] = p
 	return found2
 
 
@@ -100,12 +105,12 @@ static func performs(chain, seed_, meta, mode):
 	return share >= 1 or Choice.uniform(seed_, [meta.request.id, "mode"]) < share
 
 
-# Return how many seconds meta action `key` lasts: 1 to 3, evenly, where the model has no lengths.
+# Return how many seconds a meta action of a key lasts: 1 to 3, evenly, where the model has no lengths.
 #
 # Else log-normal with the state's mean m and standard deviation s, from two uniform draws u, v in (0, 1) by Box and Muller, which
 # any language can do alike: `a = ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z - a / 2)`.
-static func length(chain, state, seed_, key):
-	var u = Choice.uniform(seed_, [key, "length"])
+static func length(chain, state, key):
+	var u = Choice.chance_of(key, "length")
 	if chain.lengths.size() == 0:
 		return 1.0 + 2.0 * u
 	var both = chain.lengths[state]
@@ -113,5 +118,5 @@ static func length(chain, state, seed_, key):
 	var deviation = both[1]
 	var share = deviation / mean
 	var spread = Util.log1p(share * share)
-	var z = sqrt(-2.0 * log(u)) * cos(2.0 * PI * Choice.uniform(seed_, [key, "length2"]))
+	var z = sqrt(-2.0 * log(u)) * cos(2.0 * PI * Choice.chance_of(key, "length2"))
 	return mean * exp(sqrt(spread) * z - spread / 2.0)

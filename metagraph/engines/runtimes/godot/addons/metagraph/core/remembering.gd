@@ -11,6 +11,13 @@ static func node(stance, kind):
 	return "%s %s" % [kind, stance]
 
 
+# Whether so many other draws came after an action's last one.
+static func rested(recent, ident, needed):
+	if needed <= 0:
+		return true
+	return needed <= REMEMBERED and not Util.part(recent, Util.most(0, recent.size() - needed), recent.size()).has(ident)
+
+
 # Note that a cue was played: how often its action was, lately, and until when.
 static func remember(cue, uses, recent, ended):
 	var ident = cue.action.id

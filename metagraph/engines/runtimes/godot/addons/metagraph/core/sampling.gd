@@ -29,7 +29,7 @@ class SamplingStep:
 #
 # uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun: keys of meta
 # actions whose chain of transitions plays already. served: keys of those that another's action serves, too. moods: what it is in
-# the mood for, and when.
+# the mood for, and when. candidates: the actions of each `node` that may be drawn, as far as they were asked for.
 class Performer:
 	var project
 	var graph
@@ -45,6 +45,7 @@ class Performer:
 	var reports
 	var begun
 	var served
+	var candidates
 
 	func _init(
 		project_,
@@ -60,7 +61,8 @@ class Performer:
 		rests_ = null,
 		reports_ = null,
 		begun_ = null,
-		served_ = null
+		served_ = null,
+		candidates_ = null
 	):
 		self.project = project_
 		self.graph = graph_
@@ -76,6 +78,7 @@ class Performer:
 		self.reports = reports_ if reports_ != null else []
 		self.begun = begun_ if begun_ != null else {}
 		self.served = served_ if served_ != null else {}
+		self.candidates = candidates_ if candidates_ != null else {}
 
 	# Take a cue as played.
 	func note(cue, then):
@@ -102,22 +105,23 @@ class Performer:
 			var meta = bound.meta
 			if Bounds.begins(meta) >= end:
 				continue
-			if self.served.has(meta.key):
+			if self.served.size() > 0 and self.served.has(meta.key):
 				continue
 			if meta.request.late != null:
 				self._realise(bound, Util.most(self.ready(), Bounds.begins(meta)))
 				continue
-			if meta.end <= self.ready() + CueShapes.FITS and meta.start < self.ready() and not self.begun.has(meta.key):
+			var ready = self.ready()
+			if meta.start < ready and meta.end <= ready + CueShapes.FITS and not self.begun.has(meta.key):
 				var running = "the running action"
 				if self.cues.size() > 0:
 					running = "'%s'" % [self.cues[-1].action.name]
-				var waits = self.ready() - meta.request.start
+				var waits = ready - meta.request.start
 				# What is wanted for a certain time is over; what is wanted once may come late.
 				if meta.written or meta.request.duration != null or waits > self.project.settings.wait:
 					self._tell(meta, "covered", "wholly covered by %s, which plays until %.2f s" % [running, self.free_])
 					continue
 				self._tell(meta, "queued", "waits %.2f s for %s" % [waits, running], true)
-			self._realise(bound, Util.most(self.ready(), meta.start))
+			self._realise(bound, Util.most(ready, meta.start))
 
 	func _realise(bound, now):
 		var meta = bound.meta
@@ -130,11 +134,12 @@ class Performer:
 		for step in steps:
 			var hops = step.hop != ""
 			var asked = null if hops else meta.request
+			var mood = self._mood(asked, now)
 			var fitting = Util.list(step.candidates)
 			if limit < INF:  # else all fit
 				var found = []
 				for a in step.candidates:
-					if CueShapes.fits_before(self._shape(a, asked, now), limit):
+					if CueShapes.fits_before(self._shape(a, asked, now, mood), limit):
 						found.append(a)
 				fitting = found
 			if fitting.size() == 0:
@@ -144,7 +149,7 @@ class Performer:
 			if not hops and meta.request.action == null:
 				var warm = []
 				for a in fitting:
-					if a.cooldown <= 0 or self._cooled(a) <= self._shape(a, asked, now).start + CueShapes.FITS:
+					if a.cooldown <= 0 or self._cooled(a) <= self._shape(a, asked, now, mood).start + CueShapes.FITS:
 						warm.append(a)
 				if warm.size() == 0:
 					var found2 = []
@@ -159,9 +164,8 @@ class Performer:
 				fitting = self._timely(bound, fitting, now)
 				if fitting.size() == 0:
 					return
-			var mood = self._mood(asked, now)
 			var action = self._draw(fitting, "%s/%s" % [meta.key, step.hop] if hops else meta.key, now, mood)
-			var shape = self._shape(action, asked, now)
+			var shape = self._shape(action, asked, now, mood)
 			var cue = self._cue(action, shape, bound, hops, stance, mood)
 			cues.append(cue)
 			now = cue.end
@@ -175,9 +179,10 @@ class Performer:
 		var meta = bound.meta
 		var request = meta.request
 		var allowed = CueShapes.slack_of(request)
+		var mood = self._mood(request, now)
 		var late = {}
 		for a in fitting:
-			late[a.id] = CueShapes.lateness(self.project, a, request, self._shape(a, request, now))
+			late[a.id] = CueShapes.lateness(self.project, a, request, self._shape(a, request, now, mood))
 		var found = []
 		for a in fitting:
 			found.append(late[a.id])
@@ -251,17 +256,20 @@ class Performer:
 			if fits and self._usable(action):
 				var found = Phases.phases(self.project, action)
 				var lead = found.stroke - found.skip(action.timing.blend_in)
-				least = Util.least(least, lead + Mood.drag(lead, self._tempo(action, request, request.stroke)))
+				var speed = self._tempo(action, self._mood(request, request.stroke))
+				least = Util.least(least, lead + Mood.drag(lead, speed))
 		return request.stroke - least
 
 	# Return when what follows an action could begin at the earliest.
 	func _over(action, request, now):
-		var shape = self._shape(action, request, now)
+		var shape = self._shape(action, request, now, self._mood(request, now))
 		return shape.start + CueShapes.hurried(self.project, action, shape) + self.project.settings.rest - CueShapes.FITS
 
 	# Return when an action that is to be played through is left nevertheless: early enough for the first of what follows that can
 	# be in time then, late enough for its own stroke; infinity for never.
 	func _until(action, shape, bound):
+		if bound.after.size() == 0:
+			return INF
 		var rest = self.project.settings.rest
 		var soonest = shape.start + CueShapes.hurried(self.project, action, shape)
 		for other in bound.after:
@@ -348,19 +356,23 @@ class Performer:
 				self._tell(meta, "no-stance", "there is no stance '%s' in the %s layer" % [request.stance, graph.layer])
 				return null
 			return self._way(meta, request.stance)
-		var every = []
-		for a in graph.of(self.stance, request.kind):
-			if self._usable(a):
-				every.append(a)
-		if request.among.size() > 0:
+		var here = Remembering.node(self.stance, request.kind)
+		if not self.candidates.has(here):
 			var found2 = []
+			for a in graph.of(self.stance, request.kind):
+				if self._usable(a):
+					found2.append(a)
+			self.candidates[here] = found2
+		var every = self.candidates[here]
+		if request.among.size() > 0:
+			var found3 = []
 			for a in every:
 				if request.among.has(a.id):
-					found2.append(a)
-			every = found2
+					found3.append(a)
+			every = found3
 		var found = every
 		if request.tags.size() > 0:
-			var found3 = []
+			var found4 = []
 			for a in every:
 				var are_all = true
 				for tag in request.tags:
@@ -368,21 +380,17 @@ class Performer:
 						are_all = false
 						break
 				if are_all:
-					found3.append(a)
-			found = found3
+					found4.append(a)
+			found = found4
 		var exact = found
 		if request.limb != null:
-			var found4 = []
+			var found5 = []
 			for a in found:
 				if a.limb == request.limb:
-					found4.append(a)
-			exact = found4
+					found5.append(a)
+			exact = found5
 		if meta.written:  # the model's limb and tags are wishes, not orders, nor worth playing the same again
-			var again = Util.part(
-				self.recent.get(Remembering.node(self.stance, request.kind), []),
-				-1,
-				self.recent.get(Remembering.node(self.stance, request.kind), []).size()
-			)
+			var again = Util.part(self.recent.get(here, []), -1, self.recent.get(here, []).size())
 			var is_any = false
 			for a in exact:
 				if not again.has(a.id):
@@ -484,8 +492,8 @@ class Performer:
 		return action.likelihood > 0 and self._arrives(action)
 
 	# Return how an action would play for a request from `now` on, or as a step on the way to it.
-	func _shape(action, request, now):
-		return CueShapes.shape_of(self.project, action, request, now, self._tempo(action, request, now))
+	func _shape(action, request, now, mood):
+		return CueShapes.shape_of(self.project, action, request, now, self._tempo(action, mood))
 
 	# Return the mood that something asked for is played in from `at` on, or at its stroke.
 	func _mood(request, at):
@@ -497,8 +505,7 @@ class Performer:
 		return Mood.changed(mood, request.valence, request.arousal, request.intensity)
 
 	# Return how fast an action is played, 1 where it was made for the mood.
-	func _tempo(action, request, at):
-		var mood = self._mood(request, at)
+	func _tempo(action, mood):
 		return 1.0 if (mood.neutral or Mood.made_for(mood, action.tags)) else Mood.tempo(mood)
 
 	# Return how large an action is played. Those that move feet or leave for another stance, touch something or were made for the
@@ -514,9 +521,13 @@ class Performer:
 	# others are left.
 	func _draw(candidates, key, now, mood):
 		var left = self._spaced(candidates)
+		if left.size() == 1:
+			return left[0]
+		var neutral = mood.neutral
 		var weights = {}
 		for a in left:
-			weights[a.id] = a.likelihood / Util.most(self._count(a.id, now), 1.0) * self._favour(a, mood)
+			var favoured = 1.0 if neutral else Mood.favour(mood, a.tags, Vigour.vigour(self.project, a))
+			weights[a.id] = a.likelihood / Util.most(self._count(a.id, now), 1.0) * favoured
 		var is_any = false
 		for w in weights.values():
 			if w > 0:
@@ -526,15 +537,11 @@ class Performer:
 			return left[0]
 		var chosen = Choice.pick(self.seed_, key, "action", weights)
 		var first = null
-		for a in left:
-			if a.id == chosen:
-				first = a
+		for a2 in left:
+			if a2.id == chosen:
+				first = a2
 				break
 		return first
-
-	# Return how much likelier a mood makes an action, 1 in none.
-	func _favour(action, mood):
-		return 1.0 if mood.neutral else Mood.favour(mood, action.tags, Vigour.vigour(self.project, action))
 
 	# Leave out what needs more other actions before it plays again; where that leaves nothing, all need one less, and so on.
 	func _spaced(candidates):
@@ -543,11 +550,6 @@ class Performer:
 		var before = self.recent.get(Remembering.node(first.stance, first.kind), [])
 		if candidates.size() < 2 or before.size() == 0:
 			return candidates
-		# How many came after each.
-		var since = {}
-		for place in range(before.size()):
-			var ident = before[place]
-			since[ident] = before.size() - 1 - place
 		var needs = {}
 		for a in candidates:
 			needs[a.id] = default if a.spacing == null else a.spacing
@@ -557,7 +559,7 @@ class Performer:
 		for less in range(Util.most_of(found) + 1):
 			var left = []
 			for a in candidates:
-				if since.get(a.id, Remembering.REMEMBERED) >= needs[a.id] - less:
+				if Remembering.rested(before, a.id, needs[a.id] - less):
 					left.append(a)
 			if left.size() > 0:
 				return left
@@ -632,6 +634,8 @@ class Performer:
 	# Return one of a stance's loops, drawn by likelihood; None where it has none.
 	func loop(stance, key):
 		var loops = self.graph.of(stance, "stance")
+		if loops.size() == 1:
+			return loops[0]
 		var weights = {}
 		for a in loops:
 			if a.likelihood > 0:

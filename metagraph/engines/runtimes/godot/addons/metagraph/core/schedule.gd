@@ -298,9 +298,9 @@ class LifeDraw:
 			self.manners.append(Wanted.ways_in(ways, Mood.Mood.new(felt[0], felt[1], felt[2])))
 			self.strict.append(1 if self.targets[look].strict else 0)
 
-	# Return the chance of something about an event: 0..1, without the ends.
-	func chance(what, number, purpose):
-		return Choice.uniform(self.seed_, [what, str(number), purpose])
+	# Return what keys the chances of an event: those of `chance_of`, 0..1, without the ends.
+	func key(what, number):
+		return Choice.keyed(self.seed_, [what, str(number)])
 
 	# Return the place of the segment that a time is in.
 	func place_at(seconds):
@@ -341,9 +341,10 @@ class LifeDraw:
 				at = self.edges[later]
 				begun = true
 				continue
-			var length = (BREATH + BREATH_CHANCE * self.chance("breath", number, "length")) / rate
+			var key = self.key("breath", number)
+			var length = (BREATH + BREATH_CHANCE * Choice.chance_of(key, "length")) / rate
 			length *= 1.0 + 2.0 * self.life.stillness  # slower, too, but never halting
-			var depth = ways.breathing * (BREATH + BREATH_CHANCE * self.chance("breath", number, "depth"))
+			var depth = ways.breathing * (BREATH + BREATH_CHANCE * Choice.chance_of(key, "depth"))
 			if not begun:
 				at = -length * Choice.uniform(self.seed_, ["breath", "first"])
 				begun = true
@@ -368,13 +369,14 @@ class LifeDraw:
 		var number = lane.next
 		var last = lane.times[-1] if lane.times.size() > 0 else 0.0
 		while true:
-			var need = FIXATION + (mean - FIXATION) * Util.least(4.0, -log(self.chance("saccade", number, "gap")))
+			var key = self.key("saccade", number)
+			var need = FIXATION + (mean - FIXATION) * Util.least(4.0, -log(Choice.chance_of(key, "gap")))
 			last = Util.most(self.cut, self.after(last, need, rates))
 			if not (last < self.drawn):
 				return lane.plus(times, rows)
-			var size = Util.least(LARGEST_SACCADE, -SACCADE * log(self.chance("saccade", number, "size")))
+			var size = Util.least(LARGEST_SACCADE, -SACCADE * log(Choice.chance_of(key, "size")))
 			size *= self.manners[self.place_at(last)].saccades
-			var turn = 2.0 * PI * self.chance("saccade", number, "way")
+			var turn = 2.0 * PI * Choice.chance_of(key, "way")
 			times.append(last)
 			rows.append([size * sin(turn + PI / 2.0), UPRIGHT * size * sin(turn)])
 			number += 1
@@ -399,16 +401,17 @@ class LifeDraw:
 		var number = lane.next
 		var last = lane.rows[-1][0] if lane.rows.size() > 0 else 0.0
 		while true:
-			var need = AVERSION_GAP + AVERSION_CHANCE * self.chance("aversion", number, "gap")
+			var key = self.key("aversion", number)
+			var need = AVERSION_GAP + AVERSION_CHANCE * Choice.chance_of(key, "gap")
 			var at = Util.most(self.cut, Util.most(last + BETWEEN_AVERSIONS, self.after(last, need, rates)))
 			if not (at < self.drawn):
 				return lane.plus(times, rows)
 			var own = self.manners[self.place_at(at)]
 			var length = life.aversion_length * own.aversion_length
-			length *= 0.6 + 0.8 * self.chance("aversion", number, "length")
+			length *= 0.6 + 0.8 * Choice.chance_of(key, "length")
 			last = at + Util.most(SHORTEST_AVERSION, length)
-			var size = own.aversion_angle * (0.7 + 0.6 * self.chance("aversion", number, "size"))
-			var turn = 2.0 * PI * self.chance("aversion", number, "way")
+			var size = own.aversion_angle * (0.7 + 0.6 * Choice.chance_of(key, "size"))
+			var turn = 2.0 * PI * Choice.chance_of(key, "way")
 			times.append(at)
 			rows.append([last, size * sin(turn + PI / 2.0), UPRIGHT * size * sin(turn)])
 			number += 1
@@ -437,7 +440,8 @@ class LifeDraw:
 		while true:
 			var own = INF
 			if mean < INF:
-				var need = mean * (BLINK_GAP + BLINK_CHANCE * self.chance("blink", number, "gap"))
+				var key = self.key("blink", number)
+				var need = mean * (BLINK_GAP + BLINK_CHANCE * Choice.chance_of(key, "gap"))
 				own = Util.most(self.cut, self.after(last, need, rates))
 			# A stressed syllable may bring a blink: the first of a speech always, the others some time after
 			# the last blink.

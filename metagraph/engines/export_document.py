@@ -1,0 +1,143 @@
+"""What the JSON of an export holds, made of a project."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from metagraph.engines import contract as c
+from metagraph.engines.export_actions import NONE, actions_of
+from metagraph.engines.export_contacts import contact_rig_of
+from metagraph.engines.export_listing import ListedExport, listed
+from metagraph.engines.export_rig import rig_of, voices_of
+from metagraph.engines.export_weight import arms_of, feet_of, weight_rig_of
+from metagraph.graph import anatomy
+from metagraph.graph.model import KINDS, LAYERS, REACH, ClipEntry, MetaGraph, Project, Settings
+from metagraph.playback import choice, hashing, markov
+from metagraph.playback.cue_shapes import HURRY
+from metagraph.playback.layer_planning import WINDOW
+from metagraph.playback.phase_times import LEAST_BLEND
+from metagraph.playback.sampling import LOOP_FADE
+from metagraph.uncollected import uncollected
+
+_SCALES: tuple[Literal["neither", "smaller", "both"], ...] = ("neither", "smaller", "both")
+
+
+def used_clips(project: Project) -> list[ClipEntry]:
+    """Return the clips that are placed, and the base pose's, in the project's order."""
+    placed = {*project.uses, project.base.clip}
+    return [e for e in project.clips.values() if e.id in placed]
+
+
+@uncollected()
+def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bool = False) -> c.Export:
+    """Return the JSON's content, to be written. names: of the used clips' animations in the GLB. expanded:
+    list the state machine, too, as text (`ListedExport`).
+    """
+    skeleton = project.skeleton
+    assert skeleton is not None
+    parts, sides, scales = anatomy.parts(project), anatomy.sides(project), anatomy.scales(project)
+    joints = [
+        c.Joint(
+            name,
+            skeleton.names[skeleton.parents[i]] if skeleton.parents[i] >= 0 else None,
+            parts[i],
+            sides[i],  # type: ignore[arg-type]
+            [float(x) for x in skeleton.rest_translations[i]],
+            [float(x) for x in skeleton.rest_rotations[i]],
+            _SCALES[int(scales[:, i].sum())],
+        )
+        for i, name in enumerate(skeleton.names)
+    ]
+    pose = anatomy.base_pose(project)
+    base = c.Base(project.base.clip, project.base.frame, pose.rotations.tolist(), pose.translations.tolist())
+    arms, feet = arms_of(project), feet_of(project)
+    clips = [
+        c.ExportedClip(
+            e.id,
+            name,
+            n,
+            e.fps,
+            e.frames,
+            e.duration,
+            e.digest,
+            e.made_by,
+            e.made_seed if e.made_by else 0,
+            arms.get(e.id, NONE),
+            feet.get(e.id, NONE),
+        )
+        for n, (e, name) in enumerate(zip(used_clips(project), names, strict=True))
+    ]
+    kind: type[Any] = ListedExport if expanded else c.Export
+    out: c.Export = kind(
+        metagraph=c.FORMAT,
+        name=project.name,
+        glb=glb,
+        height=skeleton.height,
+        order=list(LAYERS),
+        joints=joints,
+        base=base,
+        clips=clips,
+        layers={layer: _layer(project, project.graphs[layer]) for layer in LAYERS},
+        planner=_planner(project.settings),
+        randomness=c.Randomness(
+            "fnv1a32-mix",
+            hashing.OFFSET,
+            hashing.PRIME,
+            [16, hashing.MIX[0], 13, hashing.MIX[1], 16],
+            choice.key32(1, "a", "b"),
+        ),
+        roles=dict(project.roles),
+        parts=dict(project.parts),
+        expanded={layer: listed(project, project.graphs[layer]) for layer in LAYERS} if expanded else None,
+        life=project.life,
+        face=project.face,
+        points=dict(project.points),
+        lines=dict(project.lines),
+        performances=dict(project.performances),
+        rig=rig_of(project),
+        voices=voices_of(project),
+        touch=project.touch,
+        contact_rig=contact_rig_of(project),
+        weight_rig=weight_rig_of(project),
+    )
+    return out
+
+
+def _planner(s: Settings) -> c.Planner:
+    return c.Planner(
+        s.seed & 0xFFFFFFFF, s.alpha, s.never_twice, s.shortest, s.wait, WINDOW, LOOP_FADE, "3x^2-2x^3",
+        s.memory, s.rest, s.lookahead, HURRY, LEAST_BLEND,
+    )  # fmt: skip
+
+
+def _layer(project: Project, graph: MetaGraph) -> c.ExportedLayer:
+    index: dict[str, dict[c.KindName, list[str]]] = {}
+    for stance in graph.stances:
+        for kind in KINDS:
+            if actions := graph.of(stance, kind):
+                index.setdefault(stance, {})[kind] = [a.id for a in actions]
+    ways: dict[tuple[str, str], list[str]] = {}
+    for action in graph.actions.values():
+        if action.kind == "transition" and action.end_stance is not None:
+            ways.setdefault((action.stance, action.end_stance), []).append(action.id)
+    model = markov.model(project, graph.layer)
+    return c.ExportedLayer(
+        start=graph.start,
+        weights={part: graph.weight(part) for part in REACH[graph.layer]},
+        own_weights=list(graph.weights),
+        stances=[c.ExportedStance(s.id, s.name) for s in graph.stances.values()],
+        actions=actions_of(project, graph),
+        index=index,
+        transitions=[c.Transition(a, b, ids) for (a, b), ids in ways.items()],
+        markov=c.ExportedMarkov(
+            list(model.states),
+            [list(row) for row in model.matrix],
+            model.gap,
+            model.positive,
+            model.negative,
+            list(model.tags),
+            [list(pair) for pair in model.lengths],
+            [list(row) for row in model.modes],
+        ),
+        own_markov=graph.layer in project.markov,
+    )
