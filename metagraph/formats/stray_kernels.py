@@ -28,27 +28,28 @@ def measure(
     that, `[F]`, and of the ways from each frame to the next, and those of the middles, `[F - 1]`.
 
     rotations `[F, J, 4]`, translations `[F, T, 3]`: local, the latter of the joints `translated [T]`; others
-    are where `rest [J, 3]` has them. weights `[J]`: how much joints count.
+    are where `rest [J, 3]` has them. weights `[J]`: how much joints count. A frame's numbers are each written
+    once: two threads may have a frame in common.
     """
     joints = len(parents)
-    turns, local = np.empty((joints, 4), np.float32), rest.copy()
+    turns, local, whole = np.empty((joints, 4), np.float32), rest.copy(), np.empty((joints, 3), np.float32)
     middle, before = np.zeros(3), np.zeros(3)
     for f in range(len(rotations)):
         for n in range(len(translated)):
             for i in range(3):
                 local[translated[n], i] = translations[f, n, i]
         own = places[f]
-        _to_model(parents, rotations[f], local, turns, own)
+        _to_model(parents, rotations[f], local, turns, whole)
         for i in range(3):
             total = 0.0
             for j in range(joints):
-                total += np.float64(own[j, i]) * weights[j]
+                total += np.float64(whole[j, i]) * weights[j]
             before[i], middle[i] = middle[i], total
         size = step = 0.0
         for j in range(joints):
             here = there = 0.0
             for i in range(3):
-                own[j, i] -= np.float32(middle[i])
+                own[j, i] = whole[j, i] - np.float32(middle[i])
                 here += np.float64(own[j, i]) ** 2
                 if f:
                     there += np.float64(own[j, i] - places[f - 1, j, i]) ** 2

@@ -14,7 +14,7 @@ from metagraph.synthesis.kernels import compiled
 
 Array = Any
 
-STEPS = 32  # of costs
+STEPS = 64  # of costs
 
 
 @compiled
@@ -31,20 +31,13 @@ def counted(targets: Array, states: Any) -> Array:
 
 
 @compiled
-def turned(
-    starts: Array, targets: Array, costs: Array, first: Any, after: Any, at: Array, out: Array, prices: Array
-) -> None:
-    """Write the transitions into the states first .. after - 1, turned round, to out and prices `[E]`. at
-    `[F]`: where each state's begin; changed.
+def turned(starts: Array, targets: Array, costs: Array, at: Array, out: Array, prices: Array) -> None:
+    """Write the transitions turned round to out and prices `[E]`. at `[F]`: where each state's begin;
+    changed.
     """
     states = len(starts) - 1
     for state in range(states):
-        begin, end = starts[state], starts[state + 1]
-        if begin == end or targets[end - 1] < first:
-            continue
-        for place in range(begin + np.searchsorted(targets[begin:end], first), end):
-            if targets[place] >= after:
-                break
+        for place in range(starts[state], starts[state + 1]):
             row = states - 1 - targets[place]
             out[at[row]], prices[at[row]] = states - 1 - state, costs[place]
             at[row] += 1
@@ -53,8 +46,6 @@ def turned(
 @compiled
 def arranged(
     starts: Array,
-    first: Any,
-    after: Any,
     targets: Array,
     costs: Array,
     classes: Array,
@@ -64,14 +55,14 @@ def arranged(
     prices: Array,
     firsts: Array,
 ) -> None:
-    """Write the transitions of the states first .. after - 1, each one's by class of target and step of cost,
-    to out and prices `[E]`, which may be targets and costs themselves, and to firsts `[F (count + 1)]` where
-    those of each source and class begin, and where the last end.
+    """Write the transitions, each state's by class of target and step of cost, to out and prices `[E]`, which
+    may be targets and costs themselves, and to firsts `[F (count + 1)]` where those of each source and class
+    begin, and where the last end.
 
     classes `[F]`: of each state, -1 for one nobody may be in. width: of a step.
     """
-    per, longest = np.float32(1 / width), 0
-    for state in range(first, after):
+    per, longest, states = np.float32(1 / width), 0, len(starts) - 1
+    for state in range(states):
         longest = max(longest, starts[state + 1] - starts[state])
     rows = np.empty(longest, np.uint16)
     ends, paid = np.empty(longest, np.int32), np.empty(longest, np.float32)
@@ -79,7 +70,7 @@ def arranged(
     begins = np.empty(len(classes), np.uint16)  # of a state's class; those nobody may be in come last
     for state in range(len(classes)):
         begins[state] = STEPS * (classes[state] if classes[state] >= 0 else count)
-    for state in range(first, after):
+    for state in range(states):
         begin = starts[state]
         many = starts[state + 1] - begin
         own = state * (count + 1)

@@ -13,7 +13,7 @@ whole.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import closing, suppress
 from functools import cached_property
 from typing import Any
@@ -90,10 +90,15 @@ class ExactSearch:
         self._problem = SearchProblem.of(graph, heard, wanted, run, charged)
         self._other = ThreadPoolExecutor(1)
         self._foresight: Foresight | None = None
+        self._looking: Sweep | None = None  # back, on the other thread
+        self._looked: Future[Foresight] | None = None
+        self._exact: Sweep | None = None  # the beginning of a sweep that left nobody out
         self.through = float("inf")
 
     def close(self) -> None:
         """End its threads."""
+        if self._looking is not None:
+            self._looking.limit(-1.0)
         self._other.shutdown()
 
     @cached_property
@@ -103,38 +108,59 @@ class ExactSearch:
 
     def guessed(self) -> float:
         """Return what some path costs, infinite where none was come upon: where many are at a frame, the
-        cheapest alone jump.
+        cheapest alone jump. Meanwhile the search begins to look back.
         """
-        problem = self._problem
-        sweep = Sweep(problem, *self._arranged, np.inf, 1.0, narrow=NARROW, cancelled=self._cancelled)
+        sweep = Sweep(self._problem, *self._arranged, np.inf, 1.0, narrow=NARROW, cancelled=self._cancelled)
+        if self._foreseeable:
+            self._looking = self._backwards(np.inf)
+            self._looked = self._other.submit(self._looking.backwards)
         with suppress(SynthesisError):
             sweep.forwards()
-            return float(sweep.cost.min())
+            self.through = float(sweep.cost.min())
+        self._exact = sweep.exact
         go_on(self._cancelled)
-        return float("inf")
+        return self.through
 
     def within(self, bound: float) -> Path:
         """Return the cheapest path of those that cost no more than a bound. Raises SynthesisError
         when there is none.
         """
-        problem, frames = self._problem, len(self._problem.wanted)
-        slack = 1 + EACH * (frames + 8)
-        foresight = self._foreseen(bound, slack)
-        sweep = Sweep(problem, *self._arranged, bound, slack, foresight, cancelled=self._cancelled)
+        foresight = self._foreseen(bound)
+        if self._exact is not None:
+            sweep = self._exact.within(bound, self._slack, foresight)
+        else:
+            there, back = self._arranged
+            sweep = Sweep(
+                self._problem, there, back, bound, self._slack, foresight, cancelled=self._cancelled
+            )
         try:
             ways = sweep.forwards()
         finally:
             self.through = min(self.through, float(sweep.through))
         return self._traced(sweep, ways)
 
-    def _foreseen(self, bound: float, slack: float) -> Foresight | None:
-        problem = self._problem
-        if not np.isfinite(bound) or 24 * len(problem.first) * len(problem.wanted) > MOST:
+    @property
+    def _slack(self) -> float:
+        return 1 + EACH * (len(self._problem.wanted) + 8)
+
+    @property
+    def _foreseeable(self) -> bool:
+        """Whether there is room for what is foreseen."""
+        return 24 * len(self._problem.first) * len(self._problem.wanted) <= MOST
+
+    def _backwards(self, bound: float) -> Sweep:
+        there, back = self._arranged
+        return Sweep(self._problem.turned(), back, there, bound, self._slack, cancelled=self._cancelled)
+
+    def _foreseen(self, bound: float) -> Foresight | None:
+        if not np.isfinite(bound) or not self._foreseeable:
             return None
+        if self._looking is not None and self._looked is not None:
+            self._looking.limit(HALF * bound)
+            self._foresight = self._looked.result()
+            self._looking = self._looked = None
         if self._foresight is None or self._foresight.within < REUSED * bound:
-            there, back = self._arranged
-            sweep = Sweep(problem.turned(), back, there, HALF * bound, slack, cancelled=self._cancelled)
-            self._foresight = sweep.backwards()
+            self._foresight = self._backwards(HALF * bound).backwards()
         return self._foresight
 
     def _traced(self, sweep: Sweep, ways: Sequence[tuple[Array, Array]]) -> Path:
@@ -145,7 +171,7 @@ class ExactSearch:
         cost = float(sweep.cost[code])
         while True:
             codes, back = ways[t]
-            before = int(back[np.searchsorted(codes, code)]) if t else 0
+            before = int(back[codes == code][0]) if t else 0
             length = 1 if before >= 0 else int(sweep.runs[code]) if t == frames - 1 else run
             state = code % states
             way[t - length + 1 : t + 1] = np.arange(state - length + 1, state + 1)

@@ -81,6 +81,20 @@ def weigh(cost: Array, alive: Array, starts: Array, reach: Any, width: Any) -> A
 
 
 @compiled_exactly
+def least_of(cost: Array, alive: Array, classes: Array, count: Any) -> Array:
+    """Return `[2, C]` what the cheapest of each class costs, without and with the event met; infinite where
+    nobody is. classes `[F]`: of states.
+    """
+    states = len(classes)
+    out = np.full((2, count), np.inf, np.float32)
+    for n in range(len(alive)):
+        met = 1 if alive[n] >= states else 0
+        kind = classes[alive[n] - met * states]
+        out[met, kind] = min(out[met, kind], cost[alive[n]])
+    return out
+
+
+@compiled_exactly
 def leap(
     cost: Array,
     alive: Array,
@@ -170,27 +184,34 @@ def draw(
     """Return and write what `leap` does, looking from where one may land for the cheapest way there: sooner
     where many cost the least.
 
-    cost `[2 F]`: infinite where nobody is. lowest `[2]`: what nobody is below, without and with the event
-    met. entered: states that jumps lead to. firsts, targets, costs: as `arranged` writes the transitions
-    turned round; leaving: the classes of states that fitted a frame before. first `[F]`: whether a state is
-    the first of its take. cheapest: what a transition costs at least. Whoever comes along the take no dearer
-    needs no jump.
+    cost `[2 F]`: infinite where nobody is. lowest `[2, C]`: what nobody of a class is below, without and with
+    the event met. entered: states that jumps lead to. firsts, targets, costs: as `arranged` writes the
+    transitions turned round; leaving: the classes of states that fitted a frame before. first `[F]`: whether
+    a state is the first of its take. cheapest: what a transition costs at least. Whoever comes along the take
+    no dearer needs no jump.
     """
     states, number, through = len(fits), 0, np.float32(np.inf)
     unknown = ahead[2 * states]
+    floors, order = np.full(2, np.inf, np.float32), np.empty((2, len(leaving)), np.int64)
+    for met in range(2):
+        own = lowest[met][leaving]
+        order[met] = leaving[np.argsort(own)]  # the class with the cheapest first: it cuts the others short
+        for n in range(len(own)):
+            floors[met] = min(floors[met], own[n])
     for state in entered:
         if fits[state] < least:
             continue
         own = (states - 1 - state) * (count + 1)
         for met in range(2):
-            floor = lowest[met]
+            floor = floors[met]
             target = state + met * states
             rest = ahead[target]
             follows = np.float32(np.inf) if first[state] else cost[target - 1]
             if floor + cheapest >= follows or not floor + cheapest + rest <= bound:
                 continue
             best, source = min(follows, bound - rest), -1
-            for kind in leaving:
+            for kind in order[met]:
+                floor = lowest[met, kind]
                 for place in range(firsts[own + kind], firsts[own + kind + 1]):
                     price = costs[place]
                     if floor + price > best:

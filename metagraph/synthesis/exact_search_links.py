@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -17,21 +16,27 @@ from metagraph.synthesis.graph import MotionGraph
 
 Array = NDArray[Any]
 
+Made = tuple[Array, Array, Array]  # firsts, targets, costs
 KEPT = 500_000_000  # bytes of a graph's transitions that are kept for the next search
 
 
 @dataclass(frozen=True, eq=False)
 class SearchLinks:
-    """starts `[F + 1]`: where each state's transitions begin. arranged: firsts, targets and costs as the loop
-    `arranged` writes them. width: of a step of costs; cheapest: what one costs at least.
-    entered: states that transitions lead to.
+    """starts `[F + 1]`: where each state's transitions begin. making: firsts, targets and costs as the loop
+    `arranged` writes them, perhaps on another thread. width: of a step of costs; cheapest: what one costs at
+    least. entered: states that transitions lead to.
     """
 
     starts: Array
-    arranged: tuple[Array, Array, Array]
+    making: Future[Made]
     width: Any
     cheapest: Any
     entered: Array
+
+    @property
+    def arranged(self) -> Made:
+        """firsts, targets and costs, once they are made."""
+        return self.making.result()
 
     @cached_property
     def leaving(self) -> Array:
@@ -64,62 +69,27 @@ def _arranged(
     states, count = len(graph.states), classes.count
     cheapest, dearest = graph.costs.min(initial=np.inf), float(graph.costs.max(initial=0.0))
     width = np.float32(1.001 * dearest / STEPS or 1.0)
-    onto, back = _room(len(graph.targets)), _room(len(graph.targets))
-    firsts = [np.empty(states * (count + 1), np.int64) for _ in range(2)]
-    begun = other.submit(counted, graph.targets, states)
-    halves = _halves(graph.starts)
-    _both(
-        other,
-        arranged,
-        [
-            (
-                graph.starts,
-                *half,
-                graph.targets,
-                graph.costs,
-                classes.of_state,
-                count,
-                width,
-                *onto,
-                firsts[0],
-            )
-            for half in halves
-        ],
-    )
-    starts = begun.result()
-    halves = _halves(starts)
-    at = starts[:-1].copy()
-    _both(
-        other,
-        turned,
-        [
-            (graph.starts, graph.targets, graph.costs, states - after, states - first, at, *back)
-            for first, after in halves
-        ],
-    )
-    of = np.ascontiguousarray(classes.of_state[::-1])
-    _both(other, arranged, [(starts, *half, *back, of, count, width, *back, firsts[1]) for half in halves])
+
+    def made(starts: Array, links: tuple[Array, Array], of: Array, room: tuple[Array, Array]) -> Made:
+        firsts = np.empty(states * (count + 1), np.int64)
+        arranged(starts, *links, of, count, width, *room, firsts)
+        return firsts, *room
+
+    links = graph.targets, graph.costs
+    there = other.submit(made, graph.starts, links, classes.of_state, _room(len(graph.targets)))
+    starts = counted(graph.targets, states)
+    turning = _room(len(graph.targets))
+    turned(graph.starts, *links, starts[:-1].copy(), *turning)
+    back: Future[Made] = Future()
+    back.set_result(made(starts, turning, np.ascontiguousarray(classes.of_state[::-1]), turning))
     leaving, entered = (
         np.flatnonzero(np.diff(graph.starts)),
         states - 1 - np.flatnonzero(np.diff(starts))[::-1],
     )
     return (
-        SearchLinks(graph.starts, (firsts[0], *onto), width, cheapest, entered),
-        SearchLinks(starts, (firsts[1], *back), width, cheapest, states - 1 - leaving[::-1]),
+        SearchLinks(graph.starts, there, width, cheapest, entered),
+        SearchLinks(starts, back, width, cheapest, states - 1 - leaving[::-1]),
     )
-
-
-def _halves(starts: Array) -> list[tuple[int, int]]:
-    """Return the first state and the one after the last of either half of all transitions."""
-    middle = int(np.searchsorted(starts, starts[-1] // 2))
-    return [(0, middle), (middle, len(starts) - 1)]
-
-
-def _both(other: ThreadPoolExecutor, work: Callable[..., Any], parts: Sequence[tuple[Any, ...]]) -> None:
-    """Do two parts of a work at a time."""
-    second = other.submit(work, *parts[1])
-    work(*parts[0])
-    second.result()
 
 
 def _room(transitions: int) -> tuple[Array, Array]:

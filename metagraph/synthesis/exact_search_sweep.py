@@ -7,6 +7,7 @@ one is.
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -23,8 +24,9 @@ from metagraph.synthesis.states import SynthesisError
 
 Array = NDArray[Any]
 
-SPARE = 4  # steps of costs above those who jump, where few do, within which they land
-LOW = np.float32(0.25)  # steps of costs within which somebody is as cheap as the cheapest
+SPARE = 8  # steps of costs above those who jump, where few do, within which they land
+LOW = np.float32(0.5)  # steps of costs within which somebody is as cheap as the cheapest
+SORTED = 16  # frames after which those who are somewhere are put in order again
 DRAWN = 8  # looks for a cheap way to a state cost as much, each, as so many ways that are followed
 
 
@@ -42,7 +44,10 @@ class Foresight:
 class Sweep:
     """One sweep within a bound. cost `[2 F]`: of the cheapest way to where somebody is; alive: where that
     is, as the loops count it. through: what some way all through costs that was come upon, infinite without.
+    exact: the sweep as it was when it first left somebody out for others were cheaper; None before.
     """
+
+    exact: Sweep | None = None
 
     def __init__(
         self,
@@ -59,18 +64,14 @@ class Sweep:
         with what it costs to go on as far as it is foreseen.
         """
         self._problem, self._links, self._opposite, self._cancelled = problem, links, opposite, cancelled
-        self._foresight, self._slack, self._narrow = foresight, np.float32(slack), narrow
+        self._slack, self._narrow = np.float32(slack), narrow
         self._bound = np.float32(bound) * self._slack
         self._run = problem.run
         self._paid = PaidAlong(problem.charged, problem.first) if problem.charged is not None else None
         places = 2 * len(problem.first)
         self.cost, self._then = np.full((2, places), np.inf, np.float32)
         self._whole = np.full(places, np.inf, np.float32) if self._paid is not None else self.cost
-        self._ahead = np.zeros(places + 1, np.float32)
-        self._unknown = np.float32(0)
-        if foresight is not None:
-            self._unknown = np.nextafter(np.float32(foresight.within), np.float32(np.inf))
-            self._ahead[:] = self._unknown
+        self._foresee_by(foresight)
         self._alive, self._living, self._back = np.empty((3, places), np.int32)
         self._number = 0
         self._landed = np.full((self._run, places), np.inf, np.float32)
@@ -80,6 +81,38 @@ class Sweep:
         self.runs = np.zeros(places, np.int32)
         self._spare = np.float32(SPARE * links.width)
         self.through = np.float32(np.inf)
+        self._frame = 0  # that it has come to
+        self._last = -1  # frame that somebody was in a state at who was not on the way from a jump
+        self._ways: list[tuple[Array, Array]] = []
+
+    def _foresee_by(self, foresight: Foresight | None) -> None:
+        self._foresight, self._unknown = foresight, np.float32(0)
+        if foresight is not None:
+            self._unknown = np.nextafter(np.float32(foresight.within), np.float32(np.inf))
+        self._ahead = np.full(2 * len(self._problem.first) + 1, self._unknown)
+
+    def limit(self, bound: float) -> None:
+        """Follow no ways any more that cost more; may be called from another thread."""
+        self._bound = min(self._bound, np.float32(bound) * self._slack)
+
+    def within(self, bound: float, slack: float, foresight: Foresight | None) -> Sweep:
+        """Return a sweep that goes on from where this one is, leaving nobody out but by a bound."""
+        out = self._copied()
+        out._slack, out._narrow = np.float32(slack), 0
+        out._bound = np.float32(bound) * out._slack
+        out._foresee_by(foresight)
+        return out
+
+    def _copied(self) -> Sweep:
+        out = copy.copy(self)
+        for name, value in vars(self).items():
+            if isinstance(value, np.ndarray):
+                setattr(out, name, value.copy())
+        if self._paid is None:
+            out._whole = out.cost
+        out._ways, out._reached = [*self._ways], [*self._reached]
+        out._paid = self._paid.copied() if self._paid is not None else None
+        return out
 
     @property
     def alive(self) -> Array:
@@ -90,23 +123,24 @@ class Sweep:
         somebody is, and where the way there comes from. Raises SynthesisError where none comes as far, or
         when it was cancelled.
         """
-        last = -1  # frame that somebody was in a state at who was not on the way from a jump
-        self._begin()
         frames = len(self._problem.wanted)
-        ways = [(self.alive.copy(), self._back[:0])]
-        for t in range(1, frames):
+        if not self._frame:
+            self._begin()
+            self._ways, self._frame = [(self.alive.copy(), self._back[:0])], 1
+        for t in range(self._frame, frames):
+            self._frame = t
             if self._step(t):
-                last = t - 1
-            elif t - 1 - last >= self._run:  # nobody is on the way from a jump either
+                self._last = t - 1
+            elif t - 1 - self._last >= self._run:  # nobody is on the way from a jump either
                 break
-            ways.append((self.alive.copy(), self._back[self.alive]))
+            self._ways.append((self.alive.copy(), self._back[self.alive]))
         if not self._number:
-            raise SynthesisError(stuck(last + 1))
+            raise SynthesisError(stuck(self._last + 1))
         self._pay()
         if not self._number:  # runs that came along since they were looked at
             raise SynthesisError(stuck(frames - 1))
         self.cost = self._whole
-        return ways
+        return self._ways
 
     def backwards(self) -> Foresight:
         """Sweep as far as anybody comes. Raises SynthesisError when it was cancelled."""
@@ -187,12 +221,13 @@ class Sweep:
                     problem.upcoming,
                 )
         self._close(t)
-        self.alive.sort()  # what is near in memory is looked at together
+        if t % SORTED == 0:
+            self.alive.sort()  # what is near in memory is looked at together
         return some
 
     def _leap(self, t: int, place: int) -> None:
         """Jump to arrive at frame t."""
-        from metagraph.synthesis.exact_search_kernels import draw, forget, leap, weigh
+        from metagraph.synthesis.exact_search_kernels import draw, forget, leap, least_of, weigh
 
         problem, classes = self._problem, self._problem.classes
         landed, sources = self._landed[place], self._sources[place]
@@ -203,11 +238,10 @@ class Sweep:
         ahead = (problem.ahead[t], min(self._run, len(problem.ahead) - t), self._ahead)
         number = 0
         if work > DRAWN * len(self._opposite.leaving) * len(self._links.leaving) / max(low, 1):
-            met = self.alive >= len(problem.first)
-            lowest = [self._whole[self.alive[met == b]].min(initial=np.inf) for b in (False, True)]
+            lowest = least_of(self._whole, self.alive, classes.of_state, classes.count)
             number, through = draw(
                 self._whole,
-                np.array(lowest, np.float32),
+                lowest,
                 landed,
                 sources,
                 self._room,
@@ -250,6 +284,8 @@ class Sweep:
         """Return who jumps, and what nobody may cost more than by then."""
         if not 0 < self._narrow < self._number:
             return self.alive, reach
+        if self.exact is None:
+            self.exact = self._copied()
         costs = self._whole[self.alive]
         dear = np.partition(costs, self._narrow)[self._narrow]
         return self.alive[costs <= dear], min(reach, dear + self._spare)

@@ -7,6 +7,7 @@ along the take.
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
@@ -100,6 +101,12 @@ class PaidAlong:
         row = costs.row(0)
         if row is not None:
             self.now += row
+
+    def copied(self) -> PaidAlong:
+        """Return another one that is as far, and goes on by itself."""
+        out = copy.copy(self)
+        out.before = self.before.copy()  # the other array is made anew for each frame
+        return out
 
     def go_on(self, t: int) -> None:
         """Come to frame t. before: what was paid up to the frame before t by who is in a state at t."""

@@ -4,7 +4,8 @@ never finds a cheaper.
 
 from __future__ import annotations
 
-from contextlib import closing
+import threading
+from contextlib import closing, suppress
 from functools import cache
 
 import numpy as np
@@ -251,6 +252,54 @@ def test_the_best_path_is_the_same_whatever_bound_it_is_searched_within() -> Non
             with pytest.raises(SynthesisError):
                 search.within(path.cost * 0.99)
     assert found >= 4
+
+
+@pytest.mark.parametrize("charged", [False, True])
+def test_the_best_path_is_the_same_wherever_the_first_guess_leaves_somebody_out(
+    monkeypatch: pytest.MonkeyPatch, charged: bool
+) -> None:
+    module = "metagraph.synthesis.exact_search"
+    found = went_on = 0
+    for seed in range(8):
+        chance = np.random.default_rng(100 + seed)
+        pairs = {(int(a), int(b)) for a, b in chance.integers(0, 300, (6000, 2)) if b != a + 1}
+        graph = graph_of(300, [0, 150, 300], {e: float(chance.integers(1, 20)) / 8 for e in pairs})
+        sound = HeardStates(chance.choice([IDLE, CLAUSE], 300).astype(np.uint8), chance.random(300) < 0.3)
+        want = WantedSegment(
+            chance.choice([IDLE, CLAUSE, ALL], 25).astype(np.uint8), np.repeat([-1, 0, -1, 1, -1], 5)
+        )
+        rows = chance.integers(0, 4, (3, 300)).astype(np.float32) / 16
+        costs = together([FrameCost("a", np.arange(25, dtype=np.int32) // 9, rows)]) if charged else None
+        paths = []
+        for narrow, drawn, ordered in ((10**9, 8, 1), (2, 8, 16), (40, 0, 3), (90, 10**9, 10**9)):
+            monkeypatch.setattr(f"{module}.NARROW", narrow)
+            monkeypatch.setattr(f"{module}_sweep.DRAWN", drawn)
+            monkeypatch.setattr(f"{module}_sweep.SORTED", ordered)
+            run = 1 + seed % 3
+            with closing(ExactSearch(graph, sound, want, run, costs)) as search:
+                search.guessed()
+                went_on += search._exact is not None
+                with suppress(SynthesisError):
+                    paths += [search.within(bound) for bound in (20.0, 40.0)]
+            with suppress(SynthesisError):
+                paths.append(best(graph, sound, want, run=run, charged=costs))
+        found += len(paths) == 12
+        assert len(paths) in (0, 12)
+        for path in paths:
+            check(graph, sound, want, path, 1 + seed % 3, costs)
+            assert path.cost == paths[0].cost
+            assert charged or path.states.tolist() == paths[0].states.tolist()
+    assert found >= 4 and went_on > 10
+
+
+def test_a_search_that_is_given_up_after_its_first_guess_ends_its_threads() -> None:
+    graph = graph_of(60, [0, 60], {(n, (7 * n) % 60): 0.5 for n in range(1, 60)})
+    sound = HeardStates(np.full(60, CLAUSE, np.uint8), np.zeros(60, bool))
+    want = WantedSegment(np.full(2000, CLAUSE, np.uint8), np.full(2000, -1, np.int32))
+    before = threading.active_count()
+    with closing(ExactSearch(graph, sound, want)) as search:
+        assert np.isfinite(search.guessed())
+    assert threading.active_count() == before
 
 
 @pytest.mark.parametrize("charged", [False, True])
