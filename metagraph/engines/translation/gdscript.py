@@ -189,7 +189,8 @@ class GDScript(Printer):
 
     def held(self, value: x.Expression) -> Document:
         """A value, in brackets where it must be broken over lines and has none of its own."""
-        return self.within(value) if isinstance(value, x.Logic | x.Compared) else self.plain(value)
+        broken = isinstance(value, x.Logic | x.Compared | x.Binary)
+        return self.within(value) if broken else self.plain(value)
 
     def body(self, body: tuple[x.Statement, ...]) -> None:
         self.block(body)

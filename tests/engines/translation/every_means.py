@@ -223,4 +223,15 @@ def selves() -> str:
     return f"{_yes(marks[0] is one)}{_yes(one is alike)}{_yes(one is not alike)} {len(marks)} {tally.count} {places}"
 
 
-MEANS = (waves, selves, sums, texts, lists, queues, maps, missing, records, loops, searches, chains)
+def products(factors: Sequence[float] = (0.5, 1.5), neutral: bool = False) -> str:
+    """Products that are longer than a line is in any language."""
+    weights = {
+        f"{n:.1f}": (n + 1.0)
+        / max(abs(n - 2.0), 1.0)
+        * (1.0 if neutral else max(min(n * 3.0, 10.0 - n), n / 7.0 + 1.5))
+        for n in factors
+    }
+    return " ".join([f"{name} {weight:.3f}" for name, weight in weights.items()])
+
+
+MEANS = (waves, products, selves, sums, texts, lists, queues, maps, missing, records, loops, searches, chains)

@@ -278,7 +278,7 @@ static func timed_seconds(timing, duration):
 	if timing.marks.size() > 0:
 		var mark = timing.marks[-1]
 		last = Util.most(last, mark.at + (0.0 if mark.viseme == "sil" else SHAPE))
-	return int(ceil((last + Mouth.LATE if duration == null else Util.most(duration, last)) / Mouth.STEP - 1e-06)) * Mouth.STEP
+	return (int(ceil((last + Mouth.LATE if duration == null else Util.most(duration, last)) / Mouth.STEP - 1e-06)) * Mouth.STEP)
 
 
 # Return the mouth's pieces and the syllables of a line's words and shapes: shapes are the mouth's where any are told, words those
