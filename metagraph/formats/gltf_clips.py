@@ -74,7 +74,7 @@ def _planned(
     accessor, as they were read.
     """
     animation = gltf.json.animations[number]
-    where = f"animation {number} '{animation.name}'"
+    where = told("animation {a} '{name}'", a=number, name=animation.name)
     check(gltf, table, number, where)
     first, after = channels.of_take(number)
     morphs, notes = morph_channels(table, number), left_out(gltf, table, number)

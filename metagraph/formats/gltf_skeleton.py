@@ -294,7 +294,7 @@ def _members(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int]
     ):
         if node >= len(nodes) or output < 0:
             a = int(np.searchsorted(table.begins, n, "right")) - 1
-            where = f"animation {a} '{doc.animations[a].name}'"
+            where = told("animation {a} '{name}'", a=a, name=doc.animations[a].name)
             if node >= len(nodes):
                 gltf.fail(told("its target node {node} does not exist", node=node), where)
             gltf.item(doc.animations[a].samplers, int(table.samplers[n]), "sampler", where)
