@@ -39,6 +39,7 @@ from metagraph.engines.export_document import to_document  # noqa: E402
 from metagraph.formats.bvh import read_bvh  # noqa: E402
 from metagraph.formats.gltf import read_character, read_gltf_clips, write_glb  # noqa: E402
 from metagraph.formats.store import open_project  # noqa: E402
+from metagraph.playback import loops  # noqa: E402
 from metagraph.playback.crowd import Crowd  # noqa: E402
 from metagraph.playback.planner import make_plan  # noqa: E402
 from metagraph.playback.player import pose_at  # noqa: E402
@@ -159,7 +160,8 @@ def playing(count: int) -> Iterator[Row]:
 
     posed()
     compiled()
-    words = ("pose of one character, `pose_at` and globals", holds)
+    loops.load()  # as the window does
+    words = ("pose of one character, `pose_at` and globals, compiled loops", holds)
     yield Row(*words, "plain NumPy", "the same", posed, plainly, poses)
     yield Row(*words, "`Crowd` of one", "the same", posed, compiled, poses)
 
