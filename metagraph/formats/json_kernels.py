@@ -20,6 +20,9 @@ NUMBER, TEXT, TRUTH, OBJECT = range(4)
 NEEDED = 4  # added for a field that must be there
 DIGITS = 15  # of a number: more of them are not read
 
+# Text is told by a polynomial of its bytes: of a factor below 128 names that differ in two letters have one.
+FACTOR = 0x9E3779B1
+
 _ENDS = np.isin(np.arange(256), [ord(c) for c in '"{}[],'])  # bytes that a value may begin or end with
 
 _exact = compiler(nogil=True, error_model="numpy")
@@ -38,12 +41,12 @@ def _text(data: Array, at: int) -> tuple[int, int]:
     """Return the digest of the text that begins with the quote at `at`, -1 where it is not plain ASCII, and
     where it ends.
     """
-    digest, bits, at = 0, 0, at + 1
+    digest, bits, at = 1, 0, at + 1
     while data[at] != 34:
         if data[at] == 92:
             bits, at = 128, at + 1
         bits |= data[at]
-        digest = digest * 31 + data[at]  # of which only the lowest bits are told: others may run over
+        digest = digest * FACTOR + data[at]  # of which only the lowest bits are told: others may run over
         at += 1
     return (digest & 0xFFFFFFFFFFFF if bits < 128 else -1), at + 1
 

@@ -251,6 +251,37 @@ def test_columns_are_the_same_from_text_and_from_values(
     assert one.widths[there].tolist() == other.widths[there].tolist()
 
 
+FIELDS = sorted(
+    {
+        *gltf_columns._ACCESSOR, *gltf_columns._VIEW, *gltf_columns._CHANNEL, *gltf_columns._TARGET,
+        *gltf_columns._SAMPLER, *gltf_columns.WIDTHS, *gltf_columns.PATHS, *gltf_columns.MODES,
+    }
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FIELDS)
+def test_no_other_word_is_taken_for_one_that_is_known(
+    small: tuple[dict[str, Any], bytes], loaded: Callable[[bool], None], name: str
+) -> None:
+    """Words are told by a digest: those that differ in one letter or two neighbours, least of all."""
+    known = gltf_columns._digest(name)
+    for at in range(len(name) - 1):
+        for first in range(33, 127):
+            others = (name[:at] + chr(first) + chr(second) + name[at + 2 :] for second in range(33, 127))
+            assert not [other for other in others if other != name and gltf_columns._digest(other) == known]
+    for other in ("~" + name[1:], name[:-1], name + " ", "\0" + name, name + "\0"):
+        text = json.dumps(small[0]).replace(f'"{name}"', f'"{other}"').encode()
+        found = []
+        for on in (True, False):
+            loaded(on)
+            try:
+                document = gltf_columns.decoded(text)
+                found.append([list(document.accessors), list(document.buffer_views)])
+            except msgspec.MsgspecError as error:
+                found.append([str(error)])
+        assert found[0] == found[1], other
+
+
 def test_channels_are_the_same_from_text_and_from_values(small: tuple[dict[str, Any], bytes]) -> None:
     text = json.dumps(small[0]).encode()
     gltf_loops.TEXT.now = json_kernels
