@@ -42,6 +42,7 @@ NORMALS = Packing(filter="OCTAHEDRAL", amount=8)
 AS_THEY_ARE, INDICES = Packing(), Packing("INDICES")
 
 
+TOGETHER = 64  # clips whose keys are chosen together: of a large set not all are in memory twice
 SCENE = "Character"  # what the scene of a GLB that stands in a pose is called
 
 
@@ -111,12 +112,15 @@ def write_glb(
         roots = [*roots, mesh_node]
     document["scenes"] = [{"nodes": roots} if stand is None else {"name": SCENE, "nodes": roots}]
     posed = _pose_still_nodes(nodes, clips, tolerance) if pose_nodes and clips else frozenset()
-    turns = kept_frames([clip.rotations.astype(np.float64) for clip in clips], tolerance, True)
-    moves = kept_frames([clip.translations.astype(np.float64) for clip in clips], tolerance, False)
-    animations = [
-        _animation(body, nodes, clip, kept, quantize, tolerance, morphs, mesh_node, posed, moved)
-        for clip, *kept in zip(clips, turns, moves, strict=True)
-    ]
+    animations = []
+    for first in range(0, len(clips), TOGETHER):
+        some = clips[first : first + TOGETHER]
+        turns = kept_frames([clip.rotations for clip in some], tolerance, True)
+        moves = kept_frames([clip.translations for clip in some], tolerance, False)
+        animations += [
+            _animation(body, nodes, clip, kept, quantize, tolerance, morphs, mesh_node, posed, moved)
+            for clip, *kept in zip(some, turns, moves, strict=True)
+        ]
     if animations:
         document["animations"] = animations
     if extensions:

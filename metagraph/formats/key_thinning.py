@@ -24,7 +24,7 @@ _MOST = 1000  # tracks of clips that are remembered, some 10 kB each
 
 def kept_frames(many: Sequence[Array], tolerance: float, turning: bool) -> list[list[Array]]:
     """Return for each of `many`, values of tracks `[F, C, n]`, the frames to keep of each track, ascending:
-    what lies between them, on the straight way, is within the tolerance; the first alone where nothing
+    what lies between them, on the straight way, is within the tolerance, reckoned in 64 bits; the first alone where nothing
     moves. turning: values are quaternions, and the way is `rotation.slerp`'s. Found frames are remembered.
     """
     keys = [
@@ -62,6 +62,7 @@ def _thinned(many: Sequence[Array], tolerance: float, turning: bool) -> list[lis
     Every track starts with its ends and is split at its worst frame until none is too far off, all tracks at
     once; a stretch that is near enough is not looked at again.
     """
+    many = [v.astype(np.float64) for v in many]
     still = [np.abs(v - v[:1]).max((0, 2)) <= tolerance for v in many]
     begins = np.cumsum([0, *(v.shape[0] * v.shape[1] for v in many)])
     data = np.concatenate([v.transpose(1, 0, 2).reshape(-1, v.shape[2]) for v in many])
