@@ -24,8 +24,9 @@ _MOST = 1000  # tracks of clips that are remembered, some 10 kB each
 
 def kept_frames(many: Sequence[Array], tolerance: float, turning: bool) -> list[list[Array]]:
     """Return for each of `many`, values of tracks `[F, C, n]`, the frames to keep of each track, ascending:
-    what lies between them, on the straight way, is within the tolerance, reckoned in 64 bits; the first alone where nothing
-    moves. turning: values are quaternions, and the way is `rotation.slerp`'s. Found frames are remembered.
+    what lies between them, on the straight way, is within the tolerance, reckoned in 64 bits; the first alone
+    where nothing moves. turning: values are quaternions, and the way is `rotation.slerp`'s. Found frames are
+    remembered.
     """
     keys = [
         (hashlib.blake2b(np.ascontiguousarray(v).data, digest_size=16).digest(), v.shape, tolerance, turning)
