@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Collection, Iterator
 from dataclasses import replace
 from functools import cache
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ import pytest
 
 import metagraph
 from app import translation
+from app.features.labelling import review_words
 from app.look.plural import many
 from app.translation import tr, tr_error, tr_told
 from metagraph.engines.targets import registry
@@ -216,6 +218,10 @@ def test_why_clips_are_taken_for_what_they_are_is_said_in_the_language(english: 
     assert not odd
     translation.choose("de")
     assert all(tr_told(one) != one for one in said)
+    for p in every:  # and so it is shown
+        shown = review_words.timing(p, 9.0)
+        beliefs = [p.details[name] for name in ("stroke", "likelihood") if name in p.details]
+        assert beliefs and all(escape(tr_told(belief.reason)) in shown for belief in beliefs)
 
 
 def test_what_came_of_recordings_is_said_in_the_language(english: None, tmp_path: Path) -> None:
