@@ -22,6 +22,7 @@ from metagraph.graph.model import LAYERS, Layer, Life, Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.speech import pitch, sound
+from sample_clips.make.numbered_ids import numbered_ids as counting_ids
 from tests import kernels
 from tests.browsing import browse
 from tests.once import heard_once, read_once
@@ -222,6 +223,13 @@ def qapp() -> object:
     return prepare()
 
 
+@pytest.fixture(scope="module")
+def numbered_ids() -> Iterator[None]:
+    """What tests of a module make has the ids c1, c2, s3 and so on, in the order in which it is made."""
+    with counting_ids():
+        yield
+
+
 @pytest.fixture(scope="session")
 def shared_data() -> Path:
     """The folder of real clips made by others; tests that need it skip where it is not."""
@@ -300,6 +308,7 @@ class Toy:
         translations[:, 0, 0] += 0.03 * swing * np.sin(np.pi * x) ** 2
         return Clip(name, self.skeleton, fps, rotations, translations)
 
+    @counting_ids()
     def project(self, layer: Layer = "arms", loop: float = 2.0) -> Project:
         """Stances rest, up, far on one layer, joined rest <-> up <-> far; gestures, fidgets and transitions
         named after themselves.

@@ -362,9 +362,11 @@ EDITS: tuple[Callable[[Any, Project], Project], ...] = (
 
 
 @st.composite
-def histories(draw: Any, most: int = 12) -> list[Project]:
-    """Every state of a project that somebody edits, with some steps taken back and done again."""
-    states = [Project(draw(names))]
+def histories(draw: Any, most: int = 12, begin: Project | None = None) -> list[Project]:
+    """Every state of a project that somebody edits, with some steps taken back and done again. begin: the
+    first one; None: an empty project.
+    """
+    states = [begin if begin is not None else Project(draw(names))]
     for _ in range(draw(st.integers(0, most))):
         if len(states) > 1 and draw(st.integers(0, 5)) == 0:
             states.append(draw(st.sampled_from(states)))

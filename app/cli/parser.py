@@ -46,6 +46,11 @@ COMMANDS: dict[str, tuple[str, bool, str]] = {
     "import": ("import_command", True, "add clips to a project, made if it is not there"),
     "label": ("label_command", False, "label the clips of a folder by their names and motion, and say why"),
     "check": ("check_command", True, "list the problems of a project"),
+    "merge": (
+        "merge_command",
+        False,
+        "merge what two people did to copies of a project; Git's merge driver",
+    ),
     "contacts": (
         "contacts_command",
         True,

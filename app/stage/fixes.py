@@ -1,4 +1,4 @@
-"""What mends a problem with one press: other times, another end, or ways by blending."""
+"""What mends a problem with one press: other times, another end, another clip, or ways by blending."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from app.translation import tr
 from metagraph.graph import edits
-from metagraph.graph.model import Project
+from metagraph.graph.model import Action, Project
 from metagraph.graph.problem import Problem
 from metagraph.records import dataclass
 
@@ -19,7 +19,7 @@ BRIDGE = tr("Bridge by blending")
 class Fix:
     """One press that mends a problem. words: on the button. action: whose fields change, as
     `edits.update_actions` takes them, or whose end. stance: that is led to and from by blending. tip: what
-    comes of it.
+    comes of it. instead: another way, offered in the menu of the problem's row.
     """
 
     words: str
@@ -28,6 +28,7 @@ class Fix:
     end: str | None = None  # the stance a transition should end in
     stance: str | None = None
     tip: str = tr("One step that can be undone")
+    instead: Fix | None = None
 
     def __call__(self, project: Project) -> Project:
         """Return the project mended; as it is where what was to be mended went meanwhile."""
@@ -40,6 +41,34 @@ class Fix:
         if self.end is not None:
             return edits.set_ends(project, [self.action], self.end)
         return edits.update_actions(project, [self.action], **self.changes)
+
+
+def clips_for(project: Project, problems: Iterable[Problem]) -> dict[Problem, Fix]:
+    """Return what gives actions back the clips they were made of, where those are in the project; else what
+    keeps the clips they have.
+    """
+    out: dict[Problem, Fix] = {}
+    for problem in problems:
+        action = project.action(problem.action or "") if problem.code == "swapped-clip" else None
+        if action is None:
+            continue
+        keep = Fix(
+            tr("Keep '{clip}'", clip=project.clips[action.clip].name), action.id, {"clip": action.clip}
+        )
+        made_of = original_clip(project, action)
+        if made_of is None:
+            out[problem] = keep
+            continue
+        words = tr("Play '{clip}'", clip=project.clips[made_of].name)
+        out[problem] = Fix(words, action.id, {"clip": made_of}, instead=keep)
+    return out
+
+
+def original_clip(project: Project, action: Action) -> str | None:
+    """Return the id of the clip that an action says it was made of; None where that is not in the project."""
+    of = [e for e in project.clips.values() if e.name == action.clip_name]
+    same = [e for e in of if action.clip_sha256 and e.digest.startswith(action.clip_sha256)]
+    return next((e.id for e in (*same, *of)), None)
 
 
 def bridges_for(project: Project, problems: Iterable[Problem]) -> dict[Problem, Fix]:

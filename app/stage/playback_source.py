@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from metagraph.graph.edits import EditError, place
+from metagraph.graph.edits import EditError, added_actions, place
 from metagraph.graph.face_curves import worn
 from metagraph.graph.model import Action, Layer, Project
 from metagraph.graph.requests import AnyRequest
@@ -224,7 +224,7 @@ def in_context(
             scratch = place(project, [ident], layer, "gesture", stances.get(layer))
         except EditError:
             return alone(project, ident)
-        action = scratch.action(f"a{project.next_id}")
+        action = scratch.action(*added_actions(project, scratch))
     if action is None:
         return alone(project, ident)
     begin = {**stances, action.layer: action.stance}

@@ -9,7 +9,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.compatibility_state import Compatibility, merged
-from app.stage.fixes import Fix, bridges_for
+from app.stage.fixes import Fix, bridges_for, clips_for
 from app.stage.session import Session
 from app.translation import tr_told
 from metagraph.graph.check import check
@@ -61,7 +61,7 @@ class ProblemWatch(QObject):
 
         def work(_: object) -> Checked:
             problems = check(project)
-            return problems, bridges_for(project, problems)
+            return problems, {**bridges_for(project, problems), **clips_for(project, problems)}
 
         self.jobs.start("check", work, self._checked, lambda e: self._checked(([], {})), quick=True)
 

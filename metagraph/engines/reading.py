@@ -16,7 +16,7 @@ from metagraph.engines.export_rig import LIFELESS, read_rig, read_voices
 from metagraph.engines.export_weight import read_weight
 from metagraph.errors import FileError
 from metagraph.files import guarded, read_file
-from metagraph.formats.data import above, markov_from, skeleton_from
+from metagraph.formats.data import markov_from, skeleton_from
 from metagraph.formats.fields import DataError
 from metagraph.graph.face import CHANNELS
 from metagraph.graph.model import (
@@ -148,7 +148,6 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         lines=dict(document.lines),
         performances=dict(document.performances),
         voices=read_voices(document.voices),
-        next_id=above(*clips, *(i for g in graphs.values() for i in (*g.stances, *g.actions))),
     )
 
 

@@ -19,7 +19,14 @@ from msgspec import UNSET, Meta, Struct, UnsetType
 from metagraph.budgets import TEXT_FILE
 from metagraph.errors import FileError
 from metagraph.files import read_file
-from metagraph.graph.edits import EditError, add_stance, move_actions, place, update_actions
+from metagraph.graph.edits import (
+    EditError,
+    add_stance,
+    added_actions,
+    move_actions,
+    place,
+    update_actions,
+)
 from metagraph.graph.model import Kind, Layer, Limb, Project
 from metagraph.wording import told
 
@@ -117,9 +124,10 @@ def _applied(project: Project, row: LabelRow, fresh: Mapping[str, str]) -> Proje
     if known is None:
         alike = project.graphs[layer].of(stance, kind)
         known = next((a for a in alike if a.name == (row.name or row.clip)), None)
-    ident = known.id if known is not None else f"a{project.next_id}"
+    ident = known.id if known is not None else ""
     if known is None:
-        project = place(project, [clip], layer, kind, stance, end)
+        before, project = project, place(project, [clip], layer, kind, stance, end)
+        ident = added_actions(before, project)[0]
     elif (layer, kind, stance, end) != (known.layer, known.kind, known.stance, known.end_stance):
         project = move_actions(project, [ident], kind, stance, end)
     return update_actions(project, [ident], clip=clip, **_fields(row))

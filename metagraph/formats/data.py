@@ -15,6 +15,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
+from metagraph.formats.clip_identity import without_clip_identity
 from metagraph.formats.contact_data import contacts_data, contacts_from
 from metagraph.formats.fields import (
     Data,
@@ -67,7 +68,7 @@ from metagraph.motion.joint_map import JointMap
 from metagraph.motion.retime import LONGEST, MOST, SPEEDS, Hold, Retime
 from metagraph.motion.skeleton import Skeleton
 
-FORMAT = 1  # of the project file; older ones are upgraded when read
+FORMAT = 2  # of the project file; older ones are upgraded when read
 
 
 def action_data(action: Action) -> Data:
@@ -147,7 +148,6 @@ def to_data(project: Project) -> Data:
         "character": project.character,
         **({"hidden": list(project.hidden)} if project.hidden else {}),
         **({"language": project.language} if project.language != AUTO else {}),
-        "next_id": project.next_id,
         "base": sparse(project.base),
         "settings": sparse(project.settings),
         "roles": dict(sorted(project.roles.items())),
@@ -243,7 +243,8 @@ _CLIP_FIELDS = ({f.name for f in fields(ClipEntry)} | {"sha256", "speed", "holds
     "digest",
     "retime",
 }
-_PROJECT_FIELDS = ({f.name for f in fields(Project)} | {"metagraph", "layers"}) - {
+# next_id: a counter that files of format 1 and their journals have; ids need none any more.
+_PROJECT_FIELDS = ({f.name for f in fields(Project)} | {"metagraph", "layers", "next_id"}) - {
     "graphs",
     "voices",
     "contact_rig",
@@ -334,7 +335,9 @@ def skeleton_from(joints: list[Any], where: str = "skeleton") -> Skeleton | None
         raise DataError(where, str(error)) from None
 
 
-def _graph_from(layer: Layer, data: Any, stance_ids: set[str], action_ids: set[str]) -> MetaGraph:
+def _graph_from(
+    layer: Layer, data: Any, clips: Mapping[str, ClipEntry], stance_ids: set[str], action_ids: set[str]
+) -> MetaGraph:
     where = f"layers.{layer}"
     start = get(data, "start", str, where, None)
     known(data, ("start", "weights", "stances", "actions"), where)
@@ -343,7 +346,7 @@ def _graph_from(layer: Layer, data: Any, stance_ids: set[str], action_ids: set[s
         known(item, ("id", "name"), place)
         stances[item["id"]] = Stance(item["id"], layer, get(item, "name", str, place))
     actions = {
-        item["id"]: action_from(item, layer, place)
+        item["id"]: action_from(without_clip_identity(item, clips), layer, place)
         for place, item in items(data, "actions", where, action_ids)
     }
     weights = get(data, "weights", dict, where, {})
@@ -369,7 +372,7 @@ def from_data(data: Any, notes: list[str] | None = None) -> Project:
     stance_ids: set[str] = set()
     action_ids: set[str] = set()
     graphs = {
-        layer: _graph_from(layer, get(layers, layer, dict, "layers", {}), stance_ids, action_ids)
+        layer: _graph_from(layer, get(layers, layer, dict, "layers", {}), clips, stance_ids, action_ids)
         for layer in LAYERS
     }
     machines = get(data, "manual", dict, "", {})
@@ -408,7 +411,6 @@ def from_data(data: Any, notes: list[str] | None = None) -> Project:
         character=get(data, "character", str, "", None),
         hidden=texts(data, "hidden"),
         language=get(data, "language", str, "", AUTO),
-        next_id=max(get(data, "next_id", int, "", 1), above(*clips, *stance_ids, *action_ids, *manual_ids)),
     )
 
 
@@ -434,12 +436,6 @@ def _left_out(error: DataError) -> str:
     return (
         f"{error.where} {error}; that joint map is left out. Import its clips again to map their joints anew."
     )
-
-
-def above(*idents: str) -> int:
-    """Return a number above every id's, so that an id is never made twice, whoever made it."""
-    numbers = (i[1:] for i in idents)
-    return 1 + max((int(n) for n in numbers if n.isascii() and n.isdigit() and len(n) < 15), default=0)
 
 
 def markov_from(layer: Layer, data: Any, where: str) -> Markov:

@@ -66,7 +66,7 @@ def _next(project: Project, replay: Replay, record: Data) -> Project:
     part: Data = {"metagraph": FORMAT}
     for key in record:
         plain = key.removesuffix("_order").removesuffix("_after")
-        if key not in ("layers", "manual", *ABOUT) and plain not in KEYED:
+        if key not in ("layers", "manual", "next_id", *ABOUT) and plain not in KEYED:
             part[key] = record[key]
     if clips := [c for c in record.get("clips", {}).values() if c is not None]:
         part["clips"] = clips
@@ -77,7 +77,6 @@ def _next(project: Project, replay: Replay, record: Data) -> Project:
         part["manual"] = data["manual"]
     read = from_data(part)
     values: dict[str, Any] = {k: getattr(read, k) for k in part if k not in ("metagraph", "layers", "clips")}
-    values.pop("next_id", None)
     if "manual" in record:
         values["manual"] = read.manual
     if "clips" in record or "clips_order" in record or "clips_after" in record:
@@ -87,8 +86,6 @@ def _next(project: Project, replay: Replay, record: Data) -> Project:
             layer: _layer(graph, read.graphs[layer], replay.layers[layer]) if layer in touched else graph
             for layer, graph in project.graphs.items()
         }
-    if "next_id" in record:
-        values["next_id"] = record["next_id"]
     return replace(project, **values)
 
 

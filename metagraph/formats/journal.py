@@ -70,7 +70,7 @@ _latest: list[tuple[ref[Project], ref[Project], Data] | None] = [None]
 
 def _differing(before: Project, after: Project) -> Data:
     out: Data = {}
-    for key in ("name", "character", "next_id", "base", "settings", "roles", "parts"):
+    for key in ("name", "character", "base", "settings", "roles", "parts"):
         if getattr(before, key) is not getattr(after, key) and getattr(before, key) != getattr(after, key):
             out[key] = to_data(_bare(after))[key]
     if before.hidden != after.hidden:
@@ -131,7 +131,6 @@ def _bare(project: Project) -> Project:
     return Project(
         name=project.name,
         character=project.character,
-        next_id=project.next_id,
         base=project.base,
         settings=project.settings,
         roles=project.roles,

@@ -147,8 +147,8 @@ def _linked(
     idents: list[str] = []
     for pair in pairs:
         if pair not in there:
-            there[pair] = f"l{project.next_id}"
             project = add_link(project, layer, *pair)
+            there[pair] = [*machine(project, layer).links][-1]
             new += 1
         idents.append(there[pair])
     project = update_links(project, idents, **settings)
@@ -179,8 +179,8 @@ def _nodes(project: Project, layer: Layer, row: Row, column: str) -> tuple[Proje
         return project, list(out)
     same = next((a.id for a in found.aliases.values() if a.states == states), None)
     if same is None:
-        same = f"g{project.next_id}"
         project = manual_groups.add_alias(project, layer, states)
+        same = [*machine(project, layer).aliases][-1]
         if len(words) == 1 and words[0].strip("*?_- "):
             project = manual_groups.update_aliases(project, [same], name=words[0].strip("*?_- "))
     return project, [same, *(i for i in out if i not in states)]

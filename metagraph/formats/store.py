@@ -20,6 +20,7 @@ from metagraph.budgets import TEXT_FILE
 from metagraph.errors import FileError, shown
 from metagraph.files import is_file, is_text, read_file, unforeseen
 from metagraph.formats.atomic import write_atomically
+from metagraph.formats.clip_identity import with_clip_identity
 from metagraph.formats.clips import digest
 from metagraph.formats.data import FORMAT, from_data, to_data
 from metagraph.formats.fbx_readers import batch
@@ -40,10 +41,13 @@ from metagraph.wording import told
 
 SUFFIX = ".metagraph.yaml"
 SEARCHED = 20_000  # files looked at when a clip has moved
+_CONFLICT = re.compile(r"^<{7} ", re.MULTILINE)
 COMPARED = 2 << 30  # bytes of them that are compared by content
 
 # Upgrades of the plain data, from the version they are listed under to the next.
-UPGRADES: dict[int, Callable[[Data], Data]] = {}
+UPGRADES: dict[int, Callable[[Data], Data]] = {
+    1: lambda data: {key: value for key, value in data.items() if key != "next_id"},
+}
 
 
 @dataclass(frozen=True)
@@ -69,6 +73,13 @@ def from_text(text: str, path: Path, notes: list[str] | None = None) -> Project:
     try:
         data, lines = read(text)
     except TextError as error:
+        if conflict := _CONFLICT.search(text):
+            raise FileError(
+                path,
+                told("holds two versions that Git could not merge"),
+                told("line {line}", line=text.count("\n", 0, conflict.start()) + 1),
+                told("Take the three versions from Git and run 'metagraph merge' on them."),
+            ) from None
         line = f"line {error.line}" if error.line else "its text"
         raise FileError(
             path,
@@ -130,7 +141,7 @@ def save_project(project: Project, path: str | Path, was_at: Path | None = None)
 def encoded(project: Project, path: Path) -> bytes:
     """Return what a project's file at `path` holds; it has been read back. Raises FileError."""
     try:
-        text = to_text(to_data(project))
+        text = to_text(with_clip_identity(to_data(project)))
     except DataError as error:
         raise FileError(
             path, told("cannot be saved: {error}", error=error), error.where, told("Correct that value.")

@@ -227,6 +227,13 @@ def _action(project: Project, graph: MetaGraph, action: Action) -> Iterator[Prob
             told("Remove it, or import the clip again."),
         )
         return
+    if action.clip_name:
+        yield at(
+            "error",
+            "swapped-clip",
+            told("was made of clip '{was}', and now plays '{name}'", was=action.clip_name, name=entry.name),
+            told("Choose in Problems which of the two it plays: by the button, or in the row's menu."),
+        )
     end = entry.duration if timing.end is None else timing.end
     tolerance = 0.5 / entry.fps
     latest = entry.duration + tolerance

@@ -14,6 +14,7 @@ from typing import Any
 
 import msgspec
 
+from metagraph.graph import ids
 from metagraph.graph.conversation import (
     AUTO,
     EVERYBODY,
@@ -43,14 +44,12 @@ Place = tuple[int, int]  # side, and the place among its segments
 
 def add_conversation(project: Project, conversation: Conversation) -> tuple[Project, str]:
     """Keep a conversation under a name of its own; return the project and the conversation's id."""
-    ident = f"v{project.next_id}"
     taken = {c.name for c in project.conversations.values()}
     named = msgspec.structs.replace(
         conversation, name=free_name(_clean(conversation.name) or "Conversation", taken)
     )
-    return replace(
-        project, conversations={**project.conversations, ident: named}, next_id=project.next_id + 1
-    ), ident
+    ident = ids.new_id(project, "v", msgspec.json.encode(named))
+    return replace(project, conversations={**project.conversations, ident: named}), ident
 
 
 def remove_conversation(project: Project, ident: str) -> Project:

@@ -38,7 +38,7 @@ _REST = (
     "joint_maps",
     "skeleton",
 )
-_UNSEEN = ("id", "digest")  # of no use to a reader
+_UNSEEN = ("id", "digest", "clip_name", "clip_sha256")  # of no use to a reader
 
 
 def differences(before: Project, after: Project) -> list[str]:

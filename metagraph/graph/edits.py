@@ -12,6 +12,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from metagraph.graph import ids
 from metagraph.graph.clip_source import with_source
 from metagraph.graph.face_takes import FACE_TAKE, face_joints
 from metagraph.graph.manual import without_clips
@@ -70,16 +71,18 @@ def add_clips(project: Project, loaded: Iterable[tuple[str, int, str, Clip]]) ->
     known: dict[tuple[str, int], list[str]] = {}
     for entry in clips.values():
         known.setdefault((entry.path, entry.take), []).append(entry.id)
-    skeleton, next_id = project.skeleton, project.next_id
+    skeleton = project.skeleton
     for path, take, digest, clip in loaded:
         if skeleton is None:
             skeleton = clip.skeleton
-        there = [clips[i] for i in known.get((path, take), ())]
-        for entry in there or [ClipEntry(f"c{next_id}", clip.name, path, take)]:
+        there = known.get((path, take), [])
+        if not there:
+            there = [ids.new_id(project, "c", path, take, more=clips)]
+            clips[there[0]] = ClipEntry(there[0], clip.name, path, take)
+        for entry in [clips[i] for i in there]:
             entry = replace(entry, digest=digest, brought_from=clip.brought_from)
             clips[entry.id] = with_source(entry, clip)
-        next_id += 0 if there else 1
-    return replace(project, clips=clips, skeleton=skeleton, next_id=next_id)
+    return replace(project, clips=clips, skeleton=skeleton)
 
 
 def with_motions(project: Project, motions: Mapping[str, Clip]) -> Project:
@@ -118,9 +121,9 @@ def add_stance(project: Project, layer: Layer, name: str, clips: Sequence[str] =
     """Make a stance, with `clips` as its loops. The first stance of a layer is where a performance starts."""
     graph = project.graphs[layer]
     name = free_name(_clean(name), {s.name for s in graph.stances.values()})
-    stance = Stance(f"s{project.next_id}", layer, name)
+    stance = Stance(ids.new_id(project, "s", layer, name), layer, name)
     graph = graph.but(stances={**graph.stances, stance.id: stance}, start=graph.start or stance.id)
-    project = project.with_graph(graph, next_id=project.next_id + 1)
+    project = project.with_graph(graph)
     return place(project, clips, layer, "stance", stance.id) if clips else project
 
 
@@ -208,11 +211,9 @@ def place(
     graph = project.graphs[layer]
     _stance(project, stance)
     changes: dict[str, Action | None] = {}
-    next_id = project.next_id
     for clip in clips:
         entry = project.clips[clip]
-        ident = f"a{next_id}"
-        next_id += 1
+        ident = ids.new_id(project, "a", layer, kind, stance, end_stance or "", clip, more=changes)
         changes[ident] = Action(
             id=ident,
             clip=clip,
@@ -231,7 +232,12 @@ def place(
         and not any(k == "stance" for g in project.graphs.values() for _, k in g.index)
     )
     base = BasePose(clips[0], 0) if first else project.base
-    return project.with_graph(graph.with_actions(changes), next_id=next_id, base=base)
+    return project.with_graph(graph.with_actions(changes), base=base)
+
+
+def added_actions(before: Project, after: Project) -> tuple[str, ...]:
+    """Return the ids of the actions that `after` has and `before` does not, in the order of `after`."""
+    return tuple(a.id for a in after.actions() if before.action(a.id) is None)
 
 
 def default_timing(entry: ClipEntry, kind: Kind) -> Timing:
@@ -263,6 +269,8 @@ def update_each(project: Project, changes: Mapping[str, Mapping[str, Any]]) -> P
             if action is None:
                 continue
             fields = dict(wanted)
+            if "clip" in fields:  # a person has chosen it
+                fields |= {"clip_name": "", "clip_sha256": ""}
             if isinstance(fields.get("timing"), Mapping):
                 fields["timing"] = replace(action.timing, **fields["timing"])
             after = replace(action, **fields)

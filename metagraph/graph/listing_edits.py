@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import replace
 
+from metagraph.graph import ids
 from metagraph.graph.model import Action, ClipEntry, Project
 
 
@@ -14,20 +15,20 @@ def duplicate_clips(project: Project, clips: Collection[str]) -> Project:
     """
     taken = {e.name for e in project.clips.values()}
     out: dict[str, ClipEntry] = {}
-    marks, next_id = dict(project.marks), project.next_id
+    marks = dict(project.marks)
     for ident, entry in project.clips.items():
         out[ident] = entry
         if ident in clips:
             name = _copy_name(entry.name, taken)
             taken.add(name)
-            twin = replace(entry, id=f"c{next_id}", name=name)
-            next_id += 1
+            new = ids.new_id(project, "c", entry.path, entry.take, name, more=out)
+            twin = replace(entry, id=new, name=name)
             out[twin.id] = twin
             if ident in marks:
                 marks[twin.id] = marks[ident]
-    if next_id == project.next_id:
+    if len(out) == len(project.clips):
         return project
-    return replace(project, clips=out, next_id=next_id, marks=marks)
+    return replace(project, clips=out, marks=marks)
 
 
 def _copy_name(name: str, taken: Collection[str]) -> str:

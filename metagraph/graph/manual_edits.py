@@ -11,6 +11,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from metagraph.graph import ids
 from metagraph.graph.edits import EditError, free_name, limb_of
 from metagraph.graph.manual import ANY, Alias, Condition, Link, Manual, State, without
 from metagraph.graph.model import BasePose, Layer, Project
@@ -58,7 +59,8 @@ def add_states(
     taken = {s.name for s in found.states.values()}
     states = dict(found.states)
     for n, clip in enumerate(clips):
-        ident, name = f"m{project.next_id + n}", free_name(project.clips[clip].name, taken)
+        name = free_name(project.clips[clip].name, taken)
+        ident = ids.new_id(project, "m", layer, clip, name, more=states)
         taken.add(name)
         states[ident] = State(
             ident,
@@ -76,9 +78,7 @@ def add_states(
     )
     base = BasePose(clips[0], 0) if first else project.base
     start = found.start or next(iter(states))
-    return project.with_manual(
-        replace(found, states=states, start=start), next_id=project.next_id + len(clips), base=base
-    )
+    return project.with_manual(replace(found, states=states, start=start), base=base)
 
 
 def link_refusal(project: Project, layer: Layer, source: str, target: str) -> str | None:
@@ -106,8 +106,7 @@ def add_link(project: Project, layer: Layer, source: str, target: str) -> Projec
         raise EditError(why)
     found = machine(project, layer)
     return project.with_manual(
-        replace(found, links={**found.links, **_new(found, [(source, target)], project.next_id)}),
-        next_id=project.next_id + 1,
+        replace(found, links={**found.links, **_new(project, found, [(source, target)])})
     )
 
 
@@ -126,14 +125,15 @@ def add_links(project: Project, layer: Layer, sources: Sequence[str], targets: S
     pairs = [(a, b) for a in sources for b in targets if a != b and (a, b) not in there]
     if not pairs:
         raise EditError(told("these links are drawn already"))
-    links = {**found.links, **_new(found, pairs, project.next_id)}
-    return project.with_manual(replace(found, links=links), next_id=project.next_id + len(pairs))
+    links = {**found.links, **_new(project, found, pairs)}
+    return project.with_manual(replace(found, links=links))
 
 
-def _new(found: Manual, pairs: Sequence[tuple[str, str]], number: int) -> dict[str, Link]:
-    out = {}
-    for n, (source, target) in enumerate(pairs):
-        ident, waits = f"l{number + n}", source == ANY or source in found.aliases
+def _new(project: Project, found: Manual, pairs: Sequence[tuple[str, str]]) -> dict[str, Link]:
+    out: dict[str, Link] = {}
+    for source, target in pairs:
+        ident = ids.new_id(project, "l", found.layer, source, target, more=out)
+        waits = source == ANY or source in found.aliases
         condition = Condition("request", name_of(found, target)) if waits else Condition()
         part = 1.0 if source in found.aliases else None
         out[ident] = Link(ident, source, target, condition, exit_part=part)
@@ -259,13 +259,12 @@ def paste(
         raise EditError(why)
     found = machine(project, layer)
     left, top = min(s.x for s in nodes), min(s.y for s in nodes)
-    states, links, number = dict(found.states), dict(found.links), project.next_id
+    states, links = dict(found.states), dict(found.links)
     taken = {s.name for s in states.values()}
     made: dict[str, str] = {}
     for state in piece.states:
-        ident = made[state.id] = f"m{number}"
-        number += 1
         name = free_name(state.name, taken)
+        ident = made[state.id] = ids.new_id(project, "m", layer, state.clip, name, more=states)
         taken.add(name)
         states[ident] = replace(
             state, id=ident, name=name, layer=layer, x=_whole(x + state.x - left), y=_whole(y + state.y - top)
@@ -273,9 +272,8 @@ def paste(
     aliases = dict(found.aliases)
     called = {a.name for a in aliases.values()}
     for alias in piece.aliases:
-        ident = f"g{number}"
-        number += 1
         members = tuple(made.get(i, i) for i in alias.states if i in made or i in states)
+        ident = ids.new_id(project, "g", layer, *members, more=aliases)
         entry = made.get(alias.entry or "", alias.entry)
         aliases[ident] = replace(
             alias,
@@ -292,8 +290,7 @@ def paste(
     names = {s.id: s.name for s in nodes}
     new_names = {i: s.name for i, s in states.items()} | {i: a.name for i, a in aliases.items()}
     for link in piece.links:
-        ident = f"l{number}"
-        number += 1
+        ident = ids.new_id(project, "l", layer, made[link.source], made[link.target], more=links)
         condition = link.condition
         if (
             condition.when == "request" and condition.trigger == names[link.target]
@@ -304,7 +301,7 @@ def paste(
         )
     start = found.start or next(iter(states), None)
     after = replace(found, states=states, links=links, start=start, aliases=aliases)
-    return project.with_manual(after, next_id=number), tuple(made.values())
+    return project.with_manual(after), tuple(made.values())
 
 
 def paste_settings(project: Project, links: Collection[str], settings: Link) -> Project:

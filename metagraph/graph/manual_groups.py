@@ -10,6 +10,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 from typing import Any
 
+from metagraph.graph import ids
 from metagraph.graph.edits import EditError, free_name
 from metagraph.graph.manual import Alias, Link, Manual
 from metagraph.graph.manual_edits import HIGH, WIDE, machine, name_of
@@ -26,12 +27,13 @@ def add_alias(project: Project, layer: Layer, states: Sequence[str], every: bool
     if not chosen and not (every and found.states):
         raise EditError(told("select the states the alias is to stand for"))
     mine = [found.states[i] for i in chosen or found.states]
-    ident = f"g{project.next_id}"
     taken = {a.name for a in found.aliases.values()}
     name = "every state" if every else shared_words([s.name for s in mine]) or "alias"
+    name = free_name(name, taken)
+    ident = ids.new_id(project, "g", layer, name, *chosen)
     alias = Alias(
         ident,
-        free_name(name, taken),
+        name,
         layer,
         () if every else chosen,
         every,
@@ -41,7 +43,7 @@ def add_alias(project: Project, layer: Layer, states: Sequence[str], every: bool
     while any((a.x, a.y) == (alias.x, alias.y) for a in found.aliases.values()):
         alias = replace(alias, y=alias.y + HIGH)
     after = replace(found, aliases={**found.aliases, ident: alias})
-    return project.with_manual(after, next_id=project.next_id + 1)
+    return project.with_manual(after)
 
 
 def shared_words(names: Sequence[str]) -> str:
@@ -116,9 +118,9 @@ def paste_links(project: Project, layer: Layer, links: Sequence[Link], nodes: Se
             joins = one.target in known and one.source != one.target and found.end(one) is not None
             if joins and (one.source, one.target) not in there:
                 there.add((one.source, one.target))
-                ident = f"l{project.next_id + len(out)}"
+                ident = ids.new_id(project, "l", layer, one.source, one.target, more=out)
                 out[ident] = replace(one, id=ident)
     if not out:
         raise EditError(told("these links are drawn already"))
     after = replace(found, links={**found.links, **out})
-    return project.with_manual(after, next_id=project.next_id + len(out))
+    return project.with_manual(after)

@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
+from metagraph.graph import ids
 from metagraph.graph.expand import connections
 from metagraph.graph.manual import ANY, Link, Manual, State, links_expanded
 from metagraph.graph.manual_timing import exit_moment
@@ -32,8 +33,8 @@ def as_meta(project: Project) -> tuple[Project, Pairs, Pairs]:
     for manual in project.manual.values():
         if not manual.states:
             continue
-        graph, names, next_id = _graph(out, manual)
-        out = out.with_graph(graph, next_id=next_id)
+        graph, names = _graph(out, manual)
+        out = out.with_graph(graph)
         implied = {(names[c.source], names[c.target]) for c in connections(out, graph)}
         drawn = links_expanded(manual)
         missing |= implied - drawn
@@ -68,8 +69,8 @@ def _many(count: int, noun: str) -> str:
     return f"{count:,} {noun}{'' if count == 1 else 's'}"
 
 
-def _graph(project: Project, manual: Manual) -> tuple[MetaGraph, Mapping[str, str], int]:
-    """Return a machine's meta-graph, its states by their actions' ids, and the next free id."""
+def _graph(project: Project, manual: Manual) -> tuple[MetaGraph, Mapping[str, str]]:
+    """Return a machine's meta-graph, and its states by their actions' ids."""
     pairs = links_expanded(manual)
     loops = [s.id for s in manual.states.values() if s.loop]
     if not loops and manual.start in manual.states:
@@ -77,11 +78,10 @@ def _graph(project: Project, manual: Manual) -> tuple[MetaGraph, Mapping[str, st
     groups = _stances(loops, pairs)
     of = {loop: n for n, group in enumerate(groups) for loop in group}
     into, out = _ends(manual, pairs, of)
-    number = project.next_id
     stances: list[Stance] = []
     for group in groups:
-        stances.append(Stance(f"s{number}", manual.layer, manual.states[group[0]].name))
-        number += 1
+        name, taken = manual.states[group[0]].name, [s.id for s in stances]
+        stances.append(Stance(ids.new_id(project, "s", manual.layer, name, more=taken), manual.layer, name))
     actions: dict[str, Action] = {}
     names: dict[str, str] = {}
     for state in manual.states.values():
@@ -89,8 +89,7 @@ def _graph(project: Project, manual: Manual) -> tuple[MetaGraph, Mapping[str, st
         if found is None:
             continue
         kind, start, end = found
-        ident = f"a{number}"
-        number += 1
+        ident = ids.new_id(project, "a", manual.layer, kind, state.id, more=actions)
         names[ident] = state.id
         actions[ident] = Action(
             ident,
@@ -116,7 +115,7 @@ def _graph(project: Project, manual: Manual) -> tuple[MetaGraph, Mapping[str, st
         actions={},
         start=stances[begin].id if begin is not None else None,
     )
-    return replace(graph, stances={s.id: s for s in stances}, actions=actions), names, number
+    return replace(graph, stances={s.id: s for s in stances}, actions=actions), names
 
 
 def _stances(loops: Sequence[str], pairs: Pairs) -> list[list[str]]:

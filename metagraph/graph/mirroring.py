@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
-from metagraph.graph import anatomy
+from metagraph.graph import anatomy, ids
 from metagraph.graph.edits import EditError, free_name
 from metagraph.graph.model import Action, Limb, Project
 from metagraph.motion.clip import Clip
@@ -120,7 +120,7 @@ def place_twins(project: Project, pairs: Mapping[str, str]) -> Project:
             )
         twin = replace(
             action,
-            id=f"a{project.next_id}",
+            id=ids.new_id(project, "a", action.layer, action.kind, stance, end or "", clip),
             clip=clip,
             name=twin_name(action.name),
             stance=stance,
@@ -133,7 +133,7 @@ def place_twins(project: Project, pairs: Mapping[str, str]) -> Project:
             ),
             contacts=(),
         )
-        project = project.with_graph(graph.with_actions({twin.id: twin}), next_id=project.next_id + 1)
+        project = project.with_graph(graph.with_actions({twin.id: twin}))
     return project
 
 

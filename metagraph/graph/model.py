@@ -99,7 +99,8 @@ class Action:
     1); the rest of the way they keep to the stance. tags: free words, "positive" and "negative" among them.
     likelihood: relative, > 0. cooldown: seconds after it has ended in which it is not drawn again. spacing:
     how many other actions of its kind and stance are drawn before it may be drawn again; None as the
-    settings' never_twice says. contacts: where its hands stay on the body.
+    settings' never_twice says. contacts: where its hands stay on the body. clip_name, clip_sha256: which
+    clip it was made of, where that is not the one it has; "" otherwise (see `formats.clip_identity`).
     """
 
     id: str
@@ -118,6 +119,8 @@ class Action:
     spacing: int | None = None
     contacts: tuple[ContactSpan, ...] = ()
     joint_weights: tuple[tuple[str, float], ...] = ()
+    clip_name: str = ""
+    clip_sha256: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -432,7 +435,6 @@ class Project:
     touch: Touch = field(default_factory=Touch)
     contact_rig: Any = field(default=None, compare=False, repr=False)
     weight: Any = field(default=None, compare=False, repr=False)
-    next_id: int = 1
 
     def actions(self) -> Iterable[Action]:
         """Every action of every layer."""
@@ -446,6 +448,18 @@ class Project:
             if found is not None:
                 return found
         return None
+
+    def has(self, ident: str) -> bool:
+        """Return whether anything in the project has that id."""
+        graphs, machines = self.graphs.values(), self.manual.values()
+        return (
+            ident in self.clips
+            or any(ident in g.actions or ident in g.stances for g in graphs)
+            or any(ident in m.states or ident in m.links or ident in m.aliases for m in machines)
+            or ident in self.performances
+            or ident in self.conversations
+            or any(ident == marker.id for t in self.timelines.values() for marker in t.markers)
+        )
 
     def stance(self, ident: str | None) -> Stance | None:
         """Return the stance of that id, whatever its layer."""

@@ -10,6 +10,7 @@ from typing import Any
 
 import msgspec
 
+from metagraph.graph import ids
 from metagraph.graph.edits import EditError, free_name
 from metagraph.graph.model import Project
 from metagraph.graph.requests import LONGEST_NAME, AnyRequest, Line, Performance, Point, RequestError
@@ -19,14 +20,13 @@ from metagraph.wording import told
 
 def add_performance(project: Project, performance: Performance) -> tuple[Project, str]:
     """Keep a performance under a name of its own; return the project and the performance's id."""
-    ident = f"p{project.next_id}"
     named = msgspec.structs.replace(
         performance,
         name=_own_name(performance.name or "Performance", {p.name for p in project.performances.values()}),
         asks=_numbered(performance.asks),
     )
-    kept = {**project.performances, ident: named}
-    return replace(project, performances=kept, next_id=project.next_id + 1), ident
+    ident = ids.new_id(project, "p", msgspec.json.encode(named))
+    return replace(project, performances={**project.performances, ident: named}), ident
 
 
 def _own_name(name: str, taken: Collection[str]) -> str:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
 import msgspec
 from msgspec import Meta, Struct
 
+from metagraph.graph import ids
 from metagraph.graph import requests as a
 from metagraph.graph.requests import Seconds
 from metagraph.graph.words import LAYERS
@@ -94,11 +95,9 @@ def add_marker(project: Project, key: str, at: float, name: str = "") -> tuple[P
     there = next((m for m in before if abs(m.at - at) < 0.005), None)
     if there is not None:
         return project, there.id
-    ident = f"m{project.next_id}"
-    marker = Marker(id=ident, at=round(max(0.0, at), 3), name=name)
-    return change_timeline(
-        replace(project, next_id=project.next_id + 1), key, markers=(*before, marker)
-    ), ident
+    at = round(max(0.0, at), 3)
+    marker = Marker(id=ids.new_id(project, "m", key, at), at=at, name=name)
+    return change_timeline(project, key, markers=(*before, marker)), marker.id
 
 
 def change_marker(project: Project, key: str, ident: str, **changes: Any) -> Project:
@@ -136,7 +135,7 @@ def without_timeline(project: Project, key: str) -> Project:
 
 def only_noted(before: Project, after: Project) -> bool:
     """Return whether two states of a project are apart in nothing but what is noted on timelines."""
-    same = (f.name for f in fields(before) if f.name not in ("timelines", "next_id"))
+    same = (f.name for f in fields(before) if f.name != "timelines")
     return before.timelines is not after.timelines and all(
         getattr(before, n) is getattr(after, n) for n in same
     )

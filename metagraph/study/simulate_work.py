@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from metagraph.graph import edits, manual_edits
+from metagraph.graph import edits, ids, manual_edits
 from metagraph.graph.expand import connections
 from metagraph.graph.manual import Condition, Link, Manual, State
 from metagraph.graph.model import LAYERS, Action, Project
@@ -43,8 +43,8 @@ def drawn(project: Project) -> Project:
             for n, a in enumerate(actions.values())
         }
         links: dict[str, Link] = {}
-        for n, c in enumerate(connections(project, project.graphs[layer])):
-            ident = f"l{out.next_id + n}"
+        for c in connections(project, project.graphs[layer]):
+            ident = ids.new_id(out, "l", layer, c.source, c.target, more=links)
             leave = c.leave
             if leave is not None and leave >= project.span(actions[c.source])[1]:
                 leave = max(
@@ -53,9 +53,7 @@ def drawn(project: Project) -> Project:
             links[ident] = Link(
                 ident, c.source, c.target, _condition(actions[c.source], actions[c.target]), leave, c.blend
             )
-        out = out.with_manual(
-            Manual(layer, states, links, next(iter(states))), next_id=out.next_id + len(links)
-        )
+        out = out.with_manual(Manual(layer, states, links, next(iter(states))))
     return out
 
 

@@ -20,6 +20,7 @@ from metagraph.motion.contact_spans import ContactKey, ContactSpan
 from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.life.voice import voice_from_text
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton
+from sample_clips.make.numbered_ids import numbered_ids
 
 Array = NDArray[np.float64]
 
@@ -223,6 +224,7 @@ class Builder:
         return ident
 
 
+@numbered_ids()
 def stick(
     name: str = "stick", morphs: tuple[str, ...] = (), size: float = 1.0, legs: bool = False
 ) -> Project:
@@ -408,6 +410,7 @@ def stick(
     return replace(b.project, lines=lines, voices=voices, points={"door": (1.5, 1.2, 0.5)})
 
 
+@numbered_ids()
 def touching(project: Project) -> Project:
     """Return a project whose hands are kept on its body, on each other and out of both: in loops with and
     without a seam, for all of an action or a part of it, at one place or along some.
@@ -446,6 +449,7 @@ def _near(
     )
 
 
+@numbered_ids()
 def varied() -> Project:
     """Return the same character with every constant and dial off its usual value, weights that share joints,
     and a morph face.
@@ -506,6 +510,7 @@ def varied() -> Project:
     return replace(edits.set_base(project, None), life=life)
 
 
+@numbered_ids()
 def standing() -> Project:
     """Return a project whose body has legs, and answers its arms: some of them moved by what the body plays,
     too, one on knees that bend, in loops with a seam.
@@ -538,6 +543,7 @@ def standing() -> Project:
 LEGS = tuple(f"{side}{part}" for side in ("Left", "Right") for part in ("UpperLeg", "LowerLeg", "Foot"))
 
 
+@numbered_ids()
 def stepping() -> Project:
     """Return a project whose feet stand in different places: a loop with a seam, another of the same stance,
     transitions, gestures that are held, near, far, too far, that step themselves, that move some joints.
@@ -571,6 +577,7 @@ def stepping() -> Project:
     return replace(b.project, life=Life(breath_rate=18.0, planted_feet=0.9))
 
 
+@numbered_ids()
 def sparse() -> Project:
     """Return a project with gaps: a layer with nothing, one that has no loop, stances that no way leads to, a
     loop of one frame.
@@ -592,6 +599,7 @@ def sparse() -> Project:
     return replace(b.project, life=Life(on=False))
 
 
+@numbered_ids()
 def still() -> tuple[Project, ...]:
     """Return projects whose life layers are there, each with some of their rates or sizes at 0."""
     lives = {

@@ -23,6 +23,7 @@ from metagraph.graph.model import LAYERS, Kind, Layer, Limb, Project, Timing
 from metagraph.suggest.find_contacts import measured, with_contacts
 from sample_clips.make.babble import sample_lines
 from sample_clips.make.catalogue import BASE, RECIPES, SEATED, Entry, catalogue
+from sample_clips.make.numbered_ids import numbered_ids
 
 HERE = Path(__file__).resolve().parents[1]
 STARTS = {"body": "weight both", "arms": "hands at sides", "head": "straight"}
@@ -55,6 +56,7 @@ GREETING = a.Performance(
 )
 
 
+@numbered_ids()
 def practice() -> Project:
     """Return a project of all clips, none of them placed; its base pose is chosen, since practice is about
     dropping.
@@ -73,6 +75,7 @@ def _imported(name: str, paths: Sequence[Path]) -> Project:
     return edits.set_character(project, "mannequin.glb")
 
 
+@numbered_ids()
 def sample() -> Project:
     """Return the finished project: every clip of the catalogue placed with its timing, tags and likelihood,
     and a few lines to say.
@@ -83,6 +86,7 @@ def sample() -> Project:
     return add_conversation(project, conversation())[0]
 
 
+@numbered_ids()
 def seated() -> Project:
     """Return the project of somebody who sits on a stool, and gets up when asked."""
     kept = {

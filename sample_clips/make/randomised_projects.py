@@ -13,10 +13,12 @@ from metagraph.graph.model import LAYERS, LIMBS, PARTS, Action, Layer, Markov, P
 from metagraph.graph.words import Mode
 from metagraph.playback.markov import KINDS as MODEL_KINDS
 from sample_clips.make.conformance_projects import stick
+from sample_clips.make.numbered_ids import numbered_ids
 
 TAGS = ("", "x", "positive", "negative unsure", "there", "greeting", "sad", "happy excited")
 
 
+@numbered_ids()
 def randomised(seed: int, morphs: tuple[str, ...] = ()) -> Project:
     """Return the character with weights, timing, likelihoods, cooldowns, spacing, seams, models, planner
     constants and life's dials drawn from a seed.

@@ -10,6 +10,7 @@ from metagraph.formats.store import SUFFIX, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.touch import Touch
+from sample_clips.make.numbered_ids import numbered_ids
 from sample_clips.make.projects import HERE, sample
 
 FOLDER = HERE / "study"
@@ -140,6 +141,7 @@ def text() -> str:
     return out
 
 
+@numbered_ids()
 def reference(task: str, whole: Project) -> Project:
     """Return the right answer to a task: the sample project with its clips alone."""
     keep = set(TASKS[task])

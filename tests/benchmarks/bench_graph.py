@@ -28,7 +28,7 @@ from metagraph.graph.model import KINDS, LAYERS, ClipEntry, Layer, Project  # no
 def large(actions: int, layers: Sequence[Layer], stances: int) -> Project:
     """A project of that many actions, spread evenly over layers, stances and kinds."""
     clips = {f"c{i}": ClipEntry(f"c{i}", f"clip {i}", f"clips/{i}.glb", frames=60) for i in range(actions)}
-    project = replace(Project(), clips=clips, next_id=actions + 1)
+    project = replace(Project(), clips=clips)
     for n, layer in enumerate(layers):
         for s in range(stances):
             project = edits.add_stance(project, layer, f"stance {s}")

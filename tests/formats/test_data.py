@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.formats.data import above, from_data, skeleton_data, skeleton_from, to_data
+from metagraph.formats.data import from_data, skeleton_data, skeleton_from, to_data
 from metagraph.formats.fields import DataError
 from metagraph.graph import edits, manual_edits
 from metagraph.graph.conversation import EVERYBODY, Conversation, Segment, Side
@@ -21,6 +21,8 @@ from metagraph.graph.manual import ANY
 from metagraph.graph.model import LAYERS, Project
 from tests.projects import SKELETON, clip, projects
 from tests.thorough import many
+
+pytestmark = pytest.mark.usefixtures("numbered_ids")
 
 
 def small() -> Project:
@@ -93,18 +95,6 @@ def test_a_skeleton_comes_back_to_the_bit() -> None:
     assert back == SKELETON
     assert (back.rest_rotations == SKELETON.rest_rotations).all()
     assert (back.rest_translations == SKELETON.rest_translations).all()
-
-
-def test_ids_made_by_hand_are_never_made_again() -> None:
-    data = to_data(small())
-    data["layers"]["head"]["stances"] = [{"id": "s900", "name": "x"}]
-    data["next_id"] = 3
-    assert from_data(data).next_id == 901
-
-
-@pytest.mark.parametrize("ident", ["a²", "a٣", "a" + "9" * 5000, "a", "x-1", "1"])
-def test_ids_that_hold_no_small_number_are_ids_all_the_same(ident: str) -> None:
-    assert above(ident, "a7") == 8
 
 
 WRONG: list[tuple[tuple[Any, ...], Any, str]] = [
@@ -218,7 +208,6 @@ WRONG: list[tuple[tuple[Any, ...], Any, str]] = [
     (("skeleton", 1, "turn"), [0, 0, 0, 0], "quaternion of length 1"),
     (("name",), 3, "name should be text"),
     (("character",), 3, "character should be text"),
-    (("next_id",), "many", "next_id should be a whole number"),
     (("colour",), "red", "colour is not a field"),
     (("manual",), [], "manual should be fields"),
     (("manual", "legs"), {}, "manual.legs is not a field"),
@@ -350,7 +339,6 @@ def test_what_three_say_to_whom_and_where_they_stand_is_kept_and_of_two_nothing_
     assert first["place"] == [0.5, -1.0] and first["segments"][0]["to"] == 2
     assert second["segments"][0]["to"] == -1 and "place" not in second
     assert set(third["segments"][0]) == {"kind", "start", "end"}
-    assert data["metagraph"] == 1, "files of two are what they were"
 
 
 def test_a_segment_said_to_who_is_not_there_is_told_by_its_place() -> None:

@@ -19,6 +19,8 @@ from metagraph.graph import edits
 from metagraph.graph.model import Project
 from tests.projects import clip, histories
 
+pytestmark = pytest.mark.usefixtures("numbered_ids")
+
 
 def left_by(journal: Journal) -> Left:
     journal.close()

@@ -32,6 +32,8 @@ from tests.processes import started
 from tests.projects import clip, histories
 from tests.sittings import kill_sittings
 
+pytestmark = pytest.mark.usefixtures("numbered_ids")
+
 ROOT = Path(__file__).resolve().parents[2]
 
 

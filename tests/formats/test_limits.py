@@ -18,6 +18,8 @@ from metagraph.graph import edits, requests
 from metagraph.graph.model import Project
 from tests.projects import clip, histories
 
+pytestmark = pytest.mark.usefixtures("numbered_ids")
+
 BEYOND: dict[str, Callable[[Project], Project]] = {
     "seed": lambda p: edits.set_settings(p, seed=-1),
     "seed ": lambda p: edits.set_settings(p, seed=2**32),

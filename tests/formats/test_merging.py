@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import pytest
 from hypothesis import given, settings
@@ -14,6 +15,8 @@ from metagraph.graph import edits
 from metagraph.graph.check import check
 from metagraph.graph.model import Project
 from tests.projects import clip, histories
+
+pytestmark = pytest.mark.usefixtures("numbered_ids")
 
 
 def first() -> Project:
@@ -40,7 +43,6 @@ def test_where_one_side_did_nothing_the_other_is_the_whole(
     for mine, theirs in ((b, a), (a, b)):
         found = merge(a, mine, theirs)
         wanted, got = to_data(b), to_data(found.project)
-        wanted["next_id"] = got["next_id"] = 0
         assert got == wanted and not found.kept
 
 
@@ -54,6 +56,41 @@ def test_two_histories_give_a_project_that_can_be_read_and_checked(
     found = merge(base, mine, theirs)
     assert to_data(from_data(to_data(found.project))) == to_data(found.project)
     check(found.project)
+
+
+def flat(data: Any, where: str = "") -> dict[str, Any]:
+    """Return every value of a project by where it stands; what has an id stands under it."""
+    if isinstance(data, list) and data and all(isinstance(x, dict) and "id" in x for x in data):
+        data = {x["id"]: x for x in data}
+    if isinstance(data, dict):
+        return {k: v for key, value in data.items() for k, v in flat(value, f"{where}/{key}").items()}
+    return {where: data} if data != [] else {}
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.data())
+def test_no_edit_of_two_people_is_lost_without_a_report(data: st.DataObject) -> None:
+    base = data.draw(histories(8))[-1]
+    mine, theirs = (data.draw(histories(5, base))[-1] for _ in range(2))
+    found = merge(base, mine, theirs)
+    before, ours, others, after = (flat(to_data(p)) for p in (base, mine, theirs, found.project))
+    both = 0
+    old, here, there = ({v for k, v in side.items() if k.endswith("/id")} for side in (before, ours, others))
+    new = (here & there) - old
+    for where in before | ours | others:
+        old, here, there, now = (side.get(where) for side in (before, ours, others, after))
+        if str(here) in new or new.intersection(where.split("/")):
+            continue  # made by both, and two things if they are not the same
+        if here == there or there == old:
+            wanted = (here,)
+        elif here == old:
+            wanted = (there,)
+        else:
+            wanted = (here, there)
+            both += 1
+        if now not in wanted:
+            assert found.kept or (both and now == old), (where, old, here, there, now)
+    assert to_data(merge(base, mine, theirs).project) == to_data(found.project), "it comes out the same"
 
 
 def test_different_things_changed_are_both_there() -> None:

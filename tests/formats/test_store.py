@@ -37,6 +37,8 @@ from metagraph.graph import edits
 from metagraph.graph.model import ClipEntry, Project
 from tests.projects import clip, projects
 
+pytestmark = pytest.mark.usefixtures("numbered_ids")
+
 PATH = Path(f"show{SUFFIX}")
 
 
@@ -115,9 +117,9 @@ def refused(text: str) -> FileError:
         ("name: clip 3", "name: 3", "clips[3].name should be text, found 3"),
         ("name: clip 3", "colour: 3", "clips[3].colour is not a field known here"),
         ("frames: 31", "frames: many", "clips[0].frames should be a whole number, found 'many'"),
-        ("metagraph: 1", "metagraph: one", "metagraph should be the version"),
-        ("metagraph: 1", "metagraph: 0", "metagraph should be the version"),
-        ("metagraph: 1", "metagraf: 1", "not a Metagraph project"),
+        ("metagraph: 2", "metagraph: one", "metagraph should be the version"),
+        ("metagraph: 2", "metagraph: 0", "metagraph should be the version"),
+        ("metagraph: 2", "metagraf: 1", "not a Metagraph project"),
         ("start: s31", "start: [s31]", "layers.arms.start should be text"),
         ("- {name: Head", "- {nom: Head", "skeleton[2].name is missing"),
         ("settings: {}", "settings: {alpha: .nan}", "settings.alpha should be a finite number"),
@@ -142,7 +144,7 @@ def test_other_files_are_refused(text: str) -> None:
 
 
 def test_a_file_of_a_newer_version_is_refused_with_what_to_do() -> None:
-    error = refused(text_of(grown()).replace("metagraph: 1", "metagraph: 99"))
+    error = refused(text_of(grown()).replace("metagraph: 2", "metagraph: 99"))
     assert "newer Metagraph (format 99" in error.cause
     assert error.remedy == "Update Metagraph."
 
@@ -158,9 +160,10 @@ def test_an_older_file_is_upgraded_step_by_step(monkeypatch: pytest.MonkeyPatch)
         steps.append(data["metagraph"])
         return {**data, "name": data["name"] + "!"}
 
+    text = text_of(grown()).replace("metagraph: 2", "metagraph: 1")
     monkeypatch.setattr(store, "FORMAT", 3)
     monkeypatch.setattr(store, "UPGRADES", {1: lambda d: first(dict(d)), 2: second})
-    text = text_of(grown()).replace("name: grown", "title: grown")
+    text = text.replace("name: grown", "title: grown")
     with pytest.raises(FileError, match="title is not a field"):
         from_text(text, PATH)
     monkeypatch.setattr(

@@ -16,6 +16,8 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 
+pytestmark = pytest.mark.usefixtures("numbered_ids")
+
 
 def codes(project: Project) -> list[str]:
     return [p.code for p in check(project)]
@@ -206,7 +208,7 @@ def test_no_end_lost_end_and_circle(healthy: Project, toy: Any) -> None:
         toy.id(healthy, "rest"),
         toy.id(healthy, "up"),
     )
-    ident = f"a{project.next_id - 1}"
+    ident = [*project.actions()][-1].id
     assert only(edits.update_actions(project, [ident], end_stance=None), "no-end").action == ident
     assert only(edits.update_actions(project, [ident], end_stance="s999"), "lost-end").action == ident
     assert (
@@ -292,7 +294,7 @@ def test_half_a_frame_beyond_the_end_is_rounding(healthy: Project, toy: Any) -> 
 def test_open_loop(healthy: Project, toy: Any) -> None:
     project = edits.add_clips(healthy, [("open.glb", 0, "", toy.clip("open", 2.0, 0.0, 0.5))])
     project = edits.place(project, [entry(project, "open")], "arms", "stance", toy.id(project, "rest"))
-    ident = f"a{project.next_id - 1}"
+    ident = [*project.actions()][-1].id
     assert codes(project) == []  # its seam is blended
     assert only(edits.update_actions(project, [ident], timing={"blend_in": 0.0}), "open-loop").action == ident
 
@@ -310,7 +312,7 @@ def test_a_long_slow_blend_is_no_pop(healthy: Project, toy: Any, blend: float, p
     clip = toy.clip("from afar", 2.4, 0.4, 0.0, swing=0.0)
     project = edits.add_clips(healthy, [("from afar.glb", 0, "", clip)])
     project = edits.place(project, [toy.id(project, "from afar")], "arms", "gesture", toy.id(project, "rest"))
-    ident = f"a{project.next_id - 1}"
+    ident = [*project.actions()][-1].id
     project = edits.update_actions(project, [ident], timing={"blend_in": blend, "blend_out": 0.0})
     assert codes(project) == (["far-start"] if pops else [])
 

@@ -10,6 +10,8 @@ from metagraph.graph import edits
 from metagraph.graph.expand import Size, chain, connections, ends_in, reachable, size
 from metagraph.graph.model import LAYERS, MetaGraph, Project
 
+pytestmark = pytest.mark.usefixtures("numbered_ids")
+
 
 def listed(project: Project) -> int:
     return sum(1 for layer in LAYERS for _ in connections(project, project.graphs[layer]))

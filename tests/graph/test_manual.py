@@ -15,6 +15,8 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 from tests.projects import clip
 
+pytestmark = pytest.mark.usefixtures("numbered_ids")
+
 CLIPS = ("idle", "wave", "nod", "sit")
 
 

@@ -14,6 +14,8 @@ from metagraph.graph.manual import ANY, Link
 from metagraph.graph.model import Project
 from tests.projects import clip
 
+pytestmark = pytest.mark.usefixtures("numbered_ids")
+
 
 def sound() -> Project:
     """stand (m4, a loop) -> wave (m5) -> stand; links l7, l8."""

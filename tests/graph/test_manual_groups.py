@@ -16,6 +16,8 @@ from metagraph.graph.model import Project
 from metagraph.playback.manual_playback import Fire, link_alone, make_manual_plan
 from tests.graph.test_manual import linked, project
 
+pytestmark = pytest.mark.usefixtures("numbered_ids")
+
 
 def grouped(*names: str, every: bool = False) -> tuple[Project, dict[str, str], str]:
     """The four states, ids by name, and an alias of some."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from metagraph.graph import edits
 from metagraph.graph import manual_edits as m
 from metagraph.graph.expand import connections
@@ -9,6 +11,8 @@ from metagraph.graph.manual import ANY
 from metagraph.graph.manual_meta import as_meta, differences, only_manual
 from metagraph.graph.model import Project
 from tests.projects import clip
+
+pytestmark = pytest.mark.usefixtures("numbered_ids")
 
 CLIPS = ("stand", "sway", "sit", "wave", "nod", "down", "up", "look")
 

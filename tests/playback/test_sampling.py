@@ -239,7 +239,7 @@ def test_a_clip_of_one_frame_neither_hangs_nor_breaks_the_plan(project: Project,
 
 def test_an_action_of_another_stance_brings_the_transitions_along(project: Project, toy: Any) -> None:
     project = edits.place(project, [next(iter(project.clips))], "arms", "gesture", toy.id(project, "far"))
-    ident = f"a{project.next_id - 1}"
+    ident = [*project.actions()][-1].id
     plan, whole = arms(project, ask("a", 1, action=ident))
     assert names(plan) == ["rest to up", "up to far", "rest loop"] and whole.reports == ()
     assert {c.meta for c in plan.cues} == {"a"}

@@ -246,9 +246,8 @@ def with_pieces(
         return project
     ids = {e.path: e.id for e in project.clips.values()}
     for piece, (path, *_) in zip(chosen, loaded, strict=True):
-        before = project.next_id
-        project = edits.place(project, [ids[path]], "arms", piece.kind, stance)
-        project = edits.update_actions(project, [f"a{before}"], limb=piece.limb)
+        before, project = project, edits.place(project, [ids[path]], "arms", piece.kind, stance)
+        project = edits.update_actions(project, edits.added_actions(before, project), limb=piece.limb)
     return project
 
 

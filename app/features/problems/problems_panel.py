@@ -271,6 +271,8 @@ class ProblemsPanel(QWidget):
         fix = self.fixes.get(problem) if isinstance(problem, Problem) else None
         if fix is not None:
             menu.addAction(fix.words, lambda: self.mend(item))
+        if fix is not None and (other := fix.instead) is not None:
+            menu.addAction(other.words, lambda: self.mend_wanted.emit([other]))
         if len(self.fixable()) > 1:
             menu.addSeparator()
             menu.addAction(self.all.text(), self.all.click)

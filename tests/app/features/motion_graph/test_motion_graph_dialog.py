@@ -32,7 +32,7 @@ def shown(drive, tmp_path):
         open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project, ROOT / "sample_clips"
     )
     some = {i: e for i, e in whole.clips.items() if "stance" in e.name or "arms_crossed__beat" in e.name}
-    project = Project(name="some", clips=some, skeleton=whole.skeleton, next_id=whole.next_id)
+    project = Project(name="some", clips=some, skeleton=whole.skeleton)
     take = next(e.id for e in project.clips.values() if e.name == "hand_to_chin__stance")
     ada = Side(name="Ada", take=take, segments=(Segment("clause", 1.0, 2.0, 1.5),))
     project = replace(

@@ -13,7 +13,7 @@ from PySide6.QtTest import QTest
 
 from app.features.problems.problems_panel import FIX, breakable
 from app.stage.compatibility_state import judge, merged, told
-from app.stage.fixes import Fix, bridges_for
+from app.stage.fixes import Fix, bridges_for, clips_for
 from metagraph.graph import edits
 from metagraph.graph.check import check
 from metagraph.graph.expand import reachable
@@ -258,3 +258,22 @@ def test_a_stance_that_cannot_be_reached_is_bridged_with_a_press_in_one_step(toy
     assert reachable(graph, graph.start) == set(graph.stances)
     drive.document.undo()
     assert drive.document.project.graphs == parted.graphs
+
+
+@pytest.mark.parametrize("there", [True, False])
+def test_a_swapped_clip_is_given_back_or_kept(toy, there):
+    project = toy.project()
+    point, short = toy.id(project, "up point"), toy.id(project, "rest short")
+    action = replace(project.action(short), clip=project.action(point).clip, clip_name="rest short")
+    wrong = project.with_graph(project.graphs["arms"].with_actions({short: action}))
+    if not there:
+        wrong = edits.rename_clip(wrong, project.action(short).clip, "another")
+    (problem, fix), *_ = clips_for(wrong, check(wrong)).items()
+    assert problem.code == "swapped-clip"
+    assert fix.words == ("Play 'rest short'" if there else "Keep 'up point'")
+    mended = fix(wrong)
+    assert not clips_for(mended, check(mended))
+    assert mended.action(short).clip == (project.action(short).clip if there else action.clip)
+    if there:
+        kept = fix.instead(wrong)
+        assert not clips_for(kept, check(kept)) and kept.action(short).clip == action.clip

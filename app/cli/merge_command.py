@@ -1,0 +1,64 @@
+"""`metagraph merge`: what two people did to copies of one project, in one. Also Git's merge driver."""
+
+from __future__ import annotations
+
+import sys
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+
+from app.cli.command_output import say
+from metagraph.errors import FileError
+from metagraph.formats.merging import MergeError, merge
+from metagraph.formats.store import read_project, save_project
+from metagraph.graph.model import Project
+from metagraph.wording import told
+
+
+def arguments(parser: ArgumentParser) -> None:
+    """Add the options."""
+    parser.add_argument("base", type=Path, help="the project as it was before either changed it")
+    parser.add_argument("ours", type=Path, help="the project with our changes; the result is written here")
+    parser.add_argument("theirs", type=Path, help="the project with their changes")
+    parser.add_argument("-o", "--output", type=Path, help="write the result here instead of over OURS")
+    parser.add_argument(
+        "--prefer",
+        choices=("ours", "theirs"),
+        default="ours",
+        help="whose value to keep where both changed the same (default: ours)",
+    )
+    parser.add_argument("--name", help="what to call the project in reports (Git passes %%P)")
+
+
+def run(options: Namespace) -> int:
+    base, ours, theirs = (_read(path) for path in (options.base, options.ours, options.theirs))
+    name, output = options.name or options.ours.name, options.output or options.ours
+    sides = (told("in ours"), told("in theirs"))
+    try:
+        if options.prefer == "theirs":
+            found = merge(base, theirs, ours, sides[::-1])
+        else:
+            found = merge(base, ours, theirs, sides)
+    except MergeError as error:
+        raise FileError(
+            options.theirs,
+            told("does not go together with ours: {error}", error=error),
+            told("the project"),
+            told("Open one of the two and import the other into it (File > Import)."),
+        ) from None
+    save_project(found.project, output)
+    for line in found.kept:
+        print(f"{name}: {line}", file=sys.stderr)
+    count = len(found.kept)
+    words = f"{name}: merged" + (f"; {count} to look at, listed above" if count else "")
+    say(options, words, {"output": str(output), "conflicts": list(map(str, found.kept))})
+    return 3 if found.kept else 0
+
+
+def _read(path: Path) -> Project:
+    """Return a project; an empty one for an empty file, which Git gives where both sides added theirs."""
+    try:
+        if path.stat().st_size == 0:
+            return Project()
+    except OSError:
+        pass  # the reader says why
+    return read_project(path)
