@@ -458,6 +458,11 @@ class Export(Struct, omit_defaults=True, forbid_unknown_fields=True):
     touch: Touch = Touch()
     contact_rig: ExportedContactRig | None = None
     weight_rig: ExportedWeightRig | None = None
+    glb_bytes: Annotated[
+        int | None,
+        Meta(description="the length of the GLB that belongs to this JSON; null in older exports"),
+    ] = None
+    glb_sha256: Annotated[str | None, Meta(description="its SHA-256 in hex; null in older exports")] = None
 
 
 def schema() -> dict[str, Any]:

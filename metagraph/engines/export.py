@@ -16,6 +16,7 @@ from metagraph.errors import FileError
 from metagraph.file_names import file_stem, file_stems
 from metagraph.files import is_inside, read_file, unforeseen
 from metagraph.formats.atomic import write_atomically
+from metagraph.formats.clips import digest
 from metagraph.formats.store import writable
 from metagraph.graph.check import check
 from metagraph.graph.expression_presets import presets_of
@@ -134,6 +135,7 @@ def write(
     notes = _write_glb(glb, clips, project, character, compress)
     tell(1, 3, "graph")
     document = to_document(project, glb.name, names, expanded)
+    document.glb_bytes, document.glb_sha256 = glb.stat().st_size, digest(glb)
     sounds, missing = _sounds(document, target, base, chosen) if base is not None else ((), ())
     tell(2, 3, "writing")
     write_atomically(json, msgspec.json.format(msgspec.json.encode(document), indent=1))

@@ -15,7 +15,8 @@ from metagraph.engines.export_contacts import read_contact_rig, read_contacts
 from metagraph.engines.export_rig import LIFELESS, read_rig, read_voices
 from metagraph.engines.export_weight import read_weight
 from metagraph.errors import FileError
-from metagraph.files import guarded, read_file
+from metagraph.files import guarded, is_file, read_file
+from metagraph.formats.clips import digest
 from metagraph.formats.data import markov_from, skeleton_from
 from metagraph.formats.fields import DataError
 from metagraph.graph.face import CHANNELS
@@ -40,6 +41,7 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.life.body import Body
 from metagraph.playback.markov import DEFAULTS
+from metagraph.wording import told
 
 
 @guarded
@@ -75,7 +77,7 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
     if motions:
         from metagraph.formats.gltf import read_gltf_clips
 
-        takes = read_gltf_clips(path.parent / document.glb)
+        takes = read_gltf_clips(glb_beside(path, document))
     # Clips of one frame are read behind the longer ones.
     longer = sorted(x.animation for x in document.clips if x.frames > 1) or [
         x.animation for x in document.clips
@@ -149,6 +151,22 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         performances=dict(document.performances),
         voices=read_voices(document.voices),
     )
+
+
+def glb_beside(path: Path, document: c.Export) -> Path:
+    """Return the GLB of an export's JSON. Raises FileError where it is not the one that the JSON was written
+    with: an export that was interrupted, or files copied one by one, leave two that do not belong
+    together.
+    """
+    glb = path.parent / document.glb
+    if document.glb_sha256 is not None and is_file(glb) and digest(glb) != document.glb_sha256:
+        raise FileError(
+            glb,
+            told("is not the GLB that {name} was written with", name=path.name),
+            told("its content"),
+            told("Export it again, and copy both files."),
+        )
+    return glb
 
 
 BASE = "base pose"  # id of a clip of one frame that stands for the exported base pose

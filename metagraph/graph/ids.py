@@ -8,8 +8,7 @@ it the same id. Ids that are in a file stay as they are, whatever they look like
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Container
-from itertools import count
+from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -19,17 +18,16 @@ DIGITS = 9
 _LOWEST = 10 ** (DIGITS - 1)
 
 
-def new_id(project: Project, letter: str, *made_of: object, more: Container[str] = ()) -> str:
+def new_id(project: Project, letter: str, *made_of: object, more: Collection[str] = ()) -> str:
     """Return an id that nothing in the project has.
 
     letter: what kind of thing it is, as in other ids of its kind. made_of: what tells this thing from others
     of its kind. more: ids taken by what is being added to the project just now.
     """
-    for n in count():
-        ident = derived_id(letter, *made_of, n)
-        if ident not in more and not project.has(ident):
-            return ident
-    raise AssertionError("unreachable")
+    ident, number = derived_id(letter, *made_of), len(more) + project.size
+    while ident in more or project.has(ident):  # the same thing once more
+        ident, number = derived_id(letter, *made_of, number), number + 1
+    return ident
 
 
 def derived_id(letter: str, *made_of: object) -> str:

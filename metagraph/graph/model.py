@@ -449,6 +449,12 @@ class Project:
                 return found
         return None
 
+    @property
+    def size(self) -> int:
+        """How many clips, actions and states it holds."""
+        actions = sum(len(graph.actions) for graph in self.graphs.values())
+        return len(self.clips) + actions + sum(len(machine.states) for machine in self.manual.values())
+
     def has(self, ident: str) -> bool:
         """Return whether anything in the project has that id."""
         graphs, machines = self.graphs.values(), self.manual.values()

@@ -195,7 +195,9 @@ def test_a_clip_that_the_glb_lacks_is_listed_and_shows_its_stance(tmp_path: Path
         """,
         copy,
     )
-    assert found["problems"] == [f"the GLB has no animation '{found['name']}'; its actions show their stance"]
+    other, lost = found["problems"]
+    assert "'stick.glb' is not the GLB that this JSON was written with" in other
+    assert lost == f"the GLB has no animation '{found['name']}'; its actions show their stance"
     assert found["cue"]
     assert 0.5 < found["far"] <= 1.0001
 

@@ -17,6 +17,7 @@ from metagraph.engines.targets.placing import RECORD, Staging
 from metagraph.errors import FileError
 from metagraph.file_names import folded
 from metagraph.formats.store import open_project
+from metagraph.graph import edits
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Line
 from tests import wavs
@@ -243,3 +244,63 @@ def test_the_plain_export_is_whole_as_well(
     with pytest.raises(FileError):
         export(replace(small, settings=replace(small.settings, seed=3)), tmp_path)
     assert files(tmp_path) == before
+
+
+def test_an_export_killed_at_any_step_is_whole_or_reported_and_the_next_one_is_whole(
+    small: Project, tmp_path: Path
+) -> None:
+    """At each of the steps that move files: none is missing, and JSON and GLB never differ in silence."""
+    from metagraph.engines.reading import read_export
+
+    others = edits.remove_clips(small, [next(a.clip for a in small.actions() if a.kind == "gesture")])
+    states = {}
+    for name, project in (("old", small), ("new", others)):
+        registry.write(project, "metagraph", tmp_path / name)
+        states[name] = files(tmp_path / name)
+    assert states["old"]["toy.glb"] != states["new"]["toy.glb"]
+    mixed = 0
+    for step in range(1, 10):
+        folder = tmp_path / f"killed {step}"
+        registry.write(small, "metagraph", folder)
+        pid = os.fork()
+        if pid == 0:
+            _export_until(others, folder, step)
+        if os.waitpid(pid, 0)[1] == 0:
+            break  # there are no more steps
+        found = {name: content for name, content in files(folder).items() if not name.startswith(".")}
+        assert found.keys() == {"toy.json", "toy.glb"}
+        assert all(content in (states["old"][n], states["new"][n]) for n, content in found.items())
+        whole = any(all(states[s][n] == content for n, content in found.items()) for s in states)
+        try:
+            read_export(folder / "toy.json")
+            assert whole
+        except FileError as error:
+            assert not whole and "is not the GLB that toy.json was written with" in str(error)
+            mixed += 1
+        registry.write(others, "metagraph", folder)
+        assert files(folder) == states["new"], "and nothing hidden is left"
+    assert 3 <= step < 9 and mixed <= 1
+
+
+def _export_until(project: Project, folder: Path, step: int) -> None:
+    """Export in a process that ends, as by a kill, before the file that is moved as number `step`."""
+    real, count = Path.replace, 0
+
+    def replace(self: Path, target: Path) -> Path:
+        nonlocal count
+        count += ".saving" not in str(self)
+        if count == step:
+            os._exit(9)
+        return real(self, target)
+
+    Path.replace = replace  # type: ignore[method-assign]
+    registry.write(project, "metagraph", folder)
+    os._exit(0)
+
+
+def test_staging_folders_of_living_exports_and_folders_of_like_names_stay(tmp_path: Path) -> None:
+    with Staging(tmp_path) as first, Staging(tmp_path) as second:
+        assert first.path.is_dir() and second.path.is_dir()
+    (tmp_path / ".exporting-of-mine").mkdir()
+    with Staging(tmp_path):
+        assert (tmp_path / ".exporting-of-mine").is_dir()

@@ -73,7 +73,17 @@ def test_an_id_that_is_taken_is_not_made_again() -> None:
     project = two_clips()
     ident = next(iter(project.clips))
     assert new_id(project, "c", "one.glb", 0) != ident == new_id(Project(), "c", "one.glb", 0)
-    assert new_id(Project(), "c", "one.glb", 0, more=[ident]) == new_id(project, "c", "one.glb", 0)
+    assert new_id(Project(), "c", "one.glb", 0, more=[ident]) != ident
+
+
+def test_the_same_thing_made_a_thousand_times_has_a_thousand_ids() -> None:
+    project = two_clips()
+    one, _ = project.clips
+    project = edits.add_stance(project, "arms", "rest", [one])
+    (stance,) = project.graphs["arms"].stances
+    project = edits.place(project, [one] * 1000, "arms", "gesture", stance)
+    project = edits.place(project, [one] * 1000, "arms", "gesture", stance)
+    assert len({a.id for a in project.actions()}) == 2001
 
 
 def test_ids_of_old_files_stay_and_new_ones_are_made_beside_them(toy: Any) -> None:

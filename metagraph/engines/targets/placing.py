@@ -1,41 +1,53 @@
 """Putting an export's files where they are wanted, whole, and over nothing that is not its own.
 
-An export is written beside the folder first. A record in the folder says which target, which project and
-which files stand there, with their digests, so that writing again knows its own files; what else stands in
-the way is foreign.
+An export is staged in a folder of its own first. A record says which target, which project and which files
+stand there, with their digests, so that writing again knows its own files; what else stands in the way is
+foreign. While files are exchanged the record lists both the old and the new ones: after a crash in between,
+`metagraph verify` says so, and exporting again replaces either.
 """
 
 from __future__ import annotations
 
 import errno
-import hashlib
+import os
 import shutil
 import tempfile
+import time
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
 import msgspec
 
-from metagraph.budgets import SOUND_FILE, TEXT_FILE
+from metagraph.budgets import TEXT_FILE
 from metagraph.engines.export import ExportError
 from metagraph.errors import FileError
-from metagraph.files import is_file, is_inside, opened, read_file
-from metagraph.formats.atomic import write_atomically
+from metagraph.files import is_file, is_inside, read_file
+from metagraph.formats.atomic import FORSAKEN, write_atomically
+from metagraph.formats.clips import digest
+from metagraph.formats.locking import mark_is_gone, process_mark
 from metagraph.wording import told
 
 RECORD = ".metagraph-export.json"
+BEFORE = ".first"  # of a staging folder: what is moved before everything else
+STAGED = ".exporting-"  # staging folders begin so
+_LAST = {".glb": 1, ".json": 2}  # files that are moved behind the others
 NAMED = 4  # foreign files that are named
 
 
 class Record(msgspec.Struct, frozen=True):
     """What was written: for which target, of which project; its files by their paths in the folder, with
-    their SHA-256.
+    their SHA-256. replaced: those of the export before, while files are exchanged; None afterwards.
     """
 
     target: str
     project: str
     files: dict[str, str]
+    replaced: dict[str, str] | None = None
+
+    def knows(self, name: str, sha256: str) -> bool:
+        """Return whether an export has written this content under this name."""
+        return sha256 in (self.files.get(name), (self.replaced or {}).get(name))
 
 
 class ForeignFilesError(ExportError):
@@ -67,13 +79,13 @@ def foreign(folder: Path, wanted: Mapping[str, str], target: str, project: str) 
     is in nobody's way.
     """
     known = read_record(folder)
-    mine: Mapping[str, str] = (
-        known.files if known is not None and (known.target, known.project) == (target, project) else {}
-    )
+    mine = known if known is not None and (known.target, known.project) == (target, project) else None
     out = []
-    for name, digest in wanted.items():
+    for name, new in wanted.items():
         path = folder / name
-        if path.is_dir() or (path.exists() and _digest(path) not in (digest, mine.get(name))):
+        if not path.exists():
+            continue
+        if path.is_dir() or ((found := digest(path)) != new and not (mine and mine.knows(name, found))):
             out.append(name)
     return tuple(out)
 
@@ -88,24 +100,34 @@ def place(
     file cannot be written.
     """
     before = read_record(folder)
-    digests = {name: _digest(staged.path / name) for name in names}
+    digests = {name: digest(staged.path / name) for name in names}
     others = foreign(folder, digests, target, project)
     if others and not overwrite:
         raise ForeignFilesError(folder, others, before)
     gone = []
+    known: dict[str, str] = {}
     if before is not None and (before.target, before.project) == (target, project):
-        for name in before.files.keys() - digests.keys():
+        known = {**(before.replaced or {}), **before.files}
+        for name in sorted(known.keys() - digests.keys()):
             old = folder / name
-            if is_inside(old, folder) and is_file(old) and _digest(old) == before.files[name]:
+            if is_inside(old, folder) and is_file(old) and before.knows(name, digest(old)):
                 gone.append(name)
-    record = msgspec.json.format(msgspec.json.encode(Record(target, project, digests)), indent=1)
-    write_atomically(staged.path / RECORD, record)
-    staged.move([*digests, RECORD], gone)
+    (staged.path / BEFORE).mkdir()
+    _write_record(staged.path / BEFORE / RECORD, Record(target, project, digests, known))
+    _write_record(staged.path / RECORD, Record(target, project, digests))
+    # Last what names the others: the GLB, its JSON right after it, the record.
+    order = sorted(digests, key=lambda name: (_LAST.get(Path(name).suffix.lower(), 0), -name.count("/")))
+    staged.move([f"{BEFORE}/{RECORD}", *order, RECORD], gone)
+
+
+def _write_record(path: Path, record: Record) -> None:
+    write_atomically(path, msgspec.json.format(msgspec.json.encode(record), indent=1))
 
 
 class Staging:
     """A folder inside the export's own, so that moving out of it is one step a file; gone at the end, and
-    with it a folder that was made for nothing. Raises FileError.
+    with it a folder that was made for nothing. What killed exports have left of theirs is removed. Raises
+    FileError.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -113,7 +135,8 @@ class Staging:
         try:
             self._made = [p for p in (folder, *folder.parents) if not p.exists()]
             folder.mkdir(parents=True, exist_ok=True)
-            self.path = Path(tempfile.mkdtemp(prefix=".exporting-", dir=folder))
+            sweep_staging(folder)
+            self.path = Path(tempfile.mkdtemp(prefix=f"{STAGED}{process_mark()}-", dir=folder))
         except (OSError, ValueError) as error:
             remedy = "Choose a folder you may write to."
             raise FileError(
@@ -133,26 +156,28 @@ class Staging:
                 empty.rmdir()
 
     def move(self, names: Sequence[str], gone: Sequence[str] = ()) -> None:
-        """Move staged files to their places, and take those that are `gone` away: all of it, or nothing; what
-        stood there stays until all that comes is in its place. The one that names the others comes last.
-        Raises FileError.
+        """Move staged files to their places, in this order, and take those that are `gone` away: all of it,
+        or nothing. At every moment there is a whole file in each place, the old one or the new one. Raises
+        FileError.
         """
         aside = self.path / ".before"
         done: list[tuple[Path, Path | None]] = []  # a place, and where what stood there is kept
         try:
             aside.mkdir()
             for n, name in enumerate((*names, *gone)):
-                place, kept = self.folder / name, aside / str(n)
+                place, kept = self.folder / name.removeprefix(f"{BEFORE}/"), aside / str(n)
                 self._made += [p for p in place.parents if not p.exists()]
                 place.parent.mkdir(parents=True, exist_ok=True)
                 if place.is_dir() and not place.is_symlink():
                     raise OSError(errno.EISDIR, "a folder stands there", str(place))
                 stood = place.is_symlink() or place.exists()
                 if stood:
-                    place.replace(kept)
+                    _keep(place, kept)
                 done.append((place, kept if stood else None))
                 if n < len(names):
                     (self.path / name).replace(place)
+                else:
+                    place.unlink()
         except OSError as error:
             self._put_back(done)
             where = Path(error.filename2 or error.filename or self.folder)
@@ -176,6 +201,26 @@ class Staging:
                     place.unlink(missing_ok=True)
 
 
-def _digest(path: Path) -> str:
-    with opened(path, SOUND_FILE) as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
+def _keep(place: Path, kept: Path) -> None:
+    """Keep a file under another name as well; a copy where the file system has no second names."""
+    try:
+        os.link(place, kept, follow_symlinks=False)
+    except (OSError, NotImplementedError):
+        shutil.copy2(place, kept, follow_symlinks=False)
+
+
+def sweep_staging(folder: Path) -> list[Path]:
+    """Remove the staging folders of exports that were killed; return them. Those of other computers, which
+    cannot be asked, go after a day.
+    """
+    swept: list[Path] = []
+    with suppress(OSError, ValueError):
+        for path in folder.glob(f"{STAGED}*"):
+            mark = path.name.removeprefix(STAGED).rpartition("-")[0]
+            gone = mark_is_gone(mark) if mark else None
+            if gone is None:
+                gone = time.time() - path.stat().st_mtime > FORSAKEN
+            if gone and path.is_dir() and not path.is_symlink():
+                shutil.rmtree(path, ignore_errors=True)
+                swept.append(path)
+    return swept

@@ -29,6 +29,8 @@ public:
 
     List<std::string> nodes, animations; // their names
 
+    std::size_t size() const { return size_; }
+
     /// A node's own translation or rotation.
     Joined own(int node) const {
         const Node one = at("nodes", node);

@@ -214,6 +214,13 @@ inline void read_clips(Graph& out, const Node& root, const Glb& file) {
         if (!is) out.problems.push_back("the GLB has no joint '" + out.joints[j] + "'; it stays as in the rest pose");
     }
     if (!any) return root["glb"].wrong("has none of the export's joints; it is another's", "Export it again, and copy both files.");
+    const Node length = root.maybe("glb_bytes");
+    if (!length.empty() && static_cast<double>(file.size()) != length.number()) {
+        out.problems.push_back(lang::text(
+            "'", root["glb"].text(), "' is not the GLB that this JSON was written with (", file.size(), " bytes, not ", length.number(),
+            "): export again, and copy both files"
+        ));
+    }
     for (const Node& one : root["clips"].items()) {
         const std::string id = one["id"].text(), name = one["name"].text();
         const int wanted = one["animation"].count();

@@ -22,6 +22,7 @@ export class Glb {
   constructor(bytes) {
     const raw = bytes instanceof Uint8Array ? bytes : new Uint8Array(bytes);
     const view = new DataView(raw.buffer, raw.byteOffset, raw.byteLength);
+    this.byteLength = raw.byteLength;
     if (raw.byteLength < HEADER + 8 || view.getUint32(0, true) !== MAGIC) throw new GlbError("is no GLB");
     if (view.getUint32(8, true) > raw.byteLength) throw new GlbError(`is cut short: ${raw.byteLength} of ${view.getUint32(8, true)} bytes`);
     for (let at = HEADER; at + 8 <= view.getUint32(8, true); ) {

@@ -69,6 +69,11 @@ function tried(graph) {
   return graph;
 }
 
+/** Say that a GLB is not the one that the JSON was written with. */
+function otherGlb(data, bytes) {
+  return `'${data.glb}' is not the GLB that this JSON was written with (${bytes} bytes, not ${data.glb_bytes}): export again, and copy both files`;
+}
+
 /** Everything of an export that planning and posing need. Joints are told by their place; layers by name, in the order of LAYERS. */
 export class Graph {
   /** @param {object} data the export @param {Glb} glb */
@@ -94,6 +99,7 @@ export class Graph {
     this.lines = new Map(Object.entries(data.lines ?? {}));
     this.voices = new Voices(data.voices);
     this.unmade = []; // offsets that nobody has needed yet
+    if (Number.isInteger(data.glb_bytes) && glb.byteLength !== data.glb_bytes) this.problems.push(otherGlb(data, glb.byteLength));
     this.clips = readClips(data, glb, this.joints, this.problems);
     const durations = new Map(data.clips.map((clip) => [clip.id, (clip.frames - 1) / clip.fps]));
     const layerGraph = (layer) => new LayerGraph(layer, data.layers[layer], data.joints, durations, this);

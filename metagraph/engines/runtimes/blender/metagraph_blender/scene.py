@@ -32,6 +32,8 @@ def load(context: Any, path: Path) -> Any:
     model = path.with_name(document["glb"])
     if not model.is_file():
         raise ValueError(f"{model.name} is missing: it belongs beside {path.name}")
+    if document.get("glb_bytes") not in (None, model.stat().st_size):
+        raise ValueError(f"{model.name} does not belong to {path.name}: export again, and copy both files")
     rates = Counter(clip["fps"] for clip in document["clips"]) or Counter([30.0])
     set_rate(context.scene, rates.most_common(1)[0][0])
     known = set(bpy.data.objects), set(bpy.data.actions)

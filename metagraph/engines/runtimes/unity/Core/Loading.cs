@@ -73,6 +73,13 @@ namespace Metagraph
             }
             ReadLines(root);
             string glb = root["glb"].Text;
+            if (root.Maybe("glb_bytes", out found) && !found.IsNull && found.Count != data.Length)
+            {
+                Problems.Add(
+                    "'" + glb + "' is not the GLB that this JSON was written with (" + data.Length + " bytes, not " + found.Count
+                    + "): export again, and copy both files."
+                );
+            }
             var clips = new ClipReader(new Glb(data, glb), this, glb);
             foreach (ClipEntry entry in Clips.Values)
             {

@@ -100,6 +100,9 @@ func _read(json, bytes):
 	var glb = Glb.new(bytes, shim)
 	if glb.error != "":
 		return "the GLB: %s; export it again" % glb.error
+	var length = data.get("glb_bytes")
+	if Util.is_number(length) and int(length) != bytes.size():
+		problems.append("'%s' is not the GLB that this JSON was written with (%d bytes, not %d): export again, and copy both files" % [str(data.get("glb", "it")), bytes.size(), int(length)])
 	return _read_clips(data, glb)
 
 
