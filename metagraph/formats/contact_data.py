@@ -24,6 +24,8 @@ def contacts_data(contacts: Iterable[ContactSpan]) -> list[Data]:
 
 def contacts_from(data: Data, where: str) -> tuple[ContactSpan, ...]:
     """Return an action's contacts from its data. Raises DataError."""
+    if "contacts" not in data:
+        return ()
     return tuple(_spans(get(data, "contacts", list, where, ()), where))
 
 

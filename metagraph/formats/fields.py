@@ -50,18 +50,23 @@ def plain(value: Any) -> Any:
 def sparse(value: Any, skip: tuple[str, ...] = ()) -> Data:
     """Return a dataclass's fields that differ from their defaults. Raises DataError."""
     out: Data = {}
-    for f in fields(value):
-        if f.name in skip:
+    for name, default in _defaults(type(value), skip):
+        v = getattr(value, name)
+        if v is default or v == default:
             continue
-        v = getattr(value, f.name)
-        if f.default is MISSING or v != f.default:
-            try:
-                out[f.name] = plain(v)
-            except ValueError as error:
-                raise DataError(
-                    f"{type(value).__name__.lower()} {getattr(value, 'name', '')!r}, {f.name}", str(error)
-                ) from None
+        try:
+            out[name] = v if type(v) is str else plain(v)
+        except ValueError as error:
+            raise DataError(
+                f"{type(value).__name__.lower()} {getattr(value, 'name', '')!r}, {name}", str(error)
+            ) from None
     return out
+
+
+@cache
+def _defaults(cls: Any, skip: tuple[str, ...]) -> tuple[tuple[str, Any], ...]:
+    """Return a dataclass's fields and their defaults, MISSING where there is none."""
+    return tuple((f.name, f.default) for f in fields(cls) if f.name not in skip)
 
 
 # --- reading
@@ -91,7 +96,7 @@ def get(data: Any, key: str, kind: Any, where: str, default: Any = MISSING) -> A
     """Return a field checked for its type, `default` where it is missing or empty; numbers are finite and not
     beyond `LARGEST`.
     """
-    if not isinstance(data, Mapping):
+    if type(data) is not dict and not isinstance(data, Mapping):
         raise DataError(where, f"should be fields, found {named(data)}")
     value = data.get(key, MISSING)
     place = f"{where}.{key}" if where else key
@@ -148,10 +153,14 @@ _RANGES = {  # field -> least and greatest value of what no check of the graph l
 def fill(cls: Any, data: Data, where: str, skip: tuple[str, ...] = ()) -> dict[str, Any]:
     """Return a dataclass's simple fields read from data, those that are there."""
     out: dict[str, Any] = {}
-    for name, kind in kinds(cls).items():
-        if name in skip or name not in data:
+    every = kinds(cls)
+    for name, value in data.items():
+        kind = every.get(name)
+        if kind is None or name in skip:
             continue
-        if kind is tuple:
+        if kind is str and type(value) is str:
+            out[name] = value
+        elif kind is tuple:
             items = get(data, name, list, where)
             if not all(isinstance(x, str) for x in items):
                 raise DataError(f"{where}.{name}", "should be a list of texts")
@@ -210,6 +219,8 @@ def joint_weights_data(weights: Iterable[tuple[str, float]]) -> Data:
 
 def joint_weights_from(data: Data, where: str) -> tuple[tuple[str, float], ...]:
     """Return how far joints move, (name, above 0 and below 1). Raises DataError."""
+    if "joint_weights" not in data:
+        return ()
     told = get(data, "joint_weights", dict, where, {})
     out = []
     for name in told:

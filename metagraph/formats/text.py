@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Iterator
+from functools import lru_cache
 from typing import Any
 
 import msgspec
@@ -68,9 +69,14 @@ def _quoted(value: str) -> str:
     return ODD.sub(escape, json.dumps(value, ensure_ascii=False))
 
 
+@lru_cache(maxsize=8192)
+def _word(value: str) -> str:
+    return value if _PLAIN.match(value) and value.lower() not in WORDS else _quoted(value)
+
+
 def _scalar(value: Any) -> str:
     if isinstance(value, str):
-        return value if _PLAIN.match(value) and value.lower() not in WORDS else _quoted(value)
+        return _word(value)
     if isinstance(value, list):
         return "[" + ", ".join(map(_scalar, value)) + "]"
     if isinstance(value, dict):
@@ -79,7 +85,8 @@ def _scalar(value: Any) -> str:
         return "null"
     if isinstance(value, bool):
         return "true" if value else "false"
-    return re.sub(r"^(-?\d+)e", r"\1.0e", repr(value))  # YAML 1.1 wants the point
+    text = repr(value)
+    return re.sub(r"^(-?\d+)e", r"\1.0e", text) if "e" in text else text  # YAML 1.1 wants the point
 
 
 def to_text(data: Data) -> str:

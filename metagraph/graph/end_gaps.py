@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
 from metagraph.graph.expand import ends_in
-from metagraph.graph.model import REACH, Action, MetaGraph, Project
+from metagraph.graph.model import PARTS, Action, MetaGraph, Part, Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.features import pose_distance
 from metagraph.motion.rig_controls import rig_controls
+from metagraph.motion.skeleton import Skeleton
 from metagraph.records import dataclass
 from metagraph.wording import told
 
@@ -137,16 +138,21 @@ def motion_of(project: Project, action: Action | None) -> Clip | None:
 
 def _reached(project: Project, graph: MetaGraph, action: Action) -> tuple[int, ...]:
     moved = anatomy.mask(project, action)
-    parts = anatomy.parts(project)
-    controls = rig_controls(project.skeleton) if project.skeleton is not None else ()
-    return tuple(
-        j
-        for j, part in enumerate(parts)
-        if j not in controls
-        and graph.weights.get(part, REACH[graph.layer][part]) > 0
-        and part != "face"
-        and (moved is None or moved[j] > 0)
-    )
+    weighty = tuple(part for part in PARTS if part != "face" and graph.weight(part) > 0)
+    reached = _reached_by(project.skeleton, anatomy.parts(project), weighty)
+    if moved is None:
+        return reached
+    moves = moved.tolist()
+    return tuple(j for j in reached if moves[j] > 0)
+
+
+@lru_cache(maxsize=64)
+def _reached_by(
+    skeleton: Skeleton | None, parts: tuple[Part, ...], weighty: tuple[Part, ...]
+) -> tuple[int, ...]:
+    """Return the joints of the body parts that a layer moves, but for those that only steer others."""
+    controls = rig_controls(skeleton) if skeleton is not None else ()
+    return tuple(j for j, part in enumerate(parts) if part in weighty and j not in controls)
 
 
 @lru_cache(maxsize=65536)

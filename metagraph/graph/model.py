@@ -243,7 +243,10 @@ def _patched(
     moved: set[Any] = set()
 
     def bucket(action: Action) -> dict[str, Action]:
-        return touched.setdefault(key(action), {a.id: a for a in groups.get(key(action), ())})
+        k = key(action)
+        if k not in touched:
+            touched[k] = {a.id: a for a in groups.get(k, ())}
+        return touched[k]
 
     for ident, new in changes.items():
         old = before.get(ident)
