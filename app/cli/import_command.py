@@ -12,14 +12,20 @@ from metagraph.formats.action_labels import labelled, read_labels
 from metagraph.formats.clips import SUFFIXES
 from metagraph.formats.import_words import counted, remedies, said
 from metagraph.formats.imports import import_files
+from metagraph.formats.project_pieces import read_other_project
 from metagraph.formats.store import SUFFIX, save_project
 from metagraph.graph.model import Project
+from metagraph.graph.taking import words_of_taking
 
 
 def arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument(
-        "paths", type=Path, nargs="*", help="clip files and folders: BVH, GLB, glTF, VRM animation, FBX"
+        "paths",
+        type=Path,
+        nargs="*",
+        help="clip files and folders (BVH, GLB, glTF, VRM animation, FBX), and other projects, whose stances "
+        "and actions are taken with their clips",
     )
     parser.add_argument(
         "--labels",
@@ -37,6 +43,19 @@ def arguments(parser: ArgumentParser) -> None:
     )
 
 
+def _taken(project: Project, path: Path, other: Path, options: Namespace) -> tuple[Project, str]:
+    """Return the project with what another one holds, and what that was in words."""
+    piece = read_other_project(other, path)
+    for note in piece.notes:
+        print(f"note: {other.name}: {note}", file=sys.stderr)
+    taking = piece.into(project, options.retarget)
+    for thing in taking.things:
+        if thing.becomes == "left out":
+            print(f"left out: {thing.kind} '{thing.name}': {thing.words}", file=sys.stderr)
+    name = other.name.removesuffix(SUFFIX)
+    return taking.project, f"{name}: {words_of_taking(taking)}"
+
+
 def run(options: Namespace) -> int:
     path: Path = options.project
     if not options.paths and options.labels is None:
@@ -49,6 +68,12 @@ def run(options: Namespace) -> int:
         if path.suffix not in (".yaml", ".yml"):
             path = path.with_name(path.name + SUFFIX)
         project = Project(name=path.name.removesuffix(SUFFIX))
+    others = [other for other in options.paths if other.name.endswith(SUFFIX)]
+    files = [file for file in options.paths if file not in others]
+    taken: list[str] = []
+    for other in others:
+        project, words = _taken(project, path, other, options)
+        taken.append(words)
     show = sys.stderr.isatty() and not options.json
 
     def progress(done: int, total: int, file: Path) -> None:
@@ -58,15 +83,15 @@ def run(options: Namespace) -> int:
     result = import_files(
         project,
         path.resolve().parent,
-        options.paths,
+        files,
         progress,
         retarget="yes" if options.retarget else "no",
         contacts=not options.no_contacts,
     )
     if show:
         print(file=sys.stderr)
-    if options.paths and not result.loaded and not result.failures:
-        place = ", ".join(str(p) for p in options.paths)
+    if files and not result.loaded and not result.failures:
+        place = ", ".join(str(p) for p in files)
         raise FileError(
             place, "no clip was found in it", "on importing it", f"Clips are {', '.join(SUFFIXES)} files."
         )
@@ -82,18 +107,20 @@ def run(options: Namespace) -> int:
     project, placed, left = labelled(project, rows, fresh)
     for why in left:
         print(f"not labelled: {why}", file=sys.stderr)
-    if result.loaded or placed:
+    if result.loaded or placed or taken:
         save_project(project, path, path)
     data = {
         "project": str(path),
         "imported": len(result.loaded),
         "retargeted": result.retargeted,
         **({"labelled": placed, "not_labelled": list(left)} if options.labels is not None else {}),
+        **({"taken": taken} if taken else {}),
         "failures": list(result.failures),
         "notes": list(result.notes),
         "remedies": [remedy.command for remedy in remedies(result)],
     }
-    words = f"{path}: {said(result, window=False)}"
+    found = [*taken, *([said(result, window=False)] if files or not taken else [])]
+    words = f"{path}: {'. '.join(found)}"
     say(options, words if options.labels is None else f"{words}. Labelled {placed} of {len(rows)}", data)
     if not result.loaded and result.failures:
         return 1

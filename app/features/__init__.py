@@ -11,6 +11,7 @@ FEATURES = (
     "character",
     "editing",
     "twins",
+    "taking",
     "repairs",
     "properties",
     "notes",

@@ -50,7 +50,7 @@ def plain(value: Any) -> Any:
 def sparse(value: Any, skip: tuple[str, ...] = ()) -> Data:
     """Return a dataclass's fields that differ from their defaults. Raises DataError."""
     out: Data = {}
-    for name, default in _defaults(type(value), skip):
+    for name, default in _defaults(type(value), skip):  # type: ignore[arg-type]
         v = getattr(value, name)
         if v is default or v == default:
             continue

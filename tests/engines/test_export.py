@@ -45,6 +45,8 @@ from sample_clips.make.conformance_projects import stick
 from tests.projects import clip, projects
 from tests.thorough import many
 
+pytestmark = pytest.mark.usefixtures("numbered_ids")
+
 ROOT = Path(__file__).resolve().parents[2]
 SCHEMA = ROOT / "metagraph" / "engines" / "metagraph.schema.json"
 VALIDATOR = jsonschema.Draft202012Validator(json.loads(SCHEMA.read_bytes()))

@@ -23,6 +23,8 @@ from metagraph.graph.model import Project
 from tests.failing_system import Killed, System, failing
 from tests.projects import clip
 
+pytestmark = pytest.mark.usefixtures("numbered_ids")
+
 WAYS = [(how, ever) for how in ("error", "short", "late") for ever in (False, True)] + [("kill", False)]
 
 

@@ -19,6 +19,8 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 from tests.projects import SKELETON, clip
 
+pytestmark = pytest.mark.usefixtures("numbered_ids")
+
 
 def stranger(name: str, joints: int = 9) -> Clip:
     """A clip of a character with other joints."""

@@ -24,6 +24,8 @@ from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 
+pytestmark = pytest.mark.usefixtures("numbered_ids")
+
 
 def bound(toy: Any, name: str) -> Clip:
     """A clip with a bind pose left on its first frame."""

@@ -35,6 +35,8 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 from tests.generation.makers import babble, conversation, moving, stance, untrained
 
+pytestmark = pytest.mark.usefixtures("numbered_ids")
+
 
 @pytest.fixture(scope="module")
 def model():

@@ -18,6 +18,8 @@ from metagraph.playback.plan import LayerPlan, MetaRequest, Plan, Rest
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import cue_weight, ease, keep_to, loop_seconds, morphs_at, pose_at
 
+pytestmark = pytest.mark.usefixtures("numbered_ids")
+
 
 def clip_pose_at(project, action, seconds):
     """A clip's own pose at clip seconds, not composed."""

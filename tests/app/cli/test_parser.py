@@ -22,6 +22,8 @@ from metagraph.graph.model import Project
 from tests.conftest import Toy
 from tests.projects import clip
 
+pytestmark = pytest.mark.usefixtures("numbered_ids")
+
 ROOT = Path(__file__).resolve().parents[3]
 SAMPLE = str(ROOT / "sample_clips" / f"sample{SUFFIX}")
 

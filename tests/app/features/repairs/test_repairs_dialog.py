@@ -8,7 +8,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
-pytestmark = [pytest.mark.window, pytest.mark.gl]
+pytestmark = [pytest.mark.usefixtures("numbered_ids"), pytest.mark.window, pytest.mark.gl]
 
 
 @pytest.fixture

@@ -1,0 +1,155 @@
+"""What one project takes from another joins what is there, is never there twice, and plays as it did."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from metagraph.graph import edits
+from metagraph.graph.check import check
+from metagraph.graph.model import Project
+from metagraph.graph.taking import piece_of, take, words_of_taking
+from metagraph.motion.clip import Clip
+from sample_clips.make.mannequin_skeleton import mannequin_skeleton
+
+
+def with_digests(project: Project) -> Project:
+    clips = {i: replace(e, digest=f"{n:064x}") for n, (i, e) in enumerate(project.clips.items(), 1)}
+    return replace(project, clips=clips)
+
+
+@pytest.fixture
+def other(toy: Any) -> Project:
+    return with_digests(toy.project())
+
+
+def became(taking: Any, kind: str) -> dict[str, str]:
+    return {x.name: x.becomes for x in taking.things if x.kind == kind}
+
+
+def graph_of(project: Project) -> set[tuple[object, ...]]:
+    """What plays, told by names."""
+    out = set()
+    for a in project.actions():
+        stance, end = project.stance(a.stance), project.stance(a.end_stance)
+        out.add(
+            (a.layer, a.kind, a.name, stance.name, end and end.name, project.clips[a.clip].name, a.timing)
+        )
+    return out
+
+
+def test_nothing_comes_of_an_empty_project(other: Project) -> None:
+    assert take(other, Project()).things == () and take(other, Project()).project == other
+    assert take(Project(), Project()).project == Project()
+
+
+def test_an_empty_project_becomes_what_the_other_is(other: Project) -> None:
+    taking = take(Project("mine"), other)
+    assert graph_of(taking.project) == graph_of(other) and taking.project.name == "mine"
+    assert taking.project.skeleton == other.skeleton
+    base = taking.project.base.clip
+    assert base is not None and taking.project.clips[base].name == other.clips[other.base.clip].name
+    assert not [p for p in check(taking.project) if p.severity == "error"]
+    assert words_of_taking(taking) == "3 new stances, 16 new actions and 16 new clips"
+
+
+def test_taking_twice_changes_nothing_more(other: Project) -> None:
+    once = take(Project(), other).project
+    again = take(once, other)
+    assert again.project == once and set(became(again, "action").values()) == {"there"}
+    assert "16 actions are here already" in words_of_taking(again)
+
+
+def test_a_stance_of_the_same_name_is_joined_and_its_new_actions_added(other: Project, toy: Any) -> None:
+    mine = edits.remove_actions(other, [toy.id(other, "rest wave rt"), toy.id(other, "up yawn")])
+    mine = edits.set_settings(mine, seed=9)
+    taking = take(mine, other)
+    assert became(taking, "stance") == {"rest": "joined", "up": "joined", "far": "joined"}
+    assert graph_of(taking.project) == graph_of(other) and taking.project.settings.seed == 9
+    new = [x.name for x in taking.things if x.kind == "action" and x.becomes == "new"]
+    assert new == ["rest wave rt", "up yawn"] and taking.count("clip") == 0
+
+
+def test_a_clip_of_the_same_name_and_another_content_is_another_clip(other: Project, toy: Any) -> None:
+    first = next(iter(other.clips))
+    clips = {**other.clips, first: replace(other.clips[first], digest="ff" * 32, path="elsewhere.glb")}
+    taking = take(other, replace(other, clips=clips))
+    assert became(taking, "clip")["rest loop"] == "renamed"
+    assert {"rest loop", "rest loop 2"} <= {e.name for e in taking.project.clips.values()}
+
+
+def test_a_chosen_action_brings_its_stance_with_a_loop_and_nothing_else(other: Project, toy: Any) -> None:
+    point = toy.id(other, "up point")
+    piece = piece_of(other, actions=[point])
+    assert {s.name for s in piece.graphs["arms"].stances.values()} == {"up"}
+    taking = take(Project(), piece, actions=[point])
+    assert {a.name for a in taking.project.actions()} == {"up loop", "up point"}
+    there = take(other, piece, actions=[point])
+    assert became(there, "action") == {"up point": "there"} and there.project == other
+
+
+def test_a_chosen_transition_brings_both_stances(other: Project, toy: Any) -> None:
+    way = toy.id(other, "up to far")
+    taking = take(Project(), piece_of(other, actions=[way]), actions=[way])
+    assert {a.name for a in taking.project.actions()} == {"up loop", "far loop", "up to far"}
+    assert not [p for p in check(taking.project) if p.severity == "error"]
+
+
+def test_a_chosen_stance_brings_all_that_is_placed_on_it(other: Project, toy: Any) -> None:
+    up = toy.id(other, "up")
+    piece = piece_of(other, stances=[up])
+    wanted = [a.id for a in piece.actions() if a.stance == up]
+    names = {a.name for a in take(Project(), piece, actions=wanted).project.actions()}
+    assert names == {
+        "up loop",
+        "up beat",
+        "up point",
+        "up yawn",
+        "up to rest",
+        "up to far",
+        "rest loop",
+        "far loop",
+    }
+
+
+def test_unused_clips_come_with_a_whole_project_alone(other: Project, toy: Any) -> None:
+    more = edits.add_clips(other, [("unused.glb", 0, "ab" * 32, toy.clip("unused"))])
+    assert "unused" in became(take(Project(), more), "clip")
+    assert "unused" not in {e.name for e in take(Project(), more, actions=[]).project.clips.values()}
+
+
+def test_clips_of_another_skeleton_are_retargeted_or_left_out(other: Project) -> None:
+    skeleton = mannequin_skeleton()
+    still = np.tile(skeleton.rest_rotations, (31, 1, 1))
+    clip = Clip("theirs", skeleton, 30, still, np.tile(skeleton.rest_translations[:1], (31, 1, 1)))
+    theirs = edits.add_clips(Project(), [("theirs.glb", 0, "cd" * 32, clip)])
+    theirs = edits.add_stance(theirs, "arms", "other rest", list(theirs.clips))
+    taking = take(other, theirs)
+    (entry,) = (e for e in taking.project.clips.values() if e.name == "theirs")
+    assert entry.motion is not None and entry.motion.skeleton == other.skeleton and entry.brought_from
+    assert entry.brought_from in taking.project.joint_maps
+    left = take(other, theirs, retarget=False)
+    assert became(left, "clip") == {"theirs": "left out"} and became(left, "action") == {"theirs": "left out"}
+    assert all(x.words for x in left.things)
+
+
+def test_ids_of_this_project_stay_and_no_id_is_given_twice(other: Project) -> None:
+    mine = replace(other, name="mine")
+    strange = {i: replace(e, digest=f"z{e.digest[1:]}") for i, e in other.clips.items()}
+    after = take(mine, replace(other, clips=strange)).project
+    assert [*after.clips][: len(mine.clips)] == [*mine.clips]
+    assert len(after.clips) == 2 * len(mine.clips)
+    assert len({a.id for a in after.actions()}) == len([*after.actions()]) == 2 * len([*mine.actions()])
+    for a in mine.actions():
+        assert after.action(a.id) == a
+
+
+def test_motion_comes_along(other: Project) -> None:
+    after = take(Project(), other).project
+    by_name = {e.name: e for e in other.clips.values()}
+    for entry in after.clips.values():
+        assert entry.motion is not None
+        assert np.array_equal(entry.motion.rotations, by_name[entry.name].motion.rotations)
