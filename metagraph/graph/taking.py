@@ -20,7 +20,7 @@ from metagraph.graph.project_retargeting import Bringing
 from metagraph.motion.adopt import SkeletonMismatchError, adopt
 from metagraph.motion.clip import Clip, ClipError
 from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint
-from metagraph.wording import told
+from metagraph.wording import joined, told
 
 Becomes = Literal["new", "joined", "there", "renamed", "left out"]
 _NEW: dict[Kind, str] = {
@@ -270,13 +270,22 @@ def _content(entry: ClipEntry) -> tuple[object, ...]:
 
 def words_of_taking(taking: Taking) -> str:
     """Say in a line what was taken."""
-    left = taking.count("action", ["left out"]) + taking.count("clip", ["left out"])
-    words = told(
-        "{stances} new stances, {actions} new actions and {clips} new clips",
-        stances=taking.count("stance"),
-        actions=taking.count("action"),
-        clips=taking.count("clip"),
-    )
+    counts = [
+        _count(taking.count("stance"), told("new stance"), told("new stances")),
+        _count(taking.count("action"), told("new action"), told("new actions")),
+        _count(taking.count("clip"), told("new clip"), told("new clips")),
+    ]
+    words = joined([x for x in counts if x], ", ") if any(counts) else told("Nothing new")
     if there := taking.count("action", ["there"]):
-        words = told("{taken}; {count} actions are here already", taken=words, count=there)
-    return told("{taken}; {count} things are left out", taken=words, count=left) if left else words
+        words = told(
+            "{taken}; {there} here already",
+            taken=words,
+            there=_count(there, told("action is"), told("actions are")),
+        )
+    if left := taking.count("action", ["left out"]) + taking.count("clip", ["left out"]):
+        words = told("{taken}; {left} left out", taken=words, left=left)
+    return words
+
+
+def _count(number: int, one: str, many: str) -> str:
+    return told("{number} {what}", number=number, what=one if number == 1 else many) if number else ""

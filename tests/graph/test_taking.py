@@ -53,14 +53,14 @@ def test_an_empty_project_becomes_what_the_other_is(other: Project) -> None:
     base = taking.project.base.clip
     assert base is not None and taking.project.clips[base].name == other.clips[other.base.clip].name
     assert not [p for p in check(taking.project) if p.severity == "error"]
-    assert words_of_taking(taking) == "3 new stances, 16 new actions and 16 new clips"
+    assert words_of_taking(taking) == "3 new stances, 16 new actions, 16 new clips"
 
 
 def test_taking_twice_changes_nothing_more(other: Project) -> None:
     once = take(Project(), other).project
     again = take(once, other)
     assert again.project == once and set(became(again, "action").values()) == {"there"}
-    assert "16 actions are here already" in words_of_taking(again)
+    assert words_of_taking(again) == "Nothing new; 16 actions are here already"
 
 
 def test_a_stance_of_the_same_name_is_joined_and_its_new_actions_added(other: Project, toy: Any) -> None:
