@@ -6,18 +6,20 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from html import escape
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from metagraph.formats.atomic import write_atomically
+from metagraph.csv_text import csv_text
+from metagraph.formats.outputs import write_together
 from metagraph.generation import figures
 from metagraph.generation.evaluation import Judged
 from metagraph.generation.features import PARTNER, SELF
 from metagraph.generation.statistics import MEASURES, Row, mean_landmarks
 from metagraph.study.report_style import STYLE
+from metagraph.xml_text import escape
 
+REPORT = ("report.html", "report.json", "report.csv")  # what is written
 NAMES = (*MEASURES, "diversity")
 # What a perfect model has; "true": what recorded motion has itself.
 PERFECT = {
@@ -92,15 +94,14 @@ def text_of(rows: Sequence[Row]) -> str:
 
 def csv_of(rows: Sequence[Row]) -> str:
     """Return the table as CSV: name, measure, value and its interval a line."""
-    lines = ["system,measure,value,low,high"]
+    lines = [["system", "measure", "value", "low", "high"]]
     for row in rows:
         for n in NAMES:
             if n in row.values:
                 low, high = row.spread.get(n, (float("nan"), float("nan")))
                 cells = (_number(v, 6) for v in (row.values[n], low, high))
-                name = '"' + row.name.replace('"', '""') + '"' if set(row.name) & set(',"') else row.name
-                lines.append(",".join([name, n, *("" if c == "-" else c for c in cells)]))
-    return "\n".join(lines) + "\n"
+                lines.append([row.name, n, *("" if c == "-" else c for c in cells)])
+    return csv_text(lines)
 
 
 def write_report(judged: Judged, told: dict[str, Any], notes: Sequence[str], folder: Path) -> list[Path]:
@@ -110,9 +111,8 @@ def write_report(judged: Judged, told: dict[str, Any], notes: Sequence[str], fol
         "report.json": json.dumps({**data_of(judged.rows, told), "notes": list(notes)}, indent=1) + "\n",
         "report.csv": csv_of(judged.rows),
     }
-    for name, text in content.items():
-        write_atomically(folder / name, text.encode())
-    return [folder / name for name in content]
+    assert tuple(content) == REPORT
+    return write_together(folder, {name: text.encode() for name, text in content.items()})
 
 
 def page(judged: Judged, told: dict[str, Any], notes: Sequence[str]) -> str:

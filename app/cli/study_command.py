@@ -103,10 +103,12 @@ def run(options: Namespace) -> int:
 def report(options: Namespace) -> int:
     from app.cli.command_output import say
     from app.cli.study_papers import papers_maker
-    from metagraph.study.report import summary, write_report
+    from metagraph.formats.outputs import claim
+    from metagraph.study.report import NAME, summary, write_report
     from metagraph.study.study_plan import read_study
 
     place = options.out or read_study(options.folder).folder / "report"
+    claim(place / NAME)
     results = _results(options)
     written = write_report(results, place, papers_maker())
     _tell_missing(results)
@@ -118,15 +120,18 @@ def report(options: Namespace) -> int:
 
 def export(options: Namespace) -> int:
     from app.cli.command_output import say
+    from metagraph.formats.outputs import claim
     from metagraph.study.bids import write_bids
     from metagraph.study.study_plan import read_study
     from metagraph.study.xes import write_xes
+    from metagraph.xml_text import INSTEAD
 
     if options.bids is None and options.xes is None:
         raise ValueError("say what to write: --bids OUT, --xes OUT")
     study, lines = read_study(options.folder), []
     data: dict[str, Any] = {}
     if options.bids is not None:
+        claim(options.bids / "dataset_description.json")
         results = _results(options)
         written = write_bids(study, results, options.bids)
         _tell_missing(results)
@@ -135,6 +140,8 @@ def export(options: Namespace) -> int:
     if options.xes is not None:
         count = write_xes(study, options.xes)
         lines.append(f"{options.xes}: {count} tasks")
+        if INSTEAD in options.xes.read_text(encoding="utf-8"):
+            print(f"note: {INSTEAD} stands for what XML cannot hold", file=sys.stderr)
         data |= {"xes": str(options.xes), "traces": count}
     say(options, "\n".join(lines), data)
     return 0
