@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from metagraph import __version__
+from metagraph.programs import settle
 
 ERROR = 1
 
@@ -137,6 +138,7 @@ def _module(name: str) -> Any:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command line; return the exit code. Wrong usage and --help raise SystemExit, as argparse does."""
+    settle()
     # Before NumPy is there. Its threads only wait for each other in a small model's sums; what is large
     # shares its blocks among threads itself.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
