@@ -155,8 +155,8 @@ def test_a_child_finds_what_its_parent_does_and_nothing_of_the_working_folder(
 
 
 def test_variables_that_name_code_are_not_passed_on(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    code = ("PYTHONPATH", "PYTHONSTARTUP", "PYTHONHOME", "NODE_OPTIONS", "NODE_PATH", "LD_PRELOAD", "LD_AUDIT",
-            "BASH_ENV", "ENV", "GIT_SSH_COMMAND", "DYLD_INSERT_LIBRARIES", "ESBUILD_BINARY_PATH",
+    code = ("PYTHONPATH", "PYTHONSTARTUP", "PYTHONHOME", "NODE_OPTIONS", "NODE_PATH", "LD_PRELOAD",
+            "LD_AUDIT", "BASH_ENV", "ENV", "GIT_SSH_COMMAND", "DYLD_INSERT_LIBRARIES", "ESBUILD_BINARY_PATH",
             "NPM_CONFIG_NODE_OPTIONS", "npm_config_script_shell", "PERL5OPT", "RUBYOPT")  # fmt: skip
     for name in code:
         monkeypatch.setenv(name, str(tmp_path))

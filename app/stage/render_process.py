@@ -14,6 +14,7 @@ from app.project.jobs import Job
 from app.translation import tr
 from metagraph.formats.store import absolute, save_project
 from metagraph.graph.model import Project
+from metagraph.network_paths import is_allowed
 from metagraph.programs import python, start
 
 SUFFIXES = {
@@ -76,6 +77,8 @@ def write(project: Project, folder: Path, wanted: RenderOrder, job: Job) -> Path
         ]
         if not wanted.cuts:
             words.append("--no-cuts")
+        if is_allowed():
+            words.append("--network")
         if wanted.performance is not None:
             words += ["--performance", wanted.performance]
         if wanted.conversation is not None:

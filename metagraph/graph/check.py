@@ -16,6 +16,7 @@ from metagraph.graph.expand import reachable
 from metagraph.graph.manual_check import check_manual
 from metagraph.graph.model import KINDS, LAYERS, Action, MetaGraph, Project
 from metagraph.graph.problem import Problem, Severity
+from metagraph.network_paths import original
 from metagraph.uncollected import uncollected
 from metagraph.wording import told
 
@@ -61,7 +62,11 @@ def _clips(project: Project) -> Iterator[Problem]:
             yield Problem(
                 "error" if used else "warning",
                 "file-missing",
-                told("the file of clip '{name}' is missing ({path})", name=entry.name, path=entry.path),
+                told(
+                    "the file of clip '{name}' is missing ({path})",
+                    name=entry.name,
+                    path=original(entry.path),
+                ),
                 told("Put the file back, or choose 'Find missing files' and show where it is now."),
                 clip=entry.id,
             )

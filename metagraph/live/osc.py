@@ -141,7 +141,7 @@ class OscLine(asyncio.DatagramProtocol):
     def __init__(self, hub: Hub, clock: Callable[[], float]) -> None:
         self.hub, self.clock = hub, clock
         self.senders: dict[Any, _Sender] = {}
-        self.transport: asyncio.DatagramTransport | None = None
+        self.transport: Any = None  # asyncio.DatagramTransport, whose types lack how much waits
 
     def connection_made(self, transport: Any) -> None:
         self.transport = transport

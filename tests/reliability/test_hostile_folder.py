@@ -26,8 +26,8 @@ MODULES = sorted({
 })  # fmt: skip
 PROGRAMS = (
     "node", "npm", "npx", "esbuild", "ffmpeg", "git", "ps", "pip", "pip3", "python", "python3", "xdg-open",
-    "gio", "kde-open", "gnome-open", "open", "explorer", "gcc", "cc", "ld", "ldconfig", "objdump", "sh", "bash",
-    "env", "nice", "uname", "lsb_release", "which", "apt-get", "sudo", "portaudio-config", "file",
+    "gio", "kde-open", "gnome-open", "open", "explorer", "gcc", "cc", "ld", "ldconfig", "objdump", "sh",
+    "bash", "env", "nice", "uname", "lsb_release", "which", "apt-get", "sudo", "portaudio-config", "file",
 )  # fmt: skip
 
 HELPERS = """
