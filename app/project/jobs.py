@@ -111,11 +111,11 @@ class Jobs(QObject):
     """Starts jobs and keeps them alive while they run. `changed` tells when one starts or ends.
 
     A job goes on when the dialog that started it is closed, unless that cancels it. `outlived` then tells how
-    it ended, instead of the dialog: (title, the exception or None).
+    it ended, instead of the dialog: (title, the exception or None, whether what it made stands).
     """
 
     changed = Signal()
-    outlived = Signal(str, object)
+    outlived = Signal(str, object, bool)
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -134,13 +134,16 @@ class Jobs(QObject):
         done: Callable[[Any], None] | None = None,
         failed: Callable[[Exception], None] | None = None,
         quick: bool = False,
+        stands: bool = False,
     ) -> Job:
-        """Run `work(job)` on a thread. quick: a short background job, not shown to the user."""
+        """Run `work(job)` on a thread. quick: a short background job, not shown to the user. stands: what it
+        makes is there without whoever it is delivered to, such as a file.
+        """
         job = Job(title, work)
         if done is not None:
-            job.done.connect(self._to_who_is_left(done, "" if quick else title))
+            job.done.connect(self._to_who_is_left(done, "" if quick else title, stands))
         if failed is not None:
-            job.failed.connect(self._to_who_is_left(failed, "" if quick else title))
+            job.failed.connect(self._to_who_is_left(failed, "" if quick else title, stands))
             job.heard = True
         if not quick:
             self.running.append(job)
@@ -155,14 +158,16 @@ class Jobs(QObject):
             (self._quick if quick else self._pool).start(_Runner(job))
         return job
 
-    def _to_who_is_left(self, callback: Callable[[Any], None], title: str) -> Callable[[Any], None]:
+    def _to_who_is_left(
+        self, callback: Callable[[Any], None], title: str, stands: bool
+    ) -> Callable[[Any], None]:
         """Return what calls back if whoever is called is still there, and else says how a job ended."""
 
         def deliver(value: Any) -> None:
             if is_alive(callback):
                 callback(value)
             elif title:
-                self.outlived.emit(title, value if isinstance(value, Exception) else None)
+                self.outlived.emit(title, value if isinstance(value, Exception) else None, stands)
 
         return deliver
 

@@ -62,12 +62,14 @@ class JobLine(QWidget):
         if self.jobs.running and words:
             self.label.setText(f"{self.jobs.running[-1].title}: {words}")
 
-    def _tell_end(self, title: str, error: Exception | None) -> None:
+    def _tell_end(self, title: str, error: Exception | None, stands: bool) -> None:
         """Say how a job ended whose dialog was closed."""
-        if error is None:
+        if error is not None:
+            self.told.emit(tr("{title}: {error}", title=title, error=tr_error(error)))
+        elif stands:
             self.told.emit(tr("{title}: done.", title=title))
         else:
-            self.told.emit(tr("{title}: {error}", title=title, error=tr_error(error)))
+            self.told.emit(tr("{title}: what came of it was dropped with its dialog.", title=title))
 
     def _cancel(self) -> None:
         if self.jobs.running:

@@ -339,7 +339,9 @@ class ExportDialog(QDialog):
         def failed(error: Exception) -> None:
             self._failed(name, error)
 
-        job = self.jobs.start(tr("Exporting"), work, lambda made: self._done(made, folder), failed)
+        job = self.jobs.start(
+            tr("Exporting"), work, lambda made: self._done(made, folder), failed, stands=True
+        )
         job.progress.connect(self._tell)
 
     def _tell(self, done: int, total: int, words: str) -> None:

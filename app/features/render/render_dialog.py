@@ -197,7 +197,7 @@ class RenderDialog(QDialog):
         def work(job: Job) -> Path:
             return write(project, folder, wanted, job)
 
-        job = self.jobs.start(tr("Writing the performance"), work, self._done, self._failed)
+        job = self.jobs.start(tr("Writing the performance"), work, self._done, self._failed, stands=True)
         job.progress.connect(self._tell)
         job.ended.connect(self._ended)
 
