@@ -51,6 +51,10 @@ ENGINES = {
 }
 
 
+# Programs are the system's own, wherever PATH leads: in a folder of somebody's, `npm` may be anything.
+PLACES = ("/usr/local/sbin", "/usr/local/bin", "/usr/sbin", "/usr/bin", "/sbin", "/bin", "/opt/homebrew/bin")
+
+
 def main(arguments):
     if not (3, 11) <= sys.version_info[:2] <= (3, 13):
         return f"Python 3.11, 3.12 or 3.13 is needed, this is {sys.version_info[0]}.{sys.version_info[1]}."
@@ -74,12 +78,17 @@ def main(arguments):
 # --- system libraries
 
 
+def program(name):
+    """Return the path of one of the system's programs, None where it has none."""
+    return shutil.which(name, path=None if WINDOWS else os.pathsep.join(PLACES))
+
+
 def missing(screen, testing):
     """Return the Debian packages that are not there."""
     wanted = {**DRAWING, **(WINDOW if screen or testing else {})}
     out = [package for library, package in wanted.items() if not loads(library)]
     if testing:
-        out += [package for program, package in TESTING.items() if shutil.which(program) is None]
+        out += [package for name, package in TESTING.items() if shutil.which(name) is None]
     return out
 
 
@@ -97,24 +106,27 @@ def system_libraries(screen, testing):
         return None
     install = ["apt-get", "install", "-y", "--no-install-recommends", *packages]
     line = "sudo apt-get update && sudo " + " ".join(install)
-    if shutil.which("apt-get") is None:
+    if program("apt-get") is None:
         return (
             "System libraries are missing. This installs them on Debian and Ubuntu; elsewhere they have "
             "similar names:\n  "
         ) + line
     if os.geteuid() == 0:
         prefix = []
-    elif shutil.which("sudo") and sys.stdin.isatty():
+    elif program("sudo") and sys.stdin.isatty():
         print("System libraries are missing: " + " ".join(packages))
         if input("Install them now with sudo? [Y/n] ").strip().lower() not in ("", "y", "yes"):
             return "Then install them yourself and start again:\n  " + line
-        prefix = ["sudo"]
+        prefix = [program("sudo")]
     else:
         return "System libraries are missing. Install them and start again:\n  " + line
     print("Installing system libraries: " + " ".join(packages), flush=True)
     environ = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
-    for command in (["apt-get", "update", "-qq"], install):
-        if subprocess.call([*prefix, *command], env=environ, stdout=subprocess.DEVNULL) != 0:
+    for command in (["update", "-qq"], install[1:]):
+        if (
+            subprocess.call([*prefix, program("apt-get"), *command], env=environ, stdout=subprocess.DEVNULL)
+            != 0
+        ):
             return "That failed. Install them yourself and start again:\n  " + line
     left = missing(screen, testing)
     return f"Still missing after the installation: {' '.join(left)}" if left else None
@@ -122,25 +134,30 @@ def system_libraries(screen, testing):
 
 def engines():
     """Install what exports are run in, as far as this system offers it."""
-    absent = [package for program, package in ENGINES.items() if shutil.which(program) is None]
-    if not absent or not sys.platform.startswith("linux") or shutil.which("apt-get") is None:
+    absent = [package for name, package in ENGINES.items() if shutil.which(name) is None]
+    if not absent or not sys.platform.startswith("linux") or program("apt-get") is None:
         return
-    install = ["apt-get", "install", "-y", "--no-install-recommends"]
+    apt = program("apt-get")
+    install = [apt, "install", "-y", "--no-install-recommends"]
     if os.geteuid() == 0:
         prefix = []
-    elif shutil.which("sudo") and sys.stdin.isatty():
+    elif program("sudo") and sys.stdin.isatty():
         if input(
             f"Install {', '.join(absent)} as well, to test exports in engines? [Y/n] "
         ).strip().lower() not in ("", "y", "yes"):
             return
-        prefix = ["sudo"]
+        prefix = [program("sudo")]
     else:
-        print("(Tests in engines are skipped; to run them: sudo " + " ".join([*install, *absent]) + ")")
+        print(
+            "(Tests in engines are skipped; to run them: sudo apt-get "
+            + " ".join([*install[1:], *absent])
+            + ")"
+        )
         return
     print("Installing engines to test exports in: " + " ".join(absent), flush=True)
     environ = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": environ}
-    subprocess.call([*prefix, "apt-get", "update", "-qq"], **quiet)
+    subprocess.call([*prefix, apt, "update", "-qq"], **quiet)
     if subprocess.call([*prefix, *install, *absent], **quiet) == 0:
         return
     for package in absent:  # not every system has all of them
@@ -163,7 +180,7 @@ def environment(most):
     if not PYTHON.exists() or not pip("--version", quiet=True):
         print("Making the environment in .venv (once, less than a minute) ...", flush=True)
         shutil.rmtree(VENV, ignore_errors=True)
-        made = subprocess.run([sys.executable, "-m", "venv", str(VENV)], capture_output=True, text=True)
+        made = subprocess.run([sys.executable, "-I", "-m", "venv", str(VENV)], capture_output=True, text=True)
         if made.returncode != 0:
             shutil.rmtree(VENV, ignore_errors=True)
             hint = (
@@ -230,7 +247,7 @@ def prepare_and_test(arguments):
 
 def node_packages():
     """Install what exports are checked in with Node, where it is."""
-    npm = shutil.which("npm")
+    npm = program("npm")
     stamp, wanted = ROOT / "tests" / "node_modules" / ".installed", ROOT / "tests" / "package.json"
     wanted = wanted.read_text() if wanted.exists() else None
     if npm and wanted and not (stamp.exists() and stamp.read_text() == wanted):

@@ -14,6 +14,7 @@ from PySide6.QtGui import QSurfaceFormat
 from PySide6.QtWidgets import QApplication
 
 from app.quick_imports import without_array_help, without_search, without_typing_extensions
+from metagraph.programs import settle
 from metagraph.uncollected import uncollected
 
 without_search()
@@ -38,6 +39,7 @@ def _application() -> QApplication:
     from app.memory import frugal
     from preview.early_driver import load_soon
 
+    settle()
     frugal()
     load_soon()
     # Planning and checking run on threads; the window's own must get its turn well within a frame.

@@ -28,6 +28,7 @@ FRAMES = 6 * 3600 * 240  # of one clip: six hours of the fastest cameras
 FRAME_SECONDS = (1e-4, 60.0)  # one frame lasts
 CLIP_SECONDS = 6 * 3600.0
 JOINTS = 4096
+JOINTS_DEEP = 1024  # each on the one before: what looks along such lines takes their length for each joint
 NODES = 250_000
 FBX_SAMPLES = 20_000_000  # transforms asked of the library, one by one
 FBX_MEMORY = 8 * GIB  # of the process that reads one

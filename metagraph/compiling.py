@@ -17,7 +17,8 @@ from threading import Lock
 from types import BuiltinFunctionType, FunctionType, ModuleType
 from typing import Any
 
-ROOT = Path(__file__).resolve().parents[1]
+from metagraph.programs import ROOT, is_own, run
+
 NUMBA = "numba>=0.60"
 
 kept_by_numba = [True]  # whether numba keeps on disk what it makes, and takes it from there
@@ -98,14 +99,17 @@ def compiler(keep: bool = True, **options: Any) -> Callable[[Callable[..., Any]]
         with _ONE:
             if not there():
                 _install()
-    import numba  # half a second
+    numba = _numba()
 
     def compiled(function: Callable[..., Any]) -> Any:
         try:
-            return numba.njit(cache=keep and kept_by_numba[0], **options)(function)
+            loop = numba.njit(cache=keep and kept_by_numba[0], **options)(function)
+            if loop.stats.cache_path is None or is_own(Path(loop.stats.cache_path)):
+                return loop
         except RuntimeError:  # no folder to cache in
-            unkept.append(function.__name__)
-            return numba.njit(**options)(function)
+            pass
+        unkept.append(function.__name__)  # or others could have put there what would be run
+        return numba.njit(**options)(function)
 
     return compiled
 
@@ -143,6 +147,20 @@ def stamp(modules: Sequence[ModuleType]) -> int:
     return said
 
 
+def _numba() -> ModuleType:
+    """Return numba, which takes settings, such as where to load compiled code from, from a file in the
+    working folder: not from there.
+    """
+    import numba  # half a second
+    from numba.core import config
+
+    settings: Any = config
+    if getattr(settings, "_config_fname", None) != os.devnull:
+        settings._config_fname = os.devnull
+        settings._env_reloader.update(force=True)
+    return numba
+
+
 def _install() -> None:
     """Have run.py install numba into the environment it made: whoever started run.py asked for what it
     takes.
@@ -155,20 +173,14 @@ def _install() -> None:
             f'This needs numba, which is not installed. Install it: "{sys.executable}" -m pip install '
             f'"{NUMBA}"'
         )
-    import subprocess
-
     print(
         "Installing the compiler that new motion needs (60 MB to load, once) ...", file=sys.stderr, flush=True
     )
-    environ = {"PIP_RETRIES": "2", **os.environ}  # where there is no network that is told in seconds
-    made = subprocess.run(
-        [sys.executable, str(setup), "install"], cwd=ROOT, capture_output=True, text=True, env=environ
-    )
+    retries = os.environ.get("PIP_RETRIES", "2")  # where there is no network that is told in seconds
+    code, words = run([sys.executable, "-I", str(setup), "install"], cwd=ROOT, env={"PIP_RETRIES": retries})
     importlib.invalidate_caches()
-    if made.returncode != 0 or not there():
-        said = [line for line in (made.stdout + made.stderr).splitlines() if "ERROR" in line] or [
-            "nothing was said"
-        ]
+    if code != 0 or not there():
+        said = [line for line in words.splitlines() if "ERROR" in line] or ["nothing was said"]
         raise CompilerError(
             f"This needs numba, which could not be installed ({said[-1].strip()}). "
             "Check the network and try again, or install it before you go where there is none: python3 "

@@ -7,12 +7,12 @@ Ends with 1 where they could not be kept, neither so nor by numba.
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
 
-from metagraph.compiling import ROOT, Loops, kept_by_numba, there, unkept
+from metagraph.compiling import Loops, kept_by_numba, there, unkept
 from metagraph.formats import bvh, gltf_loops, stray_poses
 from metagraph.playback import loops
+from metagraph.programs import python, run
 
 BY_NUMBA = "by-numba"
 ALL = (*loops.LOOPS, bvh.COMPILED, stray_poses.COMPILED, gltf_loops.TEXT, gltf_loops.KEYS)
@@ -29,8 +29,7 @@ def keep() -> bool:
     if kept_by_numba[0]:
         return loops.load() and not unkept
     # What was compiled here is not kept by numba, but what another process compiles.
-    made = subprocess.run([sys.executable, "-m", "metagraph.keep_loops", BY_NUMBA], cwd=ROOT)
-    return made.returncode == 0
+    return run(python("metagraph.keep_loops", BY_NUMBA))[0] == 0
 
 
 def _kept(known: Loops) -> bool:

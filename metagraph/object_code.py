@@ -18,7 +18,6 @@ import json
 import mmap
 import os
 import platform
-import stat
 import sys
 import sysconfig
 from collections.abc import Callable, Mapping
@@ -33,6 +32,7 @@ import numpy as np
 
 from metagraph.disk_cache import cache_folder
 from metagraph.object_linking import PAGE, Image, raised
+from metagraph.programs import read_own
 
 MAGIC = b"metagraph loops 1\n"
 MOST = 64 << 20  # bytes of a file
@@ -89,7 +89,7 @@ _kept_alive: list[Any] = []  # memory that code lies in, and libraries it calls
 def load(module: str) -> Any:
     """Return the loops kept of a module, by their names; None where there are none that fit."""
     place = path(module)
-    content = _own(place) if place is not None else None
+    content = read_own(place, MOST) if place is not None else None
     if content is None:
         return None
     try:
@@ -151,22 +151,6 @@ def _sweep(folder: Path, most: int = 32) -> None:
     for file in (*files[:-most], *folder.glob("*.bin.*")):
         with suppress(OSError):
             file.unlink()
-
-
-def _own(place: Path) -> bytes | None:
-    """Return a file's content, if nobody but the user could have written it: it is going to be run."""
-    try:
-        above = place.parent.stat()
-        handle = os.open(place, os.O_RDONLY | os.O_NOFOLLOW)
-        with os.fdopen(handle, "rb") as file:
-            told = os.fstat(handle)
-            if not stat.S_ISREG(told.st_mode) or told.st_size > MOST:
-                return None
-            if any(x.st_uid != os.geteuid() or x.st_mode & 0o022 for x in (told, above)):
-                return None
-            return file.read()
-    except OSError:
-        return None
 
 
 def _read(content: bytes) -> tuple[dict[str, Any], dict[str, Image]]:

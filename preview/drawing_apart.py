@@ -5,13 +5,13 @@ whatever the machine has, since most of the work is placing triangles.
 from __future__ import annotations
 
 import itertools
-import multiprocessing
 import os
+import pickle
+import queue
 import tempfile
 from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -19,10 +19,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.child_channel import Child
 from preview.camera import Camera
 from preview.figure import Figure
 from preview.offscreen import Offscreen
-from preview.scene import Actor, Scene, Theme
+from preview.scene import Scene, Theme
 
 Array = NDArray[Any]
 Seen = tuple[Scene, Camera]
@@ -32,6 +33,7 @@ MOST = 4  # processes; more would wait for whoever encodes
 # two cores gain a seventh over a minute, and nothing over ten seconds.
 WORTH, LEAST = 900, 300
 WORTH_LEVELS = 90  # pictures that making meshes with fewer triangles pays for
+PATIENCE = 2.0  # seconds for a process to end by itself
 WAITING = 4  # pictures under way for each process
 
 
@@ -89,28 +91,26 @@ def _drawn_apart(
     width, height = here.size
     slots = processes * WAITING + 1  # one more, that is looked at
     pool = np.memmap(path, np.uint8, "w+", shape=(slots, height, width, 4))
-    executor = ProcessPoolExecutor(
-        processes,
-        multiprocessing.get_context("spawn"),
-        _begin,
-        (figures, here.size, theme, str(path), slots),
-    )
+    begin = pickle.dumps((figures, here.size, theme, str(path), slots))
+    drawers = [Child("preview.drawing_child") for _ in range(processes)]
+    free: queue.SimpleQueue[Child] = queue.SimpleQueue()
+    executor = ThreadPoolExecutor(processes)  # a thread waits for each of them
+    come = [executor.submit(_begin, drawer, begin, free) for drawer in drawers]
     waiting: deque[tuple[Future[int] | None, Seen]] = deque()
-    ready = executor.submit(_ready)
     broken = False
     number = 0
     try:
         while True:
             while len(waiting) < slots - 1 and (seen := next(scenes, None)) is not None:
-                task = None
-                if ready.done() and not broken:
-                    try:
-                        task = _submitted(executor, figures, seen, number % slots)
-                    except (BrokenProcessPool, RuntimeError):
-                        broken = True
+                ready = any(one.done() for one in come)
+                task = (
+                    _submitted(executor, free, figures, seen, number % slots)
+                    if ready and not broken
+                    else None
+                )
                 waiting.append((task, seen))
                 number += 1
-                if not ready.done():
+                if not ready:
                     break  # so that they find some to draw when they have come
             if not waiting:
                 return
@@ -119,7 +119,7 @@ def _drawn_apart(
             if task is not None:
                 try:
                     picture = pool[task.result()]
-                except Exception:  # a process that ends may leave anything behind
+                except (OSError, EOFError):  # it has ended
                     broken = True
             if picture is None:
                 yield here.render(scene, camera, theme, into=into)
@@ -129,12 +129,30 @@ def _drawn_apart(
                 into[...] = picture
                 yield into
     finally:
+        for task, _ in waiting:
+            if task is not None:
+                task.cancel()
         executor.shutdown(wait=True, cancel_futures=True)
+        for drawer in drawers:
+            drawer.close(PATIENCE)
         del pool
 
 
+def _begin(drawer: Child, begin: bytes, free: queue.SimpleQueue[Child]) -> None:
+    """Tell one what it will draw, and wait until it has come up."""
+    try:
+        drawer.send(begin)
+        drawer.receive()
+    finally:
+        free.put(drawer)  # one that has ended says so to whoever asks it
+
+
 def _submitted(
-    executor: ProcessPoolExecutor, figures: Sequence[Figure], seen: Seen, slot: int
+    executor: ThreadPoolExecutor,
+    free: queue.SimpleQueue[Child],
+    figures: Sequence[Figure],
+    seen: Seen,
+    slot: int,
 ) -> Future[int] | None:
     """Hand a scene out; None where somebody is in it the others do not know."""
     scene, camera = seen
@@ -143,33 +161,15 @@ def _submitted(
         return None
     # Figures are known there by their number: a mesh is kept by who it is.
     actors = [replace(a, figure=None) for a in scene.actors]  # type: ignore[arg-type]
-    return executor.submit(_draw, slot, replace(scene, actors=()), actors, numbers, camera)
+    order = pickle.dumps((slot, replace(scene, actors=()), actors, numbers, camera))
 
+    def draw() -> int:
+        drawer = free.get()
+        try:
+            drawer.send(order)
+            drawer.receive()
+        finally:
+            free.put(drawer)
+        return slot
 
-# --- in the other process
-
-
-class _There:
-    """What a process draws with."""
-
-    figures: Sequence[Figure]
-    offscreen: Offscreen
-    theme: Theme
-    pool: Array
-
-
-def _begin(figures: Sequence[Figure], size: tuple[int, int], theme: Theme, path: str, slots: int) -> None:
-    os.environ["LP_NUM_THREADS"] = "1"  # each process has a core
-    _There.figures, _There.theme = figures, theme
-    _There.offscreen = Offscreen(*size)
-    _There.pool = np.memmap(path, np.uint8, "r+", shape=(slots, size[1], size[0], 4))
-
-
-def _ready() -> None:
-    """Tell that one has come up."""
-
-
-def _draw(slot: int, scene: Scene, actors: Sequence[Actor], numbers: Sequence[int], camera: Camera) -> int:
-    there = tuple(replace(a, figure=_There.figures[n]) for a, n in zip(actors, numbers, strict=True))
-    _There.offscreen.render(replace(scene, actors=there), camera, _There.theme, into=_There.pool[slot])
-    return slot
+    return executor.submit(draw)

@@ -20,18 +20,18 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 class Setup:
-    """Takes the place of subprocess.run: notes what was started; numba is there afterwards, where it may."""
+    """Takes the place of programs.run: notes what was started; numba is there afterwards, where it may."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, works: bool, said: str = "") -> None:
         self.started: list[list[str]] = []
         self.works, self.said, self.is_there = works, said, False
-        monkeypatch.setattr(subprocess, "run", self)
+        monkeypatch.setattr(compiling, "run", self)
         monkeypatch.setattr(compiling, "there", lambda: self.is_there)
 
-    def __call__(self, command: list[str], **more: Any) -> subprocess.CompletedProcess[str]:
+    def __call__(self, command: list[str], **more: Any) -> tuple[int, str]:
         self.started.append(command)
         self.is_there = self.works
-        return subprocess.CompletedProcess(command, 0 if self.works else 1, "", self.said)
+        return 0 if self.works else 1, self.said
 
 
 @pytest.fixture
@@ -58,7 +58,7 @@ def test_run_py_installs_it_into_the_environment_it_made_and_says_so(
     pytest.importorskip("numba")
     setup = Setup(monkeypatch, works=True)
     compiler()
-    assert setup.started == [[sys.executable, str(ROOT / "run.py"), "install"]]
+    assert setup.started == [[sys.executable, "-I", str(ROOT / "run.py"), "install"]]
     said = capsys.readouterr()
     assert "Installing the compiler" in said.err and not said.out  # there may be JSON on the other
     compiler()

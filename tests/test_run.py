@@ -106,7 +106,7 @@ def test_the_wrong_python_is_refused_in_words(
 
 def test_a_complete_system_misses_nothing(run: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(run, "loads", lambda library: True)
-    monkeypatch.setattr(run.shutil, "which", lambda program: "/usr/bin/" + program)
+    monkeypatch.setattr(run.shutil, "which", lambda program, path=None: "/usr/bin/" + program)
     assert run.missing(True, True) == []
     assert run.system_libraries(True, True) is None
 
@@ -115,7 +115,7 @@ def test_without_a_screen_only_drawing_is_needed_and_tests_need_it_all(
     run: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(run, "loads", lambda library: False)
-    monkeypatch.setattr(run.shutil, "which", lambda program: None)
+    monkeypatch.setattr(run.shutil, "which", lambda program, path=None: None)
     assert run.missing(False, False) == ["libegl1", "libgl1"]
     assert set(run.missing(True, False)) == {*run.DRAWING.values(), *run.WINDOW.values()}
     assert set(run.missing(False, True)) == {
@@ -139,7 +139,7 @@ LINE = "sudo apt-get update && sudo apt-get install -y --no-install-recommends l
 def bare(run: ModuleType, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     """On a Debian without the drawing libraries."""
     monkeypatch.setattr(run, "loads", lambda library: False)
-    monkeypatch.setattr(run.shutil, "which", lambda program: program)
+    monkeypatch.setattr(run.shutil, "which", lambda program, path=None: program)
     monkeypatch.setattr(run.sys, "stdin", Terminal(False))
     monkeypatch.setattr(run.os, "geteuid", lambda: 1000, raising=False)
     return run
@@ -148,7 +148,7 @@ def bare(run: ModuleType, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
 def test_without_apt_the_line_for_debian_is_printed(
     bare: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(bare.shutil, "which", lambda program: None)
+    monkeypatch.setattr(bare.shutil, "which", lambda program, path=None: None)
     assert bare.system_libraries(False, False).endswith(LINE)
 
 
@@ -339,7 +339,7 @@ def test_it_starts_the_window_or_the_same_job_without_one(
 def test_the_tests_are_lint_types_imports_and_pytest_and_one_failure_is_a_failure(
     run: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(run.shutil, "which", lambda program: None)
+    monkeypatch.setattr(run.shutil, "which", lambda program, path=None: None)
     calls, compiling = Started(0, 0, 1, 0, 0), Compiling()
     monkeypatch.setattr(run.subprocess, "call", calls)
     monkeypatch.setattr(run.subprocess, "Popen", compiling)
@@ -476,7 +476,7 @@ def without(run: ModuleType, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     """A Debian that has apt and nothing to test exports in."""
     monkeypatch.setattr(run.sys, "platform", "linux")
     monkeypatch.setattr(
-        run.shutil, "which", lambda program: "/usr/bin/apt-get" if program == "apt-get" else None
+        run.shutil, "which", lambda program, path=None: "/usr/bin/apt-get" if program == "apt-get" else None
     )
     return run
 
@@ -514,7 +514,7 @@ def test_nothing_is_installed_where_all_engines_are_or_no_apt_is(
 ) -> None:
     calls = Started()
     monkeypatch.setattr(run.subprocess, "call", calls)
-    for which in (lambda program: f"/usr/bin/{program}", lambda program: None):
+    for which in (lambda program, path=None: f"/usr/bin/{program}", lambda program, path=None: None):
         monkeypatch.setattr(run.shutil, "which", which)
         run.engines()
     assert not calls

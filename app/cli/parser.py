@@ -14,8 +14,11 @@ from typing import Any
 
 from app.cli.outputs import offer_overwrite, outputs_of
 from metagraph import __version__
+from metagraph.network_paths import allow
+from metagraph.programs import settle
 
 ERROR = 1
+NETWORK = "--network"  # of any command: open files on other computers that a project names
 
 DESCRIPTION = """\
 Drop motion clips onto stance, gesture, fidget and transition; the state machine draws itself.
@@ -36,6 +39,8 @@ examples:
   metagraph speech talk.wav --words talk.TextGrid -o talk.eaf
   metagraph live my.metagraph.yaml            play, and do what agents ask
   metagraph study report my-study/            what a timing study found
+
+files on other computers (\\\\server\\share) that a project or a study names are opened only with --network
 
 exit codes: 0 done, 1 an error, 2 wrong usage, 3 done but with problems"""
 
@@ -139,10 +144,13 @@ def _module(name: str) -> Any:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command line; return the exit code. Wrong usage and --help raise SystemExit, as argparse does."""
+    settle()
     # Before NumPy is there. Its threads only wait for each other in a small model's sums; what is large
     # shares its blocks among threads itself.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     given = list(sys.argv[1:] if arguments is None else arguments)
+    allow(NETWORK in given)
+    given = [word for word in given if word != NETWORK]
     parser = _parser(given[0] if given else "window")
     if not given or given[0] not in (*COMMANDS, "-h", "--help", "--version"):
         if given and not given[0].startswith("-") and "." not in given[0] and not Path(given[0]).exists():

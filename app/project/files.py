@@ -18,6 +18,7 @@ from app.project.document import Document, state_folder
 from app.project.jobs import WORDS, Job, Jobs
 from app.project.keeper import Keeper
 from app.project.leftovers import FoundJournal, forget, keep_as_copy, look_beside
+from app.project.network_files import NetworkFiles
 from app.project.opening import load_recovered, open_whole
 from app.project.outside import Outside
 from app.project.saver import Saver
@@ -30,6 +31,7 @@ from metagraph.formats.locking import Lock
 from metagraph.formats.recovery import Left
 from metagraph.formats.store import SUFFIX, Opened, absolute, read_project
 from metagraph.graph.model import Project
+from metagraph.network_paths import allow
 
 if TYPE_CHECKING:
     from app.project.recovering import Choice
@@ -63,6 +65,7 @@ class Files(QObject):
         self.outside = Outside(self)
         self.keeper = Keeper(document, jobs, self)
         self.keeper.told.connect(self.told)
+        self.network = NetworkFiles(self)
         self._asked_for: Lock | None = None  # of the place that is being saved to
         self.closed = ""  # why no other project or clip may be brought in now, in words
 
@@ -156,6 +159,8 @@ class Files(QObject):
         copies = [left for left, choice in choices if choice == "copy"]
         dropped = [left for left, choice in choices if choice == "discard"]
         lock = found.lock if found is not None and found.lock is not None and found.lock.held else None
+        if not template:  # a copy of one that was asked about names the same
+            allow(False)
 
         def work(job: Job) -> tuple[Opened, Project | None, list[Path], tuple[Step, ...]]:
             kept = [keep_as_copy(other, path) for other in copies]
@@ -193,8 +198,10 @@ class Files(QObject):
                 self.look_at_file()
             if kept:
                 self.told.emit(tr("Saved beside it: {names}", names=", ".join(place.name for place in kept)))
-            if opened.notes:
-                self.report.emit(tr("{name} was opened, but", name=path.name), list(opened.notes))
+            notes = [note for note in opened.notes if not self.network.tells(note)]
+            if notes:
+                self.report.emit(tr("{name} was opened, but", name=path.name), notes)
+            self.network.look()
 
         def failed(error: Exception) -> None:
             _release(lock, self.document)

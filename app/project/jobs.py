@@ -5,9 +5,11 @@ from __future__ import annotations
 import contextlib
 import traceback
 from collections.abc import Callable
+from types import FunctionType, MethodType
 from typing import Any
 
 from PySide6.QtCore import QObject, QRunnable, Qt, QThreadPool, Signal
+from shiboken6 import isValid
 
 from app import faults
 
@@ -87,13 +89,33 @@ class _Runner(QRunnable):
         del self.job  # the pool forgets a runner later than the job is delivered
 
 
+def is_alive(callback: Callable[..., Any], depth: int = 3) -> bool:
+    """Return whether no object of Qt's that a function is a method of, or was made with, has been deleted."""
+    held = [getattr(callback, "__self__", None)]
+    for cell in getattr(callback, "__closure__", None) or ():
+        with contextlib.suppress(ValueError):  # a name that has no value yet
+            held.append(cell.cell_contents)
+    for one in held:
+        if isinstance(one, QObject):
+            if not isValid(one):
+                return False
+        elif depth and isinstance(one, FunctionType | MethodType) and not is_alive(one, depth - 1):
+            return False
+    return True
+
+
 _BUSY: list[QThreadPool] = []  # pools that outlive their window because a job would not end
 
 
 class Jobs(QObject):
-    """Starts jobs and keeps them alive while they run. `changed` tells when one starts or ends."""
+    """Starts jobs and keeps them alive while they run. `changed` tells when one starts or ends.
+
+    A job goes on when the dialog that started it is closed, unless that cancels it. `outlived` then tells how
+    it ended, instead of the dialog: (title, the exception or None, whether what it made stands).
+    """
 
     changed = Signal()
+    outlived = Signal(str, object, bool)
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -112,13 +134,16 @@ class Jobs(QObject):
         done: Callable[[Any], None] | None = None,
         failed: Callable[[Exception], None] | None = None,
         quick: bool = False,
+        stands: bool = False,
     ) -> Job:
-        """Run `work(job)` on a thread. quick: a short background job, not shown to the user."""
+        """Run `work(job)` on a thread. quick: a short background job, not shown to the user. stands: what it
+        makes is there without whoever it is delivered to, such as a file.
+        """
         job = Job(title, work)
         if done is not None:
-            job.done.connect(done)
+            job.done.connect(self._to_who_is_left(done, "" if quick else title, stands))
         if failed is not None:
-            job.failed.connect(failed)
+            job.failed.connect(self._to_who_is_left(failed, "" if quick else title, stands))
             job.heard = True
         if not quick:
             self.running.append(job)
@@ -132,6 +157,19 @@ class Jobs(QObject):
         else:
             (self._quick if quick else self._pool).start(_Runner(job))
         return job
+
+    def _to_who_is_left(
+        self, callback: Callable[[Any], None], title: str, stands: bool
+    ) -> Callable[[Any], None]:
+        """Return what calls back if whoever is called is still there, and else says how a job ended."""
+
+        def deliver(value: Any) -> None:
+            if is_alive(callback):
+                callback(value)
+            elif title:
+                self.outlived.emit(title, value if isinstance(value, Exception) else None, stands)
+
+        return deliver
 
     def _ended(self, job: Job) -> None:
         if job in self.running:

@@ -6,7 +6,7 @@ from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QToolButton, QWidget
 
 from app.project.jobs import Jobs
-from app.translation import tr
+from app.translation import tr, tr_error
 from app.widgets.making import make_widget
 
 PAUSE = 40  # milliseconds between two stands of the bar
@@ -29,6 +29,7 @@ class JobLine(QWidget):
         for widget in (self.label, self.bar, self.cancel):
             row.addWidget(widget)
         jobs.changed.connect(self._show)
+        jobs.outlived.connect(self._tell_end)
         self._latest: tuple[int, int, str] | None = None  # told, and not shown yet
         self._pause = QTimer(self, singleShot=True, interval=PAUSE)
         self._pause.timeout.connect(self._show_progress)
@@ -60,6 +61,15 @@ class JobLine(QWidget):
         self.bar.setValue(done)
         if self.jobs.running and words:
             self.label.setText(f"{self.jobs.running[-1].title}: {words}")
+
+    def _tell_end(self, title: str, error: Exception | None, stands: bool) -> None:
+        """Say how a job ended whose dialog was closed."""
+        if error is not None:
+            self.told.emit(tr("{title}: {error}", title=title, error=tr_error(error)))
+        elif stands:
+            self.told.emit(tr("{title}: done.", title=title))
+        else:
+            self.told.emit(tr("{title}: what came of it was dropped with its dialog.", title=title))
 
     def _cancel(self) -> None:
         if self.jobs.running:

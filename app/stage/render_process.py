@@ -4,9 +4,7 @@ without disturbing the window.
 
 from __future__ import annotations
 
-import os
 import subprocess
-import sys
 import tempfile
 import threading
 from dataclasses import dataclass
@@ -16,6 +14,8 @@ from app.project.jobs import Job
 from app.translation import tr
 from metagraph.formats.store import absolute, save_project
 from metagraph.graph.model import Project
+from metagraph.network_paths import is_allowed
+from metagraph.programs import python, start
 
 SUFFIXES = {
     ".mp4": tr("Video with sound"),
@@ -54,13 +54,10 @@ def write(project: Project, folder: Path, wanted: RenderOrder, job: Job) -> Path
         copy = Path(scratch) / "project.metagraph.yaml"
         save_project(absolute(project, folder), copy)
         words = [
-            sys.executable,
-            "-m",
-            "app.cli",
             "render",
             str(copy),
             "-o",
-            str(wanted.out),
+            str(wanted.out.absolute()),
             "-s",
             f"{wanted.seconds:.6f}",
             "--size",
@@ -80,19 +77,19 @@ def write(project: Project, folder: Path, wanted: RenderOrder, job: Job) -> Path
         ]
         if not wanted.cuts:
             words.append("--no-cuts")
+        if is_allowed():
+            words.append("--network")
         if wanted.performance is not None:
             words += ["--performance", wanted.performance]
         if wanted.conversation is not None:
             words += ["--conversation", wanted.conversation]
-        process = subprocess.Popen(
-            words,
+        process = start(
+            python("app.cli", *words),
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
             text=True,
             encoding="utf-8",
             errors="replace",
-            env={**os.environ, "PYTHONIOENCODING": "utf-8"},
-            cwd=Path(__file__).parents[2],
         )
         said: list[str] = []
         reader = threading.Thread(target=_listen, args=(process, job, said), daemon=True)

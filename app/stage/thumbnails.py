@@ -6,7 +6,6 @@ import contextlib
 import pickle
 import queue
 import subprocess
-import sys
 import threading
 from collections import OrderedDict
 from collections.abc import Sequence
@@ -26,6 +25,7 @@ from app.stage.picture_store import KEPT
 from app.stage.session import Session
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
+from metagraph.programs import python, start
 
 Key = tuple[str, str, str]  # clip id, what, theme
 MOST = (
@@ -212,11 +212,12 @@ class Thumbnails(QObject):
 
     def _start(self) -> None:
         """Start the process; what goes out and what comes in have a thread each, since a full pipe blocks."""
-        root = Path(__file__).resolve().parents[2]
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", "app.stage.picture_process"],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, cwd=root,
-        )  # fmt: skip
+        self._process = start(
+            python("app.stage.picture_process"),
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+        )
         self._threads = [t for t in self._threads if t.is_alive()]
         for work, more in ((self._send, (self._queue,)), (self._listen, ())):
             thread = threading.Thread(

@@ -18,6 +18,7 @@ from metagraph.budgets import (
     FRAME_SECONDS,
     FRAMES,
     JOINTS,
+    JOINTS_DEEP,
     MIB,
     MOTION_FILE,
     OUT_OF_PROPORTION,
@@ -164,6 +165,12 @@ class _Header:
             elif kind == "{":
                 if opened is None:
                     self.fail(told("'{' without a joint"), line)
+                if len(stack) >= JOINTS_DEEP:
+                    self.fail(
+                        told("its joints hang on each other more than {most} deep", most=JOINTS_DEEP),
+                        line,
+                        told("Leave out ropes, hair and cloth, or export the character alone."),
+                    )
                 stack.append(opened)
                 opened = None
             elif kind == "}":

@@ -67,6 +67,7 @@ from metagraph.motion.contact_hold import Contact
 from metagraph.motion.joint_map import JointMap
 from metagraph.motion.retime import LONGEST, MOST, SPEEDS, Hold, Retime
 from metagraph.motion.skeleton import Skeleton
+from metagraph.network_paths import closed
 
 FORMAT = 2  # of the project file; older ones are upgraded when read
 
@@ -145,7 +146,7 @@ def to_data(project: Project) -> Data:
     return {
         "metagraph": FORMAT,
         "name": project.name,
-        "character": project.character,
+        "character": plain(project.character),
         **({"hidden": list(project.hidden)} if project.hidden else {}),
         **({"language": project.language} if project.language != AUTO else {}),
         "base": sparse(project.base),
@@ -236,6 +237,29 @@ def struct_from(data: Any, kind: Any, where: str) -> Any:
 
 # --- reading
 
+
+def _closed(name: str | None) -> str | None:
+    return closed(name) if name else name
+
+
+def _with_closed_paths(value: Any) -> Any:
+    """Return lines and conversations without paths that are not to be opened; anything else as it is."""
+    if not isinstance(value, Mapping):
+        return value
+    return {k: _with_closed(v) if isinstance(v, Line | Conversation) else v for k, v in value.items()}
+
+
+def _with_closed(value: Line | Conversation) -> Line | Conversation:
+    if isinstance(value, Conversation):
+        return msgspec.structs.replace(value, sides=tuple(map(_with_closed_side, value.sides)))
+    return msgspec.structs.replace(value, audio=_closed(value.audio), phones=_closed(value.phones))
+
+
+def _with_closed_side(side: Side) -> Side:
+    audio, project, character = map(_closed, (side.audio, side.project, side.character))
+    return msgspec.structs.replace(side, audio=audio, project=project, character=character)
+
+
 _ACTION_FIELDS = ({f.name for f in fields(Action)} | {f.name for f in fields(Timing)}) - {"layer", "timing"}
 _CLIP_FIELDS = ({f.name for f in fields(ClipEntry)} | {"sha256", "speed", "holds", "contacts"}) - {
     "motion",
@@ -271,6 +295,7 @@ def _clip_from(data: Data, where: str) -> ClipEntry:
     for key in ("name", "path"):
         if key not in values:
             raise DataError(f"{where}.{key}", "is missing")
+    values["path"] = closed(values["path"])
     for name in values.get("as_is", ()):
         one_of(name, REPAIRS, f"{where}.as_is")
     return ClipEntry(digest=get(data, "sha256", str, where, ""), retime=_retime_from(data, where), **values)
@@ -402,13 +427,13 @@ def from_data(data: Any, notes: list[str] | None = None) -> Project:
         },
         settings=Settings(**fill(Settings, settings, "settings")),
         **{
-            key: struct_from(data[key], kind, key)
+            key: _with_closed_paths(struct_from(data[key], kind, key))
             for key, kind in STRUCTS.items()
             if data.get(key) is not None and key != "joint_maps"
         },
         joint_maps=_joint_maps_from(data, notes),
         manual=manual,
-        character=get(data, "character", str, "", None),
+        character=_closed(get(data, "character", str, "", None)),
         hidden=texts(data, "hidden"),
         language=get(data, "language", str, "", AUTO),
     )

@@ -14,7 +14,7 @@ from xml.parsers import expat
 
 from metagraph.budgets import MARKS, MARKS_FILE, NESTING
 from metagraph.errors import FileError
-from metagraph.files import guarded, opened
+from metagraph.files import guarded, read_file
 from metagraph.playback.annotation import Annotation, Interval, Tier
 from metagraph.wording import told
 
@@ -231,8 +231,8 @@ def read_elan(path: str | Path) -> Annotation:
     path = Path(path)
     reader = _Reader(path)
     try:
-        with opened(path, MARKS_FILE) as file:
-            reader.parser.ParseFile(file)
+        # At once: fed in pieces, what never ends is looked at again from its beginning with each of them.
+        reader.parser.Parse(read_file(path, MARKS_FILE), True)
     except expat.ExpatError as error:
         empty = path.stat().st_size == 0
         cause = "it is empty" if empty else f"it is not well-formed XML ({expat.errors.messages[error.code]})"

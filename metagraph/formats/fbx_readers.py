@@ -6,15 +6,14 @@ Starting one takes some 0.3 s, a file a fiftieth of that. Within a `batch` they 
 from __future__ import annotations
 
 import json
-import os
 import struct
-import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from metagraph.formats import fbx_child
+from metagraph.programs import python, start
 
 HEAD = struct.Struct("<Bq")  # code, length
 MOST = 50  # files one process reads: it keeps what it has read
@@ -36,24 +35,17 @@ class _Reader:
     """One process. count: how many files it has read."""
 
     def __init__(self) -> None:
-        root = str(Path(__file__).resolve().parents[2])
         import subprocess
         import tempfile
 
-        known = os.environ.get("PYTHONPATH")
-        environment = {
-            **os.environ,
-            "PYTHONPATH": root if not known else os.pathsep.join((root, known)),
-            "OMP_NUM_THREADS": "1",
-        }
         self.count = 0
         self.said = tempfile.TemporaryFile()  # noqa: SIM115 (closed with the process)
-        self.process = subprocess.Popen(
-            [sys.executable, "-m", fbx_child.__name__],
+        self.process = start(
+            python(fbx_child.__name__),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self.said,
-            env=environment,
+            env={"OMP_NUM_THREADS": "1"},
         )
 
     def read(self, path: Path, timeout: float) -> bytes:
@@ -74,7 +66,7 @@ class _Reader:
             head = self.process.stdout.read(HEAD.size)
             code, length = HEAD.unpack(head) if len(head) == HEAD.size else (-1, 0)
             if code in (0, fbx_child.REFUSED) and 0 <= length < 1 << 40:
-                body = self.process.stdout.read(length)
+                body: bytes = self.process.stdout.read(length)
                 if len(body) == length:
                     self.count += 1
                     if code:

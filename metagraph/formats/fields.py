@@ -9,6 +9,8 @@ from dataclasses import MISSING, fields
 from functools import cache
 from typing import Any
 
+from metagraph.network_paths import original
+
 Data = dict[str, Any]
 LARGEST = 1e15  # no number in a project is larger; up to here whole numbers are exact
 
@@ -36,7 +38,9 @@ def number(value: float) -> float | int:
 
 def plain(value: Any) -> Any:
     """Return a value as it can be written. Raises ValueError and TypeError."""
-    if isinstance(value, bool) or value is None or isinstance(value, str):
+    if isinstance(value, str):
+        return original(value) if value.startswith(".") else value
+    if isinstance(value, bool) or value is None:
         return value
     if isinstance(value, int) and abs(value) <= LARGEST:
         return value

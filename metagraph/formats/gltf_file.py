@@ -25,6 +25,7 @@ from metagraph.formats.gltf_columns import WIDTHS, ChannelTable, PlainAccessors,
 from metagraph.formats.gltf_loops import count
 from metagraph.formats.gltf_values import Accessor, Buffer, BufferView, Document, PackedView, Sparse
 from metagraph.formats.meshopt import MeshoptError, unpacked
+from metagraph.network_paths import reason
 from metagraph.wording import told
 
 Array = NDArray[Any]
@@ -121,6 +122,12 @@ class Gltf:
         name = unquote(uri[:PATH_LENGTH])
         if name in self._named:
             return self._named[name]
+        if (why := reason(name)) is not None:  # never: its files lie beside it
+            self.fail(
+                told("'{name}' is not opened: {why}", name=name[:80], why=why),
+                where,
+                told("Put that file beside the glTF file."),
+            )
         try:
             folder = self.path.parent.resolve()
             target = (folder / name).resolve()

@@ -10,7 +10,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.budgets import JOINTS, NODES
+from metagraph.budgets import JOINTS, JOINTS_DEEP, NODES
 from metagraph.formats.gltf_columns import PATHS, SCALE
 from metagraph.formats.gltf_file import Gltf
 from metagraph.formats.gltf_values import Node
@@ -132,6 +132,15 @@ def _build(
         )
     places = {node: i for i, node in enumerate(joints)}
     above = np.array([places.get(parents[n], -1) for n in joints])
+    depths: list[int] = []
+    for parent in above.tolist():  # parents come first
+        depths.append(depths[parent] + 1 if parent >= 0 else 1)
+    if max(depths) > JOINTS_DEEP:
+        gltf.fail(
+            told("its joints hang on each other more than {most} deep", most=JOINTS_DEEP),
+            told("its nodes"),
+            told("Leave out ropes, hair and cloth, or export the character alone."),
+        )
     locals_ = compose(translations, rotations, scales)
     worlds = _globals(locals_, np.array(parents), order)
     notes: list[str] = []

@@ -22,6 +22,7 @@ from pathlib import Path
 
 import msgspec
 
+from metagraph.programs import run, system_program
 from metagraph.records import dataclass
 
 REFRESH = 30.0  # seconds
@@ -93,11 +94,10 @@ def _started(pid: int) -> str:
                 raise ProcessLookupError(pid)
             return fields[19].decode()
         return ""
-    import subprocess
-
-    with contextlib.suppress(OSError, subprocess.SubprocessError):
-        words = ["ps", "-o", "lstart=", "-p", str(pid)]
-        return subprocess.run(words, capture_output=True, text=True, timeout=5, check=False).stdout.strip()
+    ps = system_program("ps")
+    if ps is not None:
+        with contextlib.suppress(OSError):  # TimeoutError is one
+            return run([ps, "-o", "lstart=", "-p", str(pid)], 5.0)[1].strip()
     return ""
 
 

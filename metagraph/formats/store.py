@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 import os
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -36,6 +36,7 @@ from metagraph.graph.requests import Line
 from metagraph.motion.adopt import SkeletonMismatchError, adopt
 from metagraph.motion.clip import Clip, ClipError
 from metagraph.motion.joint_map import RetargetError
+from metagraph.network_paths import is_closed, original, reason
 from metagraph.records import dataclass
 from metagraph.wording import told
 
@@ -217,8 +218,12 @@ def moved(project: Project, old: Path | None, new: Path) -> Project:
     return _with_paths(project, renew)
 
 
-def _with_paths(project: Project, renew: Callable[[str], str]) -> Project:
-    """Return the project with every path to a file beside it made anew."""
+def _with_paths(project: Project, make: Callable[[str], str]) -> Project:
+    """Return the project with every path to a file beside it made anew; those that are closed stay so."""
+    return _each_path(project, lambda name: name if is_closed(name) else make(name))
+
+
+def _each_path(project: Project, renew: Callable[[str], str]) -> Project:
     clips = {i: replace(e, path=renew(e.path)) for i, e in project.clips.items()}
     character = renew(project.character) if project.character else None
     return replace(
@@ -347,7 +352,40 @@ def open_project(path: str | Path, progress: Callable[[int, int], None] | None =
     notes: list[str] = []
     project, found = read_with_digest(path, notes)
     opened = load_motions(project, path.parent, progress)
+    if names := closed_paths(opened.project):
+        notes.append(closed_words(names))
     return replace(opened, notes=(*notes, *opened.notes), digest=found)
+
+
+def closed_paths(project: Project) -> tuple[str, ...]:
+    """Return the files that a project names and that were not opened, as its file has them: those on other
+    computers, and devices.
+    """
+    found: dict[str, None] = {}
+
+    def see(name: str) -> str:
+        if is_closed(name):
+            found[original(name)] = None
+        return name
+
+    _each_path(project, see)
+    return tuple(found)
+
+
+def reopened(project: Project) -> Project:
+    """Return a project whose closed paths are as its file has them, to be opened."""
+    return _each_path(project, original)
+
+
+def closed_words(names: Sequence[str]) -> str:
+    """Say which files were not opened, and how they can be."""
+    return told(
+        "{count} of the files that it names were not opened, such as '{name}': {why}. If you trust where the "
+        "project comes from, give the command --network; in the window choose File, Files on other computers",
+        count=len(names),
+        name=shown(names[0])[:200],
+        why=reason(names[0]) or "",
+    )
 
 
 def load_motions(
@@ -428,6 +466,8 @@ def _load(
             path = place.resolve().as_posix() if absolute_path or folder is None else relative(place, folder)
         if name in found:
             notes.append(f"'{name}' has moved to '{path}'")
+        if is_closed(name) and name not in found:
+            continue  # said once, for all of them
         if not is_file(place):
             notes.append(f"'{shown(name)}' is missing")
             continue

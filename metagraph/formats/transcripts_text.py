@@ -24,7 +24,7 @@ _VOICE = re.compile(r"<v(?:\.[^\s>]*)?\s+([^>]{1,200})>")
 _TAG = re.compile(r"</?[a-zA-Z][^<>]{0,300}>|\{\\[^{}]{0,100}\}")
 _MARKS = "\u0300-\u036f\u0900-\u109f\u0e00-\u0eff"  # of vowels: none of them is a letter to a pattern
 _NAME = re.compile(rf"\s*(?:[-–>]{{1,2}}\s*)?([^\W\d_][\w .'’{_MARKS}-]{{0,38}}?)\s*(?::\s+|：\s*)(?=\S)")
-_BRACKETED = re.compile(rf"\s*[\[(]\s*([^\W\d_][\w .'’{_MARKS}-]{{0,38}}?)\s*[\])]\s*:?\s*(?=\S)")
+_BRACKETED = re.compile(rf"\s*[\[(]\s*([^\W\d_][\w .'’{_MARKS}-]{{0,38}}?)\s*[\])]\s*(?::\s*)?(?=\S)")
 _DASH = re.compile(r"^\s*(?:[-–]|>{1,2})\s*")
 
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 import importlib.util
 import os
 import subprocess
-import sys
 import threading
 from collections.abc import Callable
 from contextlib import suppress
@@ -18,6 +17,7 @@ import msgspec
 from msgspec import Struct
 
 from metagraph.generation.train_plan import STOP, folder_of
+from metagraph.programs import python, start
 
 TORCH = (
     "Training needs torch, which is not installed: 200 MB to download, 750 MB on disk. Install it with\n"
@@ -73,34 +73,26 @@ class TrainingProcess:
         *,
         resume: bool = True,
         export: bool = False,
-        python: str = sys.executable,
     ) -> None:
         if told := missing():
             raise TrainingFailedError(told)
         self.folder = folder_of(out)
         (self.folder / STOP).unlink(missing_ok=True)
-        words = [python, "-m", "metagraph.generation.training", str(self.folder), "--watched"]
+        words = [str(self.folder.resolve()), "--watched"]
         words += [] if resume else ["--afresh"]
         words += ["--export"] if export else []
         self._heard, self._said, self.last = heard, list[str](), Event(event="none")
         self.error, self.path = "", ""
-        root = str(Path(__file__).resolve().parents[2])
-        paths = os.environ.get("PYTHONPATH", "")
-        self._process = subprocess.Popen(
-            words,
+        self._process = start(
+            python("metagraph.generation.training", *words),
             stdin=subprocess.PIPE,  # closed when this process ends, however that comes about
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
             encoding="utf-8",
             errors="replace",
-            env={
-                **os.environ,
-                "PYTHONIOENCODING": "utf-8",
-                # Threads that wait turning on the spot starve each other where others work as well.
-                "OMP_WAIT_POLICY": os.environ.get("OMP_WAIT_POLICY", "PASSIVE"),
-                "PYTHONPATH": root + (os.pathsep + paths if paths else ""),
-            },
+            # Threads that wait turning on the spot starve each other where others work as well.
+            env={"OMP_WAIT_POLICY": os.environ.get("OMP_WAIT_POLICY", "PASSIVE")},
         )
         self._threads = [
             threading.Thread(target=target, daemon=True) for target in (self._listen, self._complain)

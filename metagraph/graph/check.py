@@ -14,8 +14,9 @@ from metagraph.graph import anatomy, end_gaps
 from metagraph.graph.base_check import check_base, stance_name
 from metagraph.graph.expand import reachable
 from metagraph.graph.manual_check import check_manual
-from metagraph.graph.model import KINDS, LAYERS, Action, MetaGraph, Project
+from metagraph.graph.model import KINDS, LAYERS, Action, ClipEntry, MetaGraph, Project
 from metagraph.graph.problem import Problem, Severity
+from metagraph.network_paths import original, reason
 from metagraph.uncollected import uncollected
 from metagraph.wording import told
 
@@ -54,6 +55,21 @@ def grave(problems: Iterable[Problem], strict: bool = False) -> list[Problem]:
     ]
 
 
+def _why_missing(entry: ClipEntry) -> tuple[str, str]:
+    """Return why a clip has no motion, and what to do about it."""
+    path = original(entry.path)
+    if path != entry.path:
+        return (
+            told("the file of clip '{name}' is not opened: {why} ({path})",
+                 name=entry.name, why=reason(path) or "", path=path),
+            told("If you trust the project, choose 'Files on other computers' or give --network."),
+        )  # fmt: skip
+    return (
+        told("the file of clip '{name}' is missing ({path})", name=entry.name, path=path),
+        told("Put the file back, or choose 'Find missing files' and show where it is now."),
+    )
+
+
 def _clips(project: Project) -> Iterator[Problem]:
     for entry in project.clips.values():
         if entry.motion is None:
@@ -61,8 +77,7 @@ def _clips(project: Project) -> Iterator[Problem]:
             yield Problem(
                 "error" if used else "warning",
                 "file-missing",
-                told("the file of clip '{name}' is missing ({path})", name=entry.name, path=entry.path),
-                told("Put the file back, or choose 'Find missing files' and show where it is now."),
+                *_why_missing(entry),
                 clip=entry.id,
             )
         elif project.skeleton is not None and entry.motion.skeleton != project.skeleton:

@@ -122,7 +122,9 @@ class Hub:
         try:
             requests, listed = split(data)
         except RequestError as error:
-            self._answered(number, Reply(error=str(error)))
+            client.waiting += 1
+            self._slots.append(_Slot(number, [encode(Reply(error=str(error)))], False))
+            self._check_pace(number, client)
             return
         slot = _Slot(number, [], listed)
         for request in requests:
@@ -136,6 +138,10 @@ class Hub:
             slot.answers.append(self._request(number, client, item))
         client.waiting += len(slot.answers)
         self._slots.append(slot)
+        self._check_pace(number, client)
+
+    def _check_pace(self, number: int, client: _Client) -> None:
+        """Hang up on a client that asks for more than can be kept until it is answered."""
         if client.waiting > UNANSWERED:
             self.drop(number, POLICY, TOO_FAST)
 
@@ -147,10 +153,6 @@ class Hub:
             and isinstance(item.message, Hello)
             and same(item.message.token, self.token)
         )
-
-    def _answered(self, number: int, reply: Reply) -> None:
-        self.clients[number].waiting += 1
-        self._slots.append(_Slot(number, [encode(reply)], False))
 
     def _request(self, number: int, client: _Client, item: HeardMessage | Reply) -> bytes | None:
         """Return the answer to a request, None for what the session has to answer."""

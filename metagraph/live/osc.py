@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from metagraph.graph.words import LAYERS
-from metagraph.live.hub import Hub
+from metagraph.live.hub import BACKLOG, Hub
 from metagraph.live.messages import LONGEST_MESSAGE, encode
 from metagraph.live.osc_bytes import OscError, messages_of, padded
 
@@ -141,7 +141,7 @@ class OscLine(asyncio.DatagramProtocol):
     def __init__(self, hub: Hub, clock: Callable[[], float]) -> None:
         self.hub, self.clock = hub, clock
         self.senders: dict[Any, _Sender] = {}
-        self.transport: asyncio.DatagramTransport | None = None
+        self.transport: Any = None  # asyncio.DatagramTransport, whose types lack how much waits
 
     def connection_made(self, transport: Any) -> None:
         self.transport = transport
@@ -182,6 +182,8 @@ class OscLine(asyncio.DatagramProtocol):
             self.senders.pop(sender.address, None)
 
     def put(self, data: bytes, address: Any) -> None:
-        """Send a datagram."""
-        if self.transport is not None and not self.transport.is_closing():
-            self.transport.sendto(data, address)
+        """Send a datagram; while too many wait for the system it is lost, as datagrams may be."""
+        transport = self.transport
+        if transport is None or transport.is_closing() or transport.get_write_buffer_size() > BACKLOG:
+            return
+        transport.sendto(data, address)

@@ -4,19 +4,16 @@ happen there, and what is left for the window's thread is one batch a tick.
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
-import multiprocessing
 import queue
-import signal
 import threading
-import time
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import msgspec
 
-from metagraph.live.server import LiveError, Options, Server, checked
-from metagraph.live.wire import Batch, Ready, Result, pack, unpack_batch, unpack_result
+from metagraph.child_channel import Channel, Child
+from metagraph.live.server import Options, checked
+from metagraph.live.wire import Batch, Ready, pack, unpack_batch
 
 if TYPE_CHECKING:
     from metagraph.live.live_session import LiveSession
@@ -37,19 +34,14 @@ class Relay:
         self.error = ""
         self._in: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
         self._out: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
-        self._process: Any = None
+        self._child: Child | None = None
 
     def start(self) -> None:
         """Start the child; `ready` is set by a later `tick`."""
-        context = multiprocessing.get_context("spawn")
-        ours, theirs = context.Pipe()
-        self._process = context.Process(
-            target=serve, args=(theirs, pack(self.options)), name="metagraph live", daemon=True
-        )
-        self._process.start()
-        theirs.close()
-        threading.Thread(target=_receive, args=(ours, self._in), daemon=True).start()
-        threading.Thread(target=_send, args=(ours, self._out), daemon=True).start()
+        child = self._child = Child("metagraph.live.relay_child")
+        self._out.put(pack(self.options))
+        threading.Thread(target=receive, args=(child, self._in), daemon=True).start()
+        threading.Thread(target=send, args=(child, self._out), daemon=True).start()
 
     def tick(self, session: LiveSession, now: float) -> None:
         """Answer what came in and send what happened; at most as long as the session's tick takes."""
@@ -76,80 +68,27 @@ class Relay:
     def close(self, wait: bool = False) -> None:
         """Hang up on all clients and end the child, which takes a moment; wait: until it has ended."""
         self._out.put(None)
-        process, self._process = self._process, None
-        if process is None:
+        child, self._child = self._child, None
+        if child is None:
             return
-        ending = threading.Thread(target=_end, args=(process,), daemon=True)
+        ending = threading.Thread(target=child.end, args=(STOP,), daemon=True)
         ending.start()
         if wait:
             ending.join()
 
 
-def _end(process: Any) -> None:
-    process.join(STOP)
-    if process.is_alive():
-        process.terminate()
-        process.join(STOP)
-    process.close()
-
-
-def _receive(pipe: Any, target: queue.SimpleQueue[bytes | None]) -> None:
-    with contextlib.suppress(EOFError, OSError):
-        while data := pipe.recv_bytes():
+def receive(channel: Channel, target: queue.SimpleQueue[bytes | None]) -> None:
+    """Put what comes in into a queue, and None when nothing more will."""
+    with contextlib.suppress(EOFError):
+        while data := channel.receive():
             target.put(data)
     target.put(None)
 
 
-def _send(pipe: Any, source: queue.SimpleQueue[bytes | None]) -> None:
-    with contextlib.suppress(OSError, ValueError):
-        while (data := source.get()) is not None:
-            pipe.send_bytes(data)
+def send(channel: Channel, source: queue.SimpleQueue[bytes | None]) -> None:
+    """Send what a queue is given, until that is None."""
     with contextlib.suppress(OSError):
-        pipe.send_bytes(b"")  # the end
-
-
-def serve(pipe: Any, options: bytes) -> None:
-    """The child: open the lines and pass batches on, until the pipe ends."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the window decides when it is over
-    asyncio.run(_serve(pipe, msgspec.msgpack.decode(options, type=Options)))
-
-
-async def _serve(pipe: Any, options: Options) -> None:
-    out: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
-    threading.Thread(target=_send, args=(pipe, out), daemon=True).start()
-    server = Server(options, time.monotonic)
-    try:
-        out.put(pack(await server.open()))
-    except LiveError as error:
-        out.put(pack(Ready(error=str(error))))
-        out.put(None)
-        await asyncio.sleep(0.2)
-        return
-    loop = asyncio.get_running_loop()
-
-    def take(data: bytes | None) -> None:
-        if data:
-            server.hub.give(unpack_result(data))
-            step()
-        else:
-            server.stopped.set()
-
-    def listen() -> None:
-        with contextlib.suppress(RuntimeError):  # the loop has ended
-            try:
-                while data := pipe.recv_bytes():
-                    loop.call_soon_threadsafe(take, data)
-            except (EOFError, OSError):
-                pass
-            loop.call_soon_threadsafe(take, None)
-
-    def step(batch: Batch | None = None) -> Result | None:
-        batch = server.hub.take() if batch is None else batch
-        if batch is not None:
-            out.put(pack(batch))
-        return None
-
-    threading.Thread(target=listen, daemon=True).start()
-    await server.run(step)
-    await server.close()
-    out.put(None)
+        while (data := source.get()) is not None:
+            channel.send(data)
+    with contextlib.suppress(OSError):
+        channel.send(b"")  # the end

@@ -9,6 +9,7 @@ import queue
 import threading
 from collections.abc import Callable
 
+from metagraph.live.hub import BACKLOG
 from metagraph.live.messages import LONGEST_MESSAGE
 
 AHEAD = 900  # lines read but not answered; more wait in the pipe
@@ -32,7 +33,7 @@ class StdioLine:
         self._room = threading.Semaphore(AHEAD)
         self._out: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
         self._waiting = 0
-        self._counting = threading.Lock()
+        self._counting = threading.Condition()
         self._closed = False
         self._writer = threading.Thread(target=self._write, daemon=True)
 
@@ -68,6 +69,8 @@ class StdioLine:
 
     def _pass(self, line: bytes) -> None:
         self._room.acquire()
+        with self._counting:  # who does not read its answers is not listened to
+            self._counting.wait_for(lambda: self._waiting <= BACKLOG or self._closed)
         self._tell(line)
 
     def _tell(self, line: bytes | None) -> None:
@@ -86,6 +89,7 @@ class StdioLine:
                 self._closed = True
             with self._counting:
                 self._waiting -= len(data)
+                self._counting.notify_all()
 
     def send(self, messages: list[tuple[bytes, bool]]) -> None:
         """Write lines; never waits."""
@@ -105,7 +109,10 @@ class StdioLine:
 
     def close(self, code: int, reason: str) -> None:
         """Write nothing more."""
+        self._closed = True
         self._out.put(None)
+        with self._counting:
+            self._counting.notify_all()
 
     def finish(self, seconds: float = 2.0) -> None:
         """Write what waits, but not for longer than some seconds."""

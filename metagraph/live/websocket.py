@@ -13,7 +13,7 @@ from websockets.http11 import Request
 from websockets.protocol import State
 from websockets.server import ServerProtocol
 
-from metagraph.live.hub import CLIENTS, Hub, same
+from metagraph.live.hub import BACKLOG, CLIENTS, POLICY, SLOW, Hub, same
 from metagraph.live.messages import LONGEST_MESSAGE
 
 GREET = 5.0  # seconds for the opening handshake
@@ -34,10 +34,10 @@ class WebSocketLine(asyncio.Protocol):
         self.hub, self.lines, self.origins, self.local = hub, lines, origins, local
         self.protocol = ServerProtocol(max_size=LONGEST_MESSAGE)
         self.number = 0
-        self.parts: list[bytes] = []
+        self.message = bytearray()
         self.transport: asyncio.Transport | None = None
         self.heard = self.made = 0.0
-        self.pinged = False
+        self.pinged = self.parting = False
 
     # --- from the other side
 
@@ -64,6 +64,8 @@ class WebSocketLine(asyncio.Protocol):
             self.transport.abort()
 
     def data_received(self, data: bytes) -> None:
+        if self.backlog() > BACKLOG:
+            return  # it was told to go, and will be cut off; answers to this, pongs too, would only pile up
         self.heard, self.pinged = asyncio.get_running_loop().time(), False
         self.protocol.receive_data(data)
         for event in self.protocol.events_received():
@@ -72,6 +74,8 @@ class WebSocketLine(asyncio.Protocol):
             elif isinstance(event, Frame) and self.number:
                 self._frame(event)
         self._flush()
+        if self.backlog() > BACKLOG:
+            self.hub.drop(self.number, POLICY, SLOW)
 
     def eof_received(self) -> None:
         self.protocol.receive_eof()
@@ -114,13 +118,13 @@ class WebSocketLine(asyncio.Protocol):
 
     def _frame(self, frame: Frame) -> None:
         if frame.opcode in (Opcode.TEXT, Opcode.BINARY):
-            self.parts = [bytes(frame.data)]
+            self.message = bytearray(frame.data)
         elif frame.opcode is Opcode.CONT:
-            self.parts.append(bytes(frame.data))
+            self.message += frame.data
         else:
             return
         if frame.fin:
-            data, self.parts = b"".join(self.parts), []
+            data, self.message = bytes(self.message), bytearray()
             self.hub.message(self.number, data)
 
     # --- to the other side
@@ -172,7 +176,12 @@ class WebSocketLine(asyncio.Protocol):
             self.transport.write(whole)
         if end:
             self.transport.close()
-        elif self.protocol.state is not State.CONNECTING and self.protocol.close_expected():
+        elif (
+            not self.parting
+            and self.protocol.state is not State.CONNECTING
+            and self.protocol.close_expected()
+        ):
+            self.parting = True
             asyncio.get_running_loop().call_later(PART, self.cut)
 
 

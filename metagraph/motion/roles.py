@@ -84,7 +84,7 @@ class _Reader:
 
     def biggest(self, joints: Sequence[int]) -> int:
         """Return the one with the most joints below it, the first of equals."""
-        return max(joints, key=lambda j: (len(self.skeleton.descendants(j)), -j))
+        return max(joints, key=lambda j: (self.skeleton.below[j], -j))
 
     def limb(self, side: str, end: str, lower: str, upper: str, collar: str | None) -> None:
         """Name the joints of an arm or a leg from its end upwards."""
@@ -202,7 +202,8 @@ class _Reader:
             for j, x in enumerate(self.words)
             if w in x.words and x.side == "centre" and not self.helper[j]
         ]
-        fitting = [j for j in named if all(j == e or j in self.above(e) for e in ends)]
+        lines = [{e, *self.above(e)} for e in ends]
+        fitting = [j for j in named if all(j in line for line in lines)]
         if fitting:
             roles["hips"] = max(fitting, key=lambda j: len(self.above(j)))
         elif len(legs) == 2 and (shared := self.common(ends)) is not None:

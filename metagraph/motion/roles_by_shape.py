@@ -25,6 +25,10 @@ SPREADS = {"arm": 0.3, "leg": 0.35}  # of the logarithm of that share
 WIDE = {"arm": 0.11, "leg": 0.03}  # of the figure's size: as far apart shoulders and hips are at least
 PASSED = 0.75  # what each joint counts that lies within a limb's bone
 TOP = 1.25  # a last joint this much further from the head than the head from the neck is the top of the skull
+LINE, BRANCHES = (
+    48,
+    24,
+)  # joints of a limb, and branches of a joint that are looked at: work grows with their powers
 UP = np.array([0.0, 1.0, 0.0])
 
 
@@ -40,16 +44,24 @@ class _Shape:
         count = len(skeleton)
         self.reach = np.zeros(count)  # from a joint to the furthest tip below it
         self.below = np.ones(count, int)
-        for j in range(count - 1, 0, -1):
+        self.tip = list(range(count))  # the furthest one below each
+        self.steps = [0] * count  # joints from each to that one
+        for j in range(count - 1, -1, -1):
+            if children := skeleton.children[j]:
+                far = self._furthest(children)
+                self.tip[j], self.steps[j] = self.tip[far], self.steps[far] + 1
             if (p := self.parents[j]) >= 0:
                 self.reach[p] = max(self.reach[p], self.reach[j] + self.bones[j])
                 self.below[p] += self.below[j]
+
+    def _furthest(self, joints: Sequence[int]) -> int:
+        return max(joints, key=lambda c: (self.reach[c] + self.bones[c], -c))
 
     def line(self, joint: int) -> list[int]:
         """Return the joints from one to its furthest tip."""
         out = [joint]
         while below := self.skeleton.children[out[-1]]:
-            out.append(max(below, key=lambda c: (self.reach[c] + self.bones[c], -c)))
+            out.append(self._furthest(below))
         return out
 
     def above(self, joint: int) -> list[int]:
@@ -65,17 +77,20 @@ class _Shape:
         out: list[tuple[int, int]] = []
         inside: set[int] = set()
         for joint in range(len(self.skeleton)):
-            if joint in inside:
+            if joint in inside or self.parents[joint] in inside:
+                inside.add(joint)
                 continue
             long = [
                 c
                 for c in self.skeleton.children[joint]
-                if self.reach[c] > LIMB * size and len(self.line(c)) > 2
+                if self.reach[c] > LIMB * size and 2 <= self.steps[c] < LINE
             ]
+            long = sorted(long, key=lambda c: (-self.reach[c], c))[:BRANCHES]
+            long.sort()
             found = []
             for a, b in combinations(long, 2):
                 lengths = [float(self.reach[j]) for j in (a, b)]
-                ways = [self.at[self.line(j)[-1]] - self.at[joint] for j in (a, b)]
+                ways = [self.at[self.tip[j]] - self.at[joint] for j in (a, b)]
                 apart = float(np.linalg.norm(ways[0] - ways[1]))
                 odd = abs(lengths[0] - lengths[1]) + abs(float(self.bones[a] - self.bones[b]))
                 # Mirrored across a plane between them: as far from the middle, as high.
@@ -85,7 +100,7 @@ class _Shape:
                     found.append((odd, a, b))
             for _, a, b in sorted(found)[:1]:
                 out.append((a, b))
-                inside.update(self.skeleton.descendants(a), self.skeleton.descendants(b))
+                inside.update((a, b))
         return out
 
     def size(self) -> float:
@@ -95,7 +110,7 @@ class _Shape:
         """Whether children lie in different directions from joints in one place."""
         ways = [self.at[c] - self.at[j] for j in joints for c in self.skeleton.children[j]]
         ways = [w / np.linalg.norm(w) for w in ways if np.linalg.norm(w) > 0.005 * self.size()]
-        return any(float(a @ b) < 0.9 for a, b in combinations(ways, 2))
+        return any(float(a @ b) < 0.9 for a, b in combinations(ways[:BRANCHES], 2))
 
     def limb(self, joint: int, other: int, kind: str) -> tuple[list[int], int, int, int]:
         """Return a limb's line of joints and the places on it of its upper, lower and end joint."""
@@ -124,6 +139,11 @@ class _Shape:
         ends = fingers[:1] if kind == "arm" and fingers else range(2, len(line))
         best, found = -1.0, (0, 1, 2)
         for end in ends:
+            thumbed = (
+                kind == "arm"
+                and not fingers
+                and self.spreads([j for j in line if place[j] == place[line[end]]])
+            )
             for upper in range(end - 1):
                 for lower in range(upper + 1, end):
                     one, two = along[lower] - along[upper], along[end] - along[lower]
@@ -139,11 +159,7 @@ class _Shape:
                         worth *= 1.15  # four joints mostly begin with a collar bone
                     if near[upper]:
                         worth *= 0.5  # so near the middle are collar bones, and joints of the pelvis
-                    if (
-                        kind == "arm"
-                        and not fingers
-                        and self.spreads([j for j in line if place[j] == place[line[end]]])
-                    ):
+                    if thumbed:
                         worth *= 2.5  # a thumb beside the hand
                     if worth > best + 1e-9 or (
                         worth > best - 1e-9
@@ -168,7 +184,7 @@ def roles_by_shape(skeleton: Skeleton) -> dict[str, int]:
         return {}
 
     def tips(pair: tuple[int, int]) -> float:
-        return float(np.mean([shape.at[shape.line(j)[-1], 1] for j in pair]))
+        return float(np.mean([shape.at[shape.tip[j], 1] for j in pair]))
 
     legs = min(pairs, key=tips)
     ground = shape.parents[legs[0]]
@@ -176,11 +192,12 @@ def roles_by_shape(skeleton: Skeleton) -> dict[str, int]:
     if hanging < 0.6 * float(np.mean([shape.reach[j] for j in legs])):
         return {}  # bones along one axis: what goes down is not known
     best: tuple[float, tuple[int, int], int] | None = None
+    below_legs = set(shape.above(ground))
     for pair in pairs:
         chest = shape.parents[pair[0]]
         if pair == legs or shape.at[chest, 1] <= shape.at[ground, 1]:
             continue
-        hips = next(j for j in shape.above(chest) if j in shape.above(ground) or j < 0)
+        hips = next(j for j in shape.above(chest) if j in below_legs or j < 0)
         if chest == hips:
             continue
         worth = float(np.mean([shape.reach[j] for j in pair]))
@@ -237,7 +254,7 @@ def _head(shape: _Shape, chest: int, arms: tuple[int, int]) -> dict[str, int] | 
     middle = (shape.at[arms[0]] + shape.at[arms[1]]) / 2
 
     def worth(joint: int) -> float:
-        tip = shape.at[shape.line(joint)[-1]]
+        tip = shape.at[shape.tip[joint]]
         level = float(np.linalg.norm((tip - middle)[[0, 2]]))
         return float(tip[1] - middle[1]) - 2 * level + 0.002 * shape.size() * min(20, int(shape.below[joint]))
 
@@ -245,7 +262,7 @@ def _head(shape: _Shape, chest: int, arms: tuple[int, int]) -> dict[str, int] | 
     if not free:
         return None
     joint = max(free, key=worth)
-    if shape.at[shape.line(joint)[-1], 1] < shape.at[chest, 1]:
+    if shape.at[shape.tip[joint], 1] < shape.at[chest, 1]:
         return None
     line = [joint]
     while len(shape.skeleton.children[line[-1]]) == 1:

@@ -130,11 +130,10 @@ class Skeleton:
 
     def descendants(self, joint: int) -> tuple[int, ...]:
         """Return `joint` and everything below it."""
-        inside = {joint}
-        for i in range(joint + 1, len(self)):
-            if int(self.parents[i]) in inside:
-                inside.add(i)
-        return tuple(sorted(inside))
+        out = [joint]
+        for one in out:
+            out.extend(self.children[one])
+        return tuple(sorted(out))
 
     def chain(self, joint: int) -> tuple[int, ...]:
         """Return the joints from the root to `joint`, both included."""

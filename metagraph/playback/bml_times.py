@@ -208,9 +208,9 @@ class Timing:
                 raise a.RequestError(f"{b.element.place}: {error}") from None
 
 
-SECONDS = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(s|ms)?")
+SECONDS = re.compile(r"([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)\s*(s|ms)?")
 REFERENCE = re.compile(
-    r"([^:]+)(?::([^:]+))?:([^:]+?)\s*([+-]\s*(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\s*(?:s|ms)?)?"
+    r"([^:]+)(?::([^:]+))?:([^:]+?)\s*([+-]\s*(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?\s*(?:s|ms)?)?"
 )
 
 

@@ -4,14 +4,14 @@ contacts, weight and life. Until they are there, and where numba is not, NumPy g
 
 from __future__ import annotations
 
-import subprocess
-import sys
+from contextlib import suppress
 from threading import Lock, Thread
 
-from metagraph.compiling import ROOT, there
+from metagraph.compiling import there
 from metagraph.motion import forward
 from metagraph.playback import laid_plan, solving
 from metagraph.playback.life import living
+from metagraph.programs import python, run
 
 LOOPS = (forward.COMPILED, solving.COMPILED, laid_plan.COMPILED, living.COMPILED)
 
@@ -53,10 +53,6 @@ def load_soon() -> None:
 
 
 def _beside() -> None:
-    if (
-        subprocess.run(
-            [sys.executable, "-m", "metagraph.keep_loops"], cwd=ROOT, capture_output=True
-        ).returncode
-        == 0
-    ):
-        load()
+    with suppress(OSError):
+        if run(python("metagraph.keep_loops"))[0] == 0:
+            load()

@@ -18,7 +18,9 @@ from metagraph.playback.plan import Plan
 from metagraph.speech.mirroring import Mover
 
 LAUGHING = "laugh"  # tag of actions that laugh
-_LAUGHED = re.compile(r"^\W*([hj]+[aeiou]+h*[\s-]?){2,}\W*$|^\W*(w{3,}|哈{2,}|ha|笑|ㅋ{2,}|ㅎ{2,})\W*$", re.I)
+_LAUGHED = re.compile(
+    r"^\W*[hj]+[aeiou]+(?:(?:h*[\s-])?[hj]+[aeiou]+)+h*\W*$|^\W*(w{3,}|哈{2,}|ha|笑|ㅋ{2,}|ㅎ{2,})\W*$", re.I
+)
 _APART = 0.5  # seconds between words up to which they are one laugh
 
 

@@ -18,7 +18,9 @@ from metagraph.files import guarded, read_file
 from metagraph.records import dataclass
 from metagraph.wording import told
 
-_TOKEN = re.compile(r'"(?:[^"]|"")*"|<[a-z]+>|(?<![^\s=])[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?%?(?!\S)')
+_TOKEN = re.compile(
+    r'"(?:[^"]|"")*"|<[a-z]+>|(?<![^\s=])[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?%?(?!\S)'
+)
 _REMEDY = told("Save it from Praat as a text file or a short text file.")
 
 

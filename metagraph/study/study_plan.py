@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar
@@ -18,10 +18,11 @@ import msgspec
 from msgspec import Meta, Struct
 
 from metagraph.budgets import TEXT_FILE
-from metagraph.errors import FileError
+from metagraph.errors import FileError, shown
 from metagraph.files import read_file
 from metagraph.formats.clips import find_clip_files
 from metagraph.formats.text import TextError, parse
+from metagraph.network_paths import refused
 from metagraph.study.klm import Times
 from metagraph.study.log import NAME
 from metagraph.study.order import latin
@@ -318,9 +319,24 @@ def plan_from(
         raise failure(
             plain_words(message), ".".join(filter(None, (where, unknown[1] if unknown else "")))
         ) from None
-    for where, cause in faults_of(plan):
+    for where, cause in (*_strange_files(data), *faults_of(plan)):
         raise failure(cause, where)
     return plan
+
+
+FILES = ("clips", "reference", "project", "motion", "video", "audio")  # fields that name files
+
+
+def _strange_files(data: Any, where: str = "", named: bool = False) -> Iterator[tuple[str, str]]:
+    """Yield the files of a plan that are on other computers or devices, and are not to be opened."""
+    if isinstance(data, Mapping):
+        for key, value in data.items():
+            yield from _strange_files(value, f"{where}.{key}".lstrip("."), key in FILES)
+    elif isinstance(data, list):
+        for n, value in enumerate(data):
+            yield from _strange_files(value, f"{where}[{n}]", named)
+    elif named and isinstance(data, str) and (why := refused(data)) is not None:
+        yield where, f"'{shown(data)[:200]}' is not opened: {why}; give the command --network if you trust it"
 
 
 def plain_words(message: str) -> str:

@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
 from app.project.opening import open_whole  # noqa: E402
-from metagraph.engines.targets import registry, web  # noqa: E402
+from metagraph.engines.targets import registry, web_tools  # noqa: E402
 
 RUNS = 7
 KINDS = ("plain", "packed")
@@ -28,7 +28,7 @@ KINDS = ("plain", "packed")
 def main() -> None:
     path = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "sample_clips" / "sample.metagraph.yaml"
     project = open_whole(path).project
-    web.tools = lambda folder: ROOT / "tests" / "node_modules"
+    web_tools.kept = lambda: ROOT / "tests"
     character = path.parent / project.character if project.character else None
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)

@@ -13,12 +13,13 @@ import pytest
 
 from metagraph.engines.export import ExportError, export
 from metagraph.engines.reading import read_export
-from metagraph.engines.targets import registry, web, web_tools
+from metagraph.engines.targets import registry, web
 from metagraph.engines.vectors import check_vectors, every_case, write_vectors
 from metagraph.graph.model import Project
 from tests.browsing import MODULES, Browser
 from tests.engines import cpp_program, csharp_runtime, godot_runtime
 from tests.engines.godot_runtime import needs_godot
+from tests.engines.web_tools_kept import kept_web_tools
 from tests.formats.test_gltf_packed import BODY, parts, rewritten
 from tests.thorough import many
 
@@ -129,7 +130,7 @@ console.log(JSON.stringify(cases.map(([data, count, size, mode, filter]) => {
 @needs_node
 def test_views_are_unpacked_as_the_extensions_own_library_does(packed: Path) -> None:
     """Which three.js comes with: packed by it and packed by us. Turns may differ in the last digit."""
-    if not web_tools.has_three(MODULES):
+    if not (MODULES / "three").is_dir():
         pytest.skip("needs three.js (python3 run.py test fetches it where npm is)")
     reference = ROOT / "tests" / "formats" / "meshopt_reference.json"
     script = DECODE % (JAVASCRIPT.as_uri(), MODULES.resolve().as_uri())
@@ -180,7 +181,7 @@ def test_gdscript_says_that_it_does_not_read_it(packed: Path, game: Path) -> Non
 def test_targets_that_cannot_read_it_refuse_and_the_others_write_it(
     sample: Project, tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(web, "tools", lambda place: None)
+    monkeypatch.setattr(web, "at_hand", lambda: False)
     if not registry.target(name).unpacks:
         with pytest.raises(ExportError, match="without --compress"):
             registry.write(sample, name, tmp_path / "out", compress=True)
@@ -191,11 +192,10 @@ def test_targets_that_cannot_read_it_refuse_and_the_others_write_it(
     assert "EXT_meshopt_compression" in parts(glb)[0]["extensionsRequired"]
 
 
-def test_a_page_shows_it(sample: Project, tmp_path: Path, browse: Browser) -> None:
-    if web_tools.esbuild(MODULES) is None or not web_tools.has_three(MODULES):
-        pytest.skip("needs three.js and esbuild (python3 run.py test fetches them where npm is)")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(web, "tools", lambda place: MODULES)
+def test_a_page_shows_it(
+    sample: Project, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory, browse: Browser
+) -> None:
+    with kept_web_tools(tmp_path_factory.mktemp("kept")):
         registry.write(sample, "web", tmp_path, BODY, compress=True)
     seen = """(() => { const { stage, object } = document.querySelector("metagraph-character"); let vertices = 0;
       stage.scene.traverse((one) => (vertices += one.isSkinnedMesh ? one.geometry.attributes.position.count : 0));

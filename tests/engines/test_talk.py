@@ -11,11 +11,12 @@ from typing import Any
 
 import pytest
 
-from metagraph.engines.targets import registry, web, web_tools
+from metagraph.engines.targets import registry
 from metagraph.engines.translation.gesture_word_lists import gesture_word_lists
 from metagraph.graph.model import Project
 from metagraph.speech.text_gestures import TextStream, gesture_words, proposed, words_of
-from tests.browsing import MODULES, Browser
+from tests.browsing import Browser
+from tests.engines.web_tools_kept import kept_web_tools
 from tests.speech.test_text_gestures import SPOKEN, TEXTS, tags_of
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -133,12 +134,11 @@ def test_the_lists_of_words_are_made_of_the_files() -> None:
         assert place.read_text(encoding="utf-8") == text, "make them anew (docs/translation.md)"
 
 
-def test_an_agent_in_a_page_talks_with_gestures(sample: Project, tmp_path: Path, browse: Browser) -> None:
+def test_an_agent_in_a_page_talks_with_gestures(
+    sample: Project, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory, browse: Browser
+) -> None:
     """The page of the docs beside an export: told something, it answers sentence by sentence."""
-    if web_tools.esbuild(MODULES) is None or not web_tools.has_three(MODULES):
-        pytest.skip("needs three.js and esbuild (python3 run.py test fetches them where npm is)")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(web, "tools", lambda place: MODULES)
+    with kept_web_tools(tmp_path_factory.mktemp("kept")):
         registry.write(sample, "web", tmp_path)
     page = ROOT / "docs" / "clients" / "talking_agent.html"
     assert len(page.read_text(encoding="utf-8").splitlines()) <= 60

@@ -15,12 +15,13 @@ import pytest
 from PIL import Image
 
 from metagraph.engines.reading import read_export
-from metagraph.engines.targets import registry, web, web_tools
+from metagraph.engines.targets import registry, web
 from metagraph.graph.model import Project
 from metagraph.playback.extend_performance import hear
 from metagraph.playback.plan import Plan
 from metagraph.playback.player import pose_at
-from tests.browsing import MODULES, Browser
+from tests.browsing import Browser
+from tests.engines.web_tools_kept import kept_web_tools
 
 HERE = Path(__file__).parent
 SAMPLES = HERE.parents[1] / "sample_clips"
@@ -30,11 +31,8 @@ SEED, TIME = 7, 12.3
 
 @pytest.fixture(scope="module")
 def page(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    if web_tools.esbuild(MODULES) is None or not web_tools.has_three(MODULES):
-        pytest.skip("needs three.js and esbuild (python3 run.py test fetches them where npm is)")
     folder = tmp_path_factory.mktemp("web")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(web, "tools", lambda place: MODULES)
+    with kept_web_tools(tmp_path_factory.mktemp("kept")):
         report = registry.write(sample, "web", folder, SAMPLES / "ada.glb", base=SAMPLES)
     assert report.files[0] == folder / "index.html"
     return folder
@@ -177,54 +175,6 @@ def test_the_vectors_hold_in_the_browser(
     assert [e for e in errors if "favicon" not in e and "404" not in e] == []
     for name, (passed, failures) in found.items():
         assert passed > 30 and not failures, name
-
-
-# --- where three.js comes from
-
-
-def _fetches(place: Path, *, esbuild: bool) -> None:
-    """Lay out what npm would have put there."""
-    for name in web_tools.NEEDED:
-        (place / "three" / name).parent.mkdir(parents=True, exist_ok=True)
-        (place / "three" / name).write_text("// three")
-    if esbuild:
-        for name in ("esbuild.exe", "bin/esbuild"):
-            (place / "@esbuild" / "any" / name).parent.mkdir(parents=True, exist_ok=True)
-            (place / "@esbuild" / "any" / name).write_text("no program")
-
-
-def test_what_is_not_ours_is_found_above_the_folder_else_kept_else_named_on_the_net(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, sample: Project
-) -> None:
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.setenv("LOCALAPPDATA", str(tmp_path / "cache"))
-    monkeypatch.setenv("HOME", str(tmp_path))
-    monkeypatch.setattr(shutil, "which", lambda name: None)
-    monkeypatch.chdir(tmp_path)
-    out = tmp_path / "out"
-    assert web_tools.tools(out) is None
-    report = registry.write(sample, "web", out)
-    assert web_tools.NET in (out / "index.html").read_text()
-    assert "./metagraph/element.js" in (out / web.CHARACTER).read_text()
-    assert any("three.js is not at hand" in words for words in report.warnings)
-    modules = tmp_path / "node_modules"
-    _fetches(modules, esbuild=False)
-    assert web_tools.tools(out) == modules
-    again = registry.write(sample, "web", out)
-    page = (out / "index.html").read_text()
-    assert "./three/build/" in page and (out / "three" / "LICENSE").is_file() and web_tools.NET not in page
-    assert not any("three.js" in words for words in again.warnings)
-    kept = web_tools.kept()
-    assert kept is not None
-    _fetches(kept / "node_modules", esbuild=True)
-    assert web_tools.tools(out) == kept / "node_modules"  # which has both
-    registry.write(sample, "web", out)  # what is there is no program: as before
-    assert "./three/build/" in (out / "index.html").read_text()
-
-
-def test_an_npm_that_fails_is_as_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(shutil, "which", lambda name: "/bin/false")
-    assert web_tools._fetched(tmp_path / "kept") is None
 
 
 README = (HERE.parents[1] / "metagraph" / "engines" / "runtimes" / "javascript" / "README.md").read_text()

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import itertools
-import multiprocessing
-import os
-import signal
 import time
 
 import numpy as np
 import pytest
 
+from metagraph.child_channel import Child
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
+from preview import drawing_apart
 from preview.camera import whole_figure
 from preview.drawing_apart import WORTH_LEVELS, drawn
 from preview.figure import SkinnedFigure, StickFigure
@@ -35,6 +34,19 @@ def waving(figure, count=COUNT):
         turns[1] = rotation.multiply(turns[1], rotation.from_axis_angle(np.array([0.0, 0, 1]), n / count))
         actor = Actor(figure, *skeleton.globals(Pose(turns, skeleton.rest_translations)))
         yield Scene((actor,)), whole_figure(Scene((actor,)).bounds(), SIZE[0] / SIZE[1])
+
+
+@pytest.fixture
+def children(monkeypatch):
+    """The processes that are started."""
+    made: list[Child] = []
+
+    def child(*words: str) -> Child:
+        made.append(Child(*words))
+        return made[-1]
+
+    monkeypatch.setattr(drawing_apart, "Child", child)
+    return made
 
 
 def test_pictures_are_the_same_and_in_order_wherever_they_are_drawn(offscreen, mannequin, monkeypatch):
@@ -65,18 +77,16 @@ def test_all_come_in_one_array_for_who_asks_so(offscreen):
     assert sums == expected
 
 
-def test_processes_that_end_leave_no_hole(offscreen):
+def test_processes_that_end_leave_no_hole(offscreen, children):
     scenes = list(waving(StickFigure(mannequin_skeleton())))
     here = [offscreen.render(scene, camera, DARK, SIZE).copy() for scene, camera in scenes]
-    before = {p.pid for p in multiprocessing.active_children()}
     killed: dict[int, int] = {}
     for n, picture in enumerate(drawn(itertools.cycle(scenes), COUNT, SIZE, DARK, processes=2)):
         np.testing.assert_array_equal(picture, here[n % COUNT])
         if not killed and n >= 100:
-            for process in multiprocessing.active_children():
-                if process.pid not in before:
-                    os.kill(process.pid, signal.SIGTERM)
-                    killed[process.pid] = n
+            for child in children:
+                child.process.terminate()
+                killed[child.process.pid] = n
         if killed and n > max(killed.values()) + COUNT:
             break
         time.sleep(0.005)
@@ -92,14 +102,13 @@ def test_who_comes_in_later_is_drawn_as_well(offscreen):
         np.testing.assert_array_equal(one, two)
 
 
-def test_who_stops_early_leaves_no_process(offscreen):
+def test_who_stops_early_leaves_no_process(offscreen, children):
     figure = StickFigure(chain("a", "b", "c"))
-    before = set(multiprocessing.active_children())
     pictures = drawn(waving(figure, 500), 500, SIZE, DARK, processes=1)
     for _ in range(50):
         next(pictures)
     pictures.close()
-    assert set(multiprocessing.active_children()) <= before
+    assert [child.process.poll() is not None for child in children] == [True]
 
 
 def test_no_scenes_are_no_pictures(offscreen):

@@ -317,22 +317,34 @@ class MatrixDialog(QDialog):
                 proposed_fields(action, seen.proposed, after.clips[clip].duration) if seen is not None else {}
             )
 
+        document, session, failures = self.document, self.session, list[str]()
+
         def done(timing: Mapping[str, Any]) -> None:
+            """Put it into the project, whether the dialog is still there or not."""
+
             def placed(p: Project) -> Project:
                 after = edits.place(p, [clip], layer, kind, stance, end)
                 return edits.update_actions(after, [_newest(p, after).id], timing=timing)
 
-            before = self.document.project
+            before = document.project
             try:
-                self.document.edit(tr("Place 1 clip"), placed)
+                document.edit(tr("Place 1 clip"), placed)
             except edits.EditError as error:
-                self.words.setText(tr_error(error))
+                failures.append(tr_error(error))
                 return
-            action = _newest(before, self.document.project)
-            self.session.jump(action=action.id)
-            self.session.show_context(action.id)
+            action = _newest(before, document.project)
+            session.jump(action=action.id)
+            session.show_context(action.id)
 
-        self.jobs.start("place", work, done, lambda error: self.words.setText(tr_error(error)), quick=True)
+        self._failures = failures
+        job = self.jobs.start(
+            "place", work, done, lambda error: self.words.setText(tr_error(error)), quick=True
+        )
+        job.done.connect(self._placed)
+
+    def _placed(self) -> None:
+        if self._failures:
+            self.words.setText(self._failures[0])
 
 
 def _newest(before: Project, after: Project) -> Action:

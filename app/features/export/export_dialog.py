@@ -36,6 +36,7 @@ from app.look.theme import strengthen
 from app.project.chosen import was_chosen
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
+from app.project.reveal import open_folder
 from app.translation import tr, tr_error, tr_told
 from app.widgets.making import make_widget
 from app.widgets.tree_items import items_below, top_items
@@ -301,7 +302,10 @@ class ExportDialog(QDialog):
         """Show what was written: a web page in the browser, all else as a folder."""
         name = self.target.name
         folder = self.results[name].folder
-        QDesktopServices.openUrl(QUrl(served(folder)) if name == "web" else QUrl.fromLocalFile(folder))
+        if name == "web":
+            QDesktopServices.openUrl(QUrl(served(folder)))
+        else:
+            open_folder(Path(folder))
 
     # --- writing
 
@@ -335,7 +339,9 @@ class ExportDialog(QDialog):
         def failed(error: Exception) -> None:
             self._failed(name, error)
 
-        job = self.jobs.start(tr("Exporting"), work, lambda made: self._done(made, folder), failed)
+        job = self.jobs.start(
+            tr("Exporting"), work, lambda made: self._done(made, folder), failed, stands=True
+        )
         job.progress.connect(self._tell)
 
     def _tell(self, done: int, total: int, words: str) -> None:

@@ -113,6 +113,14 @@ def contribute(shell: Shell) -> Contribution:
                 files.recover_untitled,
                 tip=tr("Projects that were never saved, of windows that were not closed properly"),
             ),
+            Command(
+                "network",
+                menu,
+                "project",
+                tr("Files on other &computers…"),
+                files.network.ask,
+                tip=tr("Whether files on other computers that this project names are opened"),
+            ),
             Command("save", menu, "save", tr("&Save"), files.save, (Standard.Save,)),
             Command("save_as", menu, "save", tr("Save &as…"), files.save_as, (Standard.SaveAs,)),
             Command(

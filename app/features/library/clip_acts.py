@@ -123,7 +123,7 @@ class ClipActs:
     def reveal(self, clip: str) -> None:
         """Show a clip's file in the system's file manager."""
         entry = self.document.project.clips[clip]
-        from app.features.library.reveal import reveal
+        from app.project.reveal import reveal
 
         reveal((self.document.folder or Path()) / entry.path)
 

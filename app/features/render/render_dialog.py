@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import QSettings, Qt, QUrl, Signal
-from PySide6.QtGui import QDesktopServices
+from PySide6.QtCore import QSettings, Qt, Signal
 from PySide6.QtWidgets import (
     QCheckBox,
     QDialog,
@@ -23,6 +22,7 @@ from PySide6.QtWidgets import (
 
 from app.look.theme import strengthen
 from app.project.jobs import Job, Jobs
+from app.project.reveal import open_folder
 from app.stage.performance import Performance
 from app.stage.render_process import SUFFIXES, RenderOrder, write
 from app.stage.session import Session
@@ -136,9 +136,7 @@ class RenderDialog(QDialog):
         self.buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
         self.show_button = self.buttons.addButton(tr("Open folder"), QDialogButtonBox.ButtonRole.ActionRole)
         self.show_button.setEnabled(False)
-        self.show_button.clicked.connect(
-            lambda: QDesktopServices.openUrl(QUrl.fromLocalFile(str(Path(self.file.text()).parent)))
-        )
+        self.show_button.clicked.connect(lambda: open_folder(Path(self.file.text()).parent))
         self.go = self.buttons.addButton(tr("Write"), QDialogButtonBox.ButtonRole.AcceptRole)
         strengthen(self.go)
         self.buttons.accepted.connect(self._write)
@@ -199,7 +197,7 @@ class RenderDialog(QDialog):
         def work(job: Job) -> Path:
             return write(project, folder, wanted, job)
 
-        job = self.jobs.start(tr("Writing the performance"), work, self._done, self._failed)
+        job = self.jobs.start(tr("Writing the performance"), work, self._done, self._failed, stands=True)
         job.progress.connect(self._tell)
         job.ended.connect(self._ended)
 

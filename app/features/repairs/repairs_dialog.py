@@ -148,11 +148,14 @@ class RepairsDialog(QDialog):
         def work(job: Job) -> Reread:
             return reread(project, folder, changes, job.tell)
 
+        document, failures = self.document, list[str]()
+
         def done(result: Reread) -> None:
-            if self.document.project is not project:
-                self._fail(tr("The project was changed meanwhile; apply it again."))
+            """Put it into the project, whether the dialog is still there or not."""
+            if document.project is not project:
+                failures.append(tr("The project was changed meanwhile; apply it again."))
                 return
-            failures = list(result.failures)
+            failures.extend(result.failures)
             try:
                 if result.count:
                     left, repairs = sum(not made for _, made in changes), many(len(changes), "repair")
@@ -163,15 +166,22 @@ class RepairsDialog(QDialog):
                         if not left
                         else tr("Change {repairs}", repairs=repairs)
                     )
-                    self.document.edit(words, result.into)
+                    document.edit(words, result.into)
             except EditError as error:
                 failures.append(tr_error(error))
-            self.found = []
-            self._fill()
-            if failures:
-                self._fail("\n".join(failures[:4]))
 
-        self.jobs.start(tr("Reading clips again"), work, done, lambda error: self._fail(tr_error(error)))
+        self._failures = failures
+        job = self.jobs.start(
+            tr("Reading clips again"), work, done, lambda error: self._fail(tr_error(error)), stands=True
+        )
+        job.done.connect(self._applied)
+
+    def _applied(self) -> None:
+        """Show what is left to repair."""
+        self.found = []
+        self._fill()
+        if self._failures:
+            self._fail("\n".join(self._failures[:4]))
 
     def _fail(self, words: str) -> None:
         self.trouble.setText(words)

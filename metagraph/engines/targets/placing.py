@@ -27,6 +27,7 @@ from metagraph.formats.atomic import FORSAKEN, write_atomically
 from metagraph.formats.clips import digest
 from metagraph.formats.locking import mark_is_gone, process_mark
 from metagraph.formats.outputs import refuse_inputs
+from metagraph.network_paths import reason
 from metagraph.wording import told
 
 RECORD = ".metagraph-export.json"
@@ -112,7 +113,9 @@ def place(
         known = {**(before.replaced or {}), **before.files}
         for name in sorted(known.keys() - digests.keys()):
             old = folder / name
-            if is_inside(old, folder) and is_file(old) and before.knows(name, digest(old)):
+            if reason(name) is not None or not is_inside(old, folder):
+                continue  # no name that an export would have written
+            if is_file(old) and before.knows(name, digest(old)):
                 gone.append(name)
     (staged.path / BEFORE).mkdir()
     _write_record(staged.path / BEFORE / RECORD, Record(target, project, digests, known))

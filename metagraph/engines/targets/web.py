@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from metagraph.engines.targets.runtimes import BML, RUNTIMES, copied, written
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
-from metagraph.engines.targets.web_tools import NEEDED, NET, THREE, bundled, tools
+from metagraph.engines.targets.web_tools import NET, THREE, at_hand, bundled, import_map, three
 from metagraph.formats.atomic import write_atomically
 from metagraph.wording import told
 
 CHARACTER = "metagraph-character.js"  # the element, and with it all that it needs
 _WHOSE = f"/*! Metagraph's player with three.js {THREE}, MIT, threejs.org */\n".encode()
+_FROM_THE_NET = (
+    f'<p id="net">This page loads three.js {THREE} from {NET.split("/")[2]}; '
+    "the browser checks its digest.</p>"
+)
 _MODULES = f'export * from "./metagraph/element.js"; // which imports three.js {THREE}\n'.encode()
 
 
@@ -22,35 +26,31 @@ def write(order: ExportOrder) -> Made:
     page = page.replace("EXPORT.json", f"{order.stem}.json")
     files = [*copied(RUNTIMES / "web" / "player", order.folder / "player")]
     notes = list(made.notes)
-    modules = tools(order.folder)
-    whole = bundled(modules, RUNTIMES / "javascript" / "element.js") if modules is not None else None
+    whole = bundled(RUNTIMES / "javascript" / "element.js") if at_hand() else None
     element = order.folder / CHARACTER
     files.append(element)
-    where = ""
+    where = said = ""
     if whole is not None:
         write_atomically(element, _WHOSE + whole)
     else:
         write_atomically(element, _MODULES)
         leave = ("conformance.mjs", "conformance.d.mts")
         files += copied(RUNTIMES / "javascript", order.folder / "metagraph", leave)
-        at = "./three/"
-        if modules is None:
-            at = NET
+        theirs = three()
+        for name, content in (theirs or {}).items():
+            files.append(order.folder / "three" / name)
+            write_atomically(files[-1], content)
+        where = import_map("./three/" if theirs is not None else NET, checked=theirs is None)
+        if theirs is None:
+            said = _FROM_THE_NET
             notes.append(
                 told(
-                    "three.js is not at hand: the page loads it from the net. With npm installed, "
-                    "exporting again puts it beside the page"
+                    "three.js is not at hand: the page loads version {version} from the net, and the browser "
+                    "checks its digest. With npm installed, exporting again puts it beside the page",
+                    version=THREE,
                 )
             )
-        else:
-            for name in NEEDED:
-                files.append(order.folder / "three" / name)
-                write_atomically(files[-1], (modules / "three" / name).read_bytes())
-        where = (
-            f'<script type="importmap">{{ "imports": {{ "three": "{at}build/three.module.js", '
-            f'"three/addons/": "{at}examples/jsm/" }} }}</script>'
-        )
-    page = page.replace("<!-- three.js -->", where)
+    page = page.replace("<!-- three.js -->", where).replace("<!-- from the net -->", said)
     early = [
         f'<link rel="preload" href="{order.stem}.{kind}" as="fetch" crossorigin>' for kind in ("json", "glb")
     ]

@@ -15,7 +15,7 @@ from app.features.library.clip_header import PLACES
 from app.features.library.clip_rows import ENTRY
 from app.features.library.clip_sizes import SIZES, picture_of
 from app.features.library.library_settings import LibrarySettings
-from app.features.library.reveal import how
+from app.project.reveal import how
 from metagraph.graph.clip_mark import ClipMark
 from metagraph.graph.marks import mark, mark_of
 from metagraph.graph.problem import Problem
@@ -380,7 +380,7 @@ def test_a_file_is_shown_in_its_folder_as_each_system_does():
 
 
 def test_reveal_opens_the_folder_of_a_file_or_the_nearest_there_is(monkeypatch, tmp_path):
-    from app.features.library import reveal as module
+    from app.project import reveal as module
 
     opened = []
     monkeypatch.setattr(module.QDesktopServices, "openUrl", lambda url: opened.append(url.toLocalFile()))

@@ -83,6 +83,16 @@ def test_an_import_tells_each_repair_and_one_is_left_out_in_one_step(drive, fold
     assert drive.document.project.clips["c1"].frames == before
 
 
+@pytest.mark.parametrize("way", ["reject", "close"])
+def test_what_was_applied_is_done_though_the_dialog_is_closed_at_once(drive, dialog, way):
+    before = drive.document.project.clips["c1"].frames
+    tick(dialog, "Drop", 0)
+    dialog.go.click()
+    getattr(dialog, way)()
+    drive.wait(lambda: drive.document.project.clips["c1"].frames == before + 1)
+    assert not shown(drive)
+
+
 def test_a_skipped_pose_is_brought_in_and_skipped_again(drive, dialog):
     top = dialog.tree.topLevelItem(1)
     assert [top.child(0).text(n) for n in (0, 1)] == ["c.glb", "skipped 'c': a bind pose of one frame"]

@@ -1,0 +1,50 @@
+"""Shows files and folders in the system's file manager, which only shows them: nothing of a project is
+opened as a program.
+"""
+
+from __future__ import annotations
+
+import sys
+import threading
+from pathlib import Path
+
+from PySide6.QtCore import QUrl
+from PySide6.QtGui import QDesktopServices
+
+from metagraph.programs import run, system_program
+
+
+def how(path: Path, platform: str = sys.platform) -> tuple[str, list[str]] | None:
+    """Return the name of the system's program, with its arguments, that shows a file in its folder; None
+    where there is none that can be relied on.
+    """
+    if platform == "win32":
+        return "explorer", ["/select,", str(path).replace("/", "\\")]
+    if platform == "darwin":
+        return "open", ["-R", str(path)]
+    return None
+
+
+def reveal(path: Path) -> None:
+    """Show a file; where it is gone, the nearest folder that is there."""
+    if path.exists() and _shown(path):
+        return
+    open_folder(next((p for p in path.parents if p.is_dir()), Path.home()))
+
+
+def open_folder(folder: Path) -> None:
+    """Show what is in a folder. What is no folder is not opened, and on macOS a folder that is a program is
+    shown, too, not started.
+    """
+    if not folder.is_dir() or (sys.platform == "darwin" and folder.suffix and _shown(folder)):
+        return
+    QDesktopServices.openUrl(QUrl.fromLocalFile(str(folder)))
+
+
+def _shown(path: Path) -> bool:
+    words = how(path)
+    program = system_program(words[0]) if words is not None else None
+    if words is None or program is None:
+        return False
+    threading.Thread(target=run, args=([program, *words[1]],), daemon=True).start()
+    return True

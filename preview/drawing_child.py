@@ -1,0 +1,38 @@
+"""Run as a process of its own by `preview.drawing_apart`: it draws scenes into memory that both share.
+
+Comes in: what all scenes have (figures, size, theme, the shared file, how many pictures it holds), then a
+scene after the other, pickled by the parent. Goes out: an empty message when it has begun, and when a
+picture is drawn.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+from dataclasses import replace
+
+import numpy as np
+
+from metagraph.child_channel import parent
+from preview.offscreen import Offscreen
+
+
+def main() -> None:
+    os.environ["LP_NUM_THREADS"] = "1"  # each process has a core
+    channel = parent()
+    try:
+        figures, size, theme, path, slots = pickle.loads(channel.receive())
+        pool = np.memmap(path, np.uint8, "r+", shape=(slots, size[1], size[0], 4))
+        with Offscreen(*size) as offscreen:
+            channel.send(b"")
+            while True:
+                slot, scene, actors, numbers, camera = pickle.loads(channel.receive())
+                there = (replace(a, figure=figures[n]) for a, n in zip(actors, numbers, strict=True))
+                offscreen.render(replace(scene, actors=tuple(there)), camera, theme, into=pool[slot])
+                channel.send(b"")
+    except (EOFError, OSError):
+        return  # the parent has all it wanted, or is gone
+
+
+if __name__ == "__main__":
+    main()
