@@ -125,6 +125,15 @@ def _report(w: Handles, _: Path) -> None:
     w.importing.report.emit("Two files were not read", ("one.bvh: empty", "two.bvh: empty"))
 
 
+def _take(w: Handles, folder: Path) -> None:
+    from app.features.taking.taking_dialog import TakingDialog
+    from app.look.theme import theme
+    from metagraph.formats.project_pieces import read_other_project
+
+    piece = read_other_project(ROOT / "seated.metagraph.yaml", None)
+    TakingDialog(w.document, w.shell.jobs, piece, "seated", theme("dark"), w.window).open()
+
+
 def _recover(w: Handles, _: Path) -> None:
     from app.project.leftovers import FoundJournal
     from app.project.recovering import RecoverDialog
@@ -177,6 +186,7 @@ DIALOGS: dict[str, Open] = {
     "study": _study,
     "note": _note,
     "joint map": _joint_map,
+    "take": _take,
     "report": _report,
     "recover": _recover,
     "fault": _fault,
