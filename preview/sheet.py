@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.errors import FileError
+from metagraph.formats.outputs import being_written
 
 Array = NDArray[Any]
 Color = tuple[int, int, int]
@@ -72,7 +73,8 @@ def write_png(path: str | Path, picture: Array) -> None:
     part = path.with_name(f".{path.name}.part")
     try:
         Image.fromarray(np.ascontiguousarray(picture)).save(part, "PNG", compress_level=6)
-        part.replace(path)
+        with being_written(path):
+            part.replace(path)
     except OSError as error:
         raise FileError(
             path, f"the picture could not be written ({error})", remedy="Check the folder and the free space."

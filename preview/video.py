@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.errors import FileError
+from metagraph.formats.outputs import being_written
 
 Array = NDArray[Any]
 
@@ -95,7 +96,8 @@ def write_video(
                 container.mux(packet)
             if voice is not None and sound is not None:
                 _write_sound(container, voice, sound[0], round(count / fps * sound[1]))
-        part.replace(path)
+        with being_written(path):
+            part.replace(path)
     except OSError as error:
         raise FileError(
             path, f"the video could not be written ({error})", remedy="Check the folder and the free space."

@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from app.cli.kept_options import kept_name
+from app.cli.outputs import ProjectOutput
 from app.project.annotation_reading import Reading, begin, into, replayed, told
 from app.project.opening import open_whole
 from metagraph.errors import FileError
 from metagraph.formats.elan import read_elan
-from metagraph.formats.store import save_project
 from metagraph.graph.model import LAYERS, Layer
 from metagraph.playback.annotation import IGNORE, MEANINGS, ROLES, SPEECH, Annotation, is_meaning, label_of
 from metagraph.playback.compare import compare
@@ -61,6 +61,15 @@ def run(options: Namespace) -> int:
     that.
     """
     path: Path = options.project
+    if not options.learn and options.perform is None:
+        return _annotated(options, None)
+    with ProjectOutput(path) as output:
+        return _annotated(options, output)
+
+
+def _annotated(options: Namespace, output: ProjectOutput | None) -> int:
+    """output: where the project is saved, if it is."""
+    path: Path = options.project
     opened = open_whole(path)
     project = opened.project
     reading = _reading(read_elan(options.annotation), options, project.tiers, project.labels)
@@ -76,9 +85,9 @@ def run(options: Namespace) -> int:
     made = into(
         project, reading, LAYERS if options.learn else (), options.states, options.perform, options.smoothing
     )
-    saved = bool(made.learned) or made.performance is not None
-    if saved:
-        save_project(made.project, path, path)
+    saved = output is not None and (bool(made.learned) or made.performance is not None)
+    if saved and output is not None:
+        output.save(made.project)
     models = {layer: _layer(layer, acts, options) for layer, acts in reading.observed.items() if acts}
     notes = [*opened.notes, *doubts]
     data = {

@@ -12,6 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from app.project.opening import open_whole
+from metagraph.formats.outputs import reads
+from metagraph.formats.store import files_of
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Performance
 from metagraph.playback.plan import Plan
@@ -41,7 +43,9 @@ def until_told_to_stop() -> Iterator[None]:
 
 
 def opened(path: Path) -> Project:
+    """Read a project with what it names, which the command must not write over; say what is odd about it."""
     found = open_whole(path)
+    reads(*files_of(found.project, path.resolve().parent))
     for note in found.notes:
         print(f"note: {note}", file=sys.stderr)
     return found.project

@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.command_output import opened, say
+from app.cli.outputs import ProjectOutput, project_name
+from metagraph.formats.outputs import claim
 
 if TYPE_CHECKING:
     from metagraph.graph.model import Layer, Project
@@ -29,10 +31,20 @@ def arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Find contacts, measure the body, and write the project."""
+    if options.list:
+        return _found(options, None)
+    out = options.project if options.out is None else project_name(options.out)
+    if not (out.exists() and out.samefile(options.project)):
+        claim(out)
+    with ProjectOutput(out) as output:
+        return _found(options, output)
+
+
+def _found(options: Namespace, output: ProjectOutput | None) -> int:
+    """output: where the project is saved, if it is."""
     import msgspec
 
     from metagraph.formats.gltf import read_character
-    from metagraph.formats.store import save_project
     from metagraph.graph import edits
     from metagraph.suggest.find_contacts import measured, with_contacts
 
@@ -56,9 +68,8 @@ def run(options: Namespace) -> int:
         for a, s in found
     ]
     lines = [f"{a.name}: {s.hand} {s.place} on {s.to} from {s.start:.2f} to {s.end:.2f} s" for a, s in found]
-    if not options.list:
-        out = options.out or options.project
-        save_project(project, out, options.project)
+    if output is not None:
+        output.save(project, options.project)
     count = len({a.id for a, _ in found})
     say(options, "\n".join([*lines, f"{len(found)} contacts in {count} actions"]), {"contacts": rows})
     return 0

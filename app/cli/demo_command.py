@@ -27,12 +27,17 @@ def run(options: Namespace) -> int:
     are.
     """
     from metagraph.engines.export import export as write_export
+    from metagraph.engines.export import stem_of
+    from metagraph.formats.outputs import claim, wrote
 
     source: Path = getattr(options, "project", None) or SAMPLE
     project = opened(source)
     folder = source.resolve().parent
     made = staged(project, options)
     out: Path = options.out
+    sheet, video = out / f"{project.name}.png", out / f"{project.name}.mp4"
+    own = out / f"{stem_of(project)}.json", out / f"{stem_of(project)}.glb"
+    claim(sheet, video, *own)
     out.mkdir(parents=True, exist_ok=True)
     whole = size(project)
     cues = sum(len(made.layers[layer].cues) for layer in LAYERS)
@@ -43,7 +48,6 @@ def run(options: Namespace) -> int:
         print(f"planned {made.end:g} s: {cues} actions on {len(LAYERS)} layers")
     shown = Shown(project, made, made.end)
     seen = [(figure_of(project, folder), shown)]
-    sheet, video = out / f"{project.name}.png", out / f"{project.name}.mp4"
     draw_to(sheet, seen, made.end, (960, 540), 30, 24, "dark")
     if not quiet:
         print(f"contact sheet  {sheet.resolve()}", flush=True)
@@ -51,6 +55,7 @@ def run(options: Namespace) -> int:
     if not quiet:
         print(f"video          {video.resolve()}", flush=True)
     exported = write_export(project, out, character=folder / project.character if project.character else None)
+    wrote(*own)
     results = {"sheet": sheet, "video": video, "json": exported.json, "glb": exported.glb}
     if quiet:
         print(json.dumps({k: str(v.resolve()) for k, v in results.items()}))

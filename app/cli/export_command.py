@@ -82,6 +82,11 @@ def run(options: Namespace) -> int:
         )
         return 2
     registry.target(options.target)  # a wrong name is told before anything is read
+    if options.vectors:
+        from metagraph.engines.vectors import NAME
+        from metagraph.formats.outputs import claim
+
+        claim(options.out / NAME)
     if options.serve and options.target != "web":
         print("metagraph export: only the web page can be served: --target web --serve", file=sys.stderr)
         return 2
@@ -142,6 +147,12 @@ def _once(options: Namespace) -> None:
         if project.character and not options.no_mesh
         else None
     )
+    if options.tools:
+        from metagraph.engines.export import stem_of
+        from metagraph.engines.tools_file import tools_name
+        from metagraph.formats.outputs import claim
+
+        claim(options.out / tools_name(stem_of(project)))
     made = registry.write(project, options.target, options.out, character, options.expanded,
                           base=options.project.resolve().parent, overwrite=options.overwrite,
                           chosen_by_hand=lambda p: any(is_inside(p, x) for x in options.sounds),

@@ -69,8 +69,9 @@ def manner_of(options: Namespace) -> Manner:
 def evaluate(options: Namespace) -> int:
     """Judge models; print the table, with `out` write it and the figures."""
     from app.cli.command_output import say
-    from app.cli.generate_report import data_of, text_of, write_report
+    from app.cli.generate_report import REPORT, data_of, text_of, write_report
     from app.cli.generate_takes import models_of, read_all, telling
+    from metagraph.formats.outputs import claim
     from metagraph.generation.evaluation import for_all, judge
     from metagraph.generation.stored import SUFFIX
 
@@ -80,6 +81,8 @@ def evaluate(options: Namespace) -> int:
         missing = "are no takes to judge them on" if paths else f"is no model ({SUFFIX})"
         raise ValueError(f"give models and takes: there {missing}")
     manner = manner_of(options)
+    if options.out is not None:
+        claim(*(options.out / name for name in REPORT))
     models = models_of(paths)
     first = next(iter(models.values()))
     alike(models)

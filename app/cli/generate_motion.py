@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import sys
 from argparse import ArgumentParser, Namespace
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from app.cli.outputs import ProjectOutput
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.generation.stored import Model, ModelCard
@@ -238,12 +241,19 @@ def sample(options: Namespace) -> int:
 
 def cut(options: Namespace) -> int:
     """Make motion, cut it where that is safe, and write the pieces."""
+    with ProjectOutput(options.project) if options.project is not None else nullcontext() as output:
+        return _cut(options, output)
+
+
+def _cut(options: Namespace, output: ProjectOutput | None) -> int:
+    """output: the project that the pieces are added to, if any."""
     import json
 
     from app.cli.command_output import say
     from metagraph.formats.atomic import write_atomically
     from metagraph.formats.clips import digest
     from metagraph.formats.gltf_writer import write_glb
+    from metagraph.formats.outputs import claim
     from metagraph.generation.stored import read_model
     from metagraph.synthesis.cut import candidates, uncut
 
@@ -252,6 +262,7 @@ def cut(options: Namespace) -> int:
     model = read_model(options.model)
     heard = heard_of(options, model.card.tracks)
     out: Path = options.out
+    claim(out / "pieces.json")
     out.mkdir(parents=True, exist_ok=True)
     known = digest(options.model)
     entries: list[dict[str, Any]] = []
@@ -278,7 +289,7 @@ def cut(options: Namespace) -> int:
     ]
     if not entries:
         lines.append(f"{why}. Ask for more minutes, a lower temperature or longer pieces, or train longer")
-    added = _added(options.project, [out / e["file"] for e in entries]) if options.project and entries else 0
+    added = _added(output, [out / e["file"] for e in entries]) if output is not None and entries else 0
     if added:
         lines.append(f"{added} added to {options.project}")
     data = {"folder": str(out), "pieces": entries, "minutes": options.minutes, "added": added}
@@ -287,18 +298,17 @@ def cut(options: Namespace) -> int:
     return 0 if entries else 3
 
 
-def _added(path: Path, files: list[Path]) -> int:
+def _added(output: ProjectOutput, files: list[Path]) -> int:
     """Add pieces to a project; return how many. Their names, and so their entries, tell model and seed."""
     from app.cli.command_output import opened
     from metagraph.formats.imports import import_files
-    from metagraph.formats.store import save_project
 
-    project = opened(path)
-    result = import_files(project, path.resolve().parent, files)
+    project = opened(output.path)
+    result = import_files(project, output.path.resolve().parent, files)
     for failure in result.failures:
         print(f"left out: {failure}", file=sys.stderr)
     if result.loaded:
-        save_project(result.into(project), path, path)
+        output.save(result.into(project))
     return len(result.loaded)
 
 

@@ -11,13 +11,14 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from metagraph.formats.atomic import write_atomically
+from metagraph.formats.outputs import write_together
 from metagraph.generation import figures
 from metagraph.generation.evaluation import Judged
 from metagraph.generation.features import PARTNER, SELF
 from metagraph.generation.statistics import MEASURES, Row, mean_landmarks
 from metagraph.study.report_style import STYLE
 
+REPORT = ("report.html", "report.json", "report.csv")  # what is written
 NAMES = (*MEASURES, "diversity")
 # What a perfect model has; "true": what recorded motion has itself.
 PERFECT = {
@@ -110,9 +111,8 @@ def write_report(judged: Judged, told: dict[str, Any], notes: Sequence[str], fol
         "report.json": json.dumps({**data_of(judged.rows, told), "notes": list(notes)}, indent=1) + "\n",
         "report.csv": csv_of(judged.rows),
     }
-    for name, text in content.items():
-        write_atomically(folder / name, text.encode())
-    return [folder / name for name in content]
+    assert tuple(content) == REPORT
+    return write_together(folder, {name: text.encode() for name, text in content.items()})
 
 
 def page(judged: Judged, told: dict[str, Any], notes: Sequence[str]) -> str:

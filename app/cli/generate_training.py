@@ -106,6 +106,7 @@ def check(options: Namespace) -> None:
 def train(options: Namespace) -> int:
     """Train a model, or go on with it, and tell how it does."""
     from app.cli.command_output import say
+    from metagraph.formats.outputs import keeps_up
     from metagraph.generation.stored import SUFFIX, read_model
     from metagraph.generation.train_plan import folder_of
 
@@ -113,6 +114,7 @@ def train(options: Namespace) -> int:
     if out.suffix.lower() != SUFFIX:
         raise ValueError(f"a model is written as {SUFFIX}, not as '{out.suffix or out.name}'")
     check(options)
+    keeps_up(out, folder_of(out))  # what is there is gone on with, or refused
     _go_on(options) if options.resume else _begin(options)
     process, stopped = _trained(options, out)
     card = read_model(out).card
@@ -266,6 +268,7 @@ def ablate(options: Namespace) -> int:
     from app.cli.generate_report import csv_of, data_of, text_of
     from app.cli.generate_takes import read_all
     from metagraph.formats.atomic import write_atomically
+    from metagraph.formats.outputs import claim
     from metagraph.generation import ablation
     from metagraph.generation.features import MELS
     from metagraph.generation.networks import sizes_of
@@ -273,6 +276,7 @@ def ablate(options: Namespace) -> int:
     from metagraph.generation.takes import split
 
     check(options)
+    claim(options.out / "table.json", options.out / "table.csv")
     manner = manner_of(options)
     changes = chosen(options.change)
     tracks = 2 if options.two_tracks else 1

@@ -7,13 +7,14 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from app.cli.command_output import opened, say
+from app.cli.outputs import ProjectOutput, project_name
 from metagraph.errors import FileError
 from metagraph.formats.action_labels import labelled, read_labels
 from metagraph.formats.clips import SUFFIXES
 from metagraph.formats.import_words import counted, remedies, said
 from metagraph.formats.imports import import_files
 from metagraph.formats.project_pieces import read_other_project
-from metagraph.formats.store import SUFFIX, save_project
+from metagraph.formats.store import SUFFIX
 from metagraph.graph.model import Project
 from metagraph.graph.taking import words_of_taking
 
@@ -57,17 +58,18 @@ def _taken(project: Project, path: Path, other: Path, options: Namespace) -> tup
 
 
 def run(options: Namespace) -> int:
-    path: Path = options.project
     if not options.paths and options.labels is None:
         print("metagraph import: which clips? metagraph import my.metagraph.yaml clips/", file=sys.stderr)
         return 2
+    path: Path = options.project if options.project.is_file() else project_name(options.project)
+    with ProjectOutput(path) as output:
+        return _imported(options, output)
+
+
+def _imported(options: Namespace, output: ProjectOutput) -> int:
+    path = output.path
     rows = read_labels(options.labels) if options.labels is not None else ()
-    if path.is_file():
-        project = opened(path)
-    else:
-        if path.suffix not in (".yaml", ".yml"):
-            path = path.with_name(path.name + SUFFIX)
-        project = Project(name=path.name.removesuffix(SUFFIX))
+    project = opened(path) if path.is_file() else Project(name=path.name.removesuffix(SUFFIX))
     others = [other for other in options.paths if other.name.endswith(SUFFIX)]
     files = [file for file in options.paths if file not in others]
     taken: list[str] = []
@@ -108,7 +110,7 @@ def run(options: Namespace) -> int:
     for why in left:
         print(f"not labelled: {why}", file=sys.stderr)
     if result.loaded or placed or taken:
-        save_project(project, path, path)
+        output.save(project)
     data = {
         "project": str(path),
         "imported": len(result.loaded),

@@ -9,13 +9,16 @@ import sys
 import time
 from argparse import Namespace
 from collections.abc import Sequence
-from dataclasses import replace
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
+    from app.cli.outputs import ProjectOutput
     from metagraph.graph.model import Project
     from metagraph.suggest.alike import Example
+    from metagraph.suggest.bridges import Bridge
     from metagraph.suggest.words_patterns import Patterns
 
 
@@ -67,20 +70,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Label a folder or project; write the project and an HTML report beside it."""
-    from app.cli.command_output import say
-    from app.cli.label_pictures import pictures
-    from app.cli.label_report import report
+    from app.cli.outputs import ProjectOutput, project_name
     from metagraph.errors import FileError
-    from metagraph.formats.atomic import write_atomically
-    from metagraph.formats.import_words import counted
-    from metagraph.formats.store import SUFFIX, save_project
-    from metagraph.graph.check import check, grave
-    from metagraph.suggest.bridges import bridged, told
-    from metagraph.suggest.flags import needs_a_look
-    from metagraph.suggest.left_aside import reasons
-    from metagraph.suggest.propose import SOURCES, accept, propose
+    from metagraph.formats.outputs import claim
+    from metagraph.formats.store import SUFFIX
 
-    began = time.perf_counter()
     source: Path = options.folder
     if not source.exists():
         raise FileError(
@@ -89,19 +83,50 @@ def run(options: Namespace) -> int:
             "on labelling it",
             "Give a folder of clips, or a project.",
         )
-    path: Path = options.out or (
-        source if source.is_file() else source.resolve().parent / f"{source.resolve().name}{SUFFIX}"
+    path = project_name(
+        options.out
+        or (source if source.is_file() else source.resolve().parent / f"{source.resolve().name}{SUFFIX}")
     )
-    if path.suffix not in (".yaml", ".yml"):
-        path = path.with_name(path.name + SUFFIX)
+    if source.is_file() and not (path.exists() and path.samefile(source)):
+        claim(path)  # clips of a folder are added to a project that is there; two projects are not mixed
+    with ProjectOutput(path) as output:
+        return _labelled(options, output)
+
+
+def _labelled(options: Namespace, output: ProjectOutput) -> int:
+    from app.cli.command_output import say
+    from app.cli.label_pictures import pictures
+    from app.cli.label_report import report
+    from metagraph.formats.atomic import write_atomically
+    from metagraph.formats.import_words import counted
+    from metagraph.graph.check import check, grave
+    from metagraph.suggest.bridges import bridged, told
+    from metagraph.suggest.flags import needs_a_look
+    from metagraph.suggest.left_aside import reasons
+    from metagraph.suggest.propose import SOURCES, accept, propose
+
+    began = time.perf_counter()
+    source, path = options.folder, output.path
     patterns, examples = _taught(options, path)
-    project, notes = _project(source, path, options.retarget, not options.no_contacts)
-    found = propose(project, patterns=patterns, examples=examples, sources=tuple(options.sources or SOURCES))
+    begun = _begun(options, path)
+    project, notes = begun.project, begun.notes
+    found = propose(
+        project,
+        begun.clips,
+        patterns=patterns,
+        examples=examples,
+        sources=tuple(options.sources or SOURCES),
+    )
     taken = accept(project, found, options.above)
-    labelled, bridges = (taken.project, ()) if options.no_bridges else bridged(taken.project)
+    bridges: tuple[Bridge, ...] = ()
+    if any(True for _ in begun.before.actions()):
+        labelled, bridges = _beside_work(project, taken.project, not options.no_bridges)
+    else:
+        labelled, bridges = (taken.project, ()) if options.no_bridges else bridged(taken.project)
     taken = replace(taken, project=labelled)
-    save_project(taken.project, path, source if source.is_file() else path)
-    place = path.with_name(path.name.removesuffix(SUFFIX) + ".labels.html")
+    if not begun.merged or labelled != begun.before:
+        output.save(taken.project, source if source.is_file() else None)
+    place = _free_report(path)
     drawn = {} if options.no_pictures else pictures(taken.project, path.resolve().parent, [*found.proposals])
     write_atomically(place, report(taken.project, found, taken, drawn, notes, path).encode())
     look = [p for p in found.doubtful if needs_a_look(p, taken.left)]
@@ -139,8 +164,33 @@ def run(options: Namespace) -> int:
         "errors": errors,
         "seconds": round(seconds, 2),
     }
+    if begun.merged:
+        told_of, data_of = _told_of_merging(begun, path)
+        words, data = f"{words}\n{told_of}", data | data_of
     say(options, words, data)
     return 3 if taken.left or errors else 0
+
+
+def _told_of_merging(begun: Begun, path: Path) -> tuple[str, dict[str, int]]:
+    """Return what became of a project that clips were added to, in words and as data."""
+    counts = {
+        "added": len(begun.clips or ()),
+        "skipped": begun.skipped,
+        "kept": len(begun.before.clips),
+        "waiting": begun.waiting,
+    }
+    actions = sum(1 for _ in begun.before.actions())
+    words = (
+        f"added {counts['added']} clips to the project, which keeps its {counts['kept']} clips and {actions} "
+    )
+    words += "actions as they were"
+    if begun.skipped:
+        words += f"; skipped {begun.skipped} clips that it has already"
+    if begun.waiting:
+        words += f"; {begun.waiting} of its clips wait to be labelled: metagraph label {path}"
+    if not begun.clips:
+        words += "; nothing was changed. --overwrite makes the project anew and keeps this one as a version"
+    return words, counts
 
 
 def _several(names: Sequence[str]) -> str:
@@ -175,23 +225,98 @@ def _taught(options: Namespace, path: Path) -> tuple[Patterns | None, list[Examp
     return merged(patterns, given) if given is not None else patterns, learned.examples_beside(path)
 
 
-def _project(source: Path, path: Path, retarget: bool, contacts: bool) -> tuple[Project, list[str]]:
-    """Return the project to label, and what there is to say about what was read."""
+@dataclass(frozen=True)
+class Begun:
+    """What is to be labelled. clips: only these, None for all that wait. notes: what there is to say about
+    what was read. before: the project that was there. merged: whether there was one that clips were added to.
+    skipped: how many of the folder's clips it has already. waiting: how many of its clips are not placed,
+    which is left so.
+    """
+
+    project: Project
+    clips: list[str] | None
+    notes: list[str]
+    before: Project
+    merged: bool = False
+    skipped: int = 0
+    waiting: int = 0
+
+
+def _begun(options: Namespace, path: Path) -> Begun:
+    """Return the project to label: the one that was given, or clips of a folder, added to the project that is
+    at `path`.
+    """
     from app.cli.command_output import opened
     from metagraph.errors import FileError
     from metagraph.formats.imports import import_files
     from metagraph.formats.store import SUFFIX
     from metagraph.graph.model import Project
+    from metagraph.suggest.propose import waiting
 
+    source: Path = options.folder
     if source.is_file():
-        return opened(source), []
-    empty = Project(name=path.name.removesuffix(SUFFIX))
+        project = opened(source)
+        return Begun(project, None, [], project)
+    merged = path.is_file() and not options.overwrite
+    before = opened(path) if merged else Project(name=path.name.removesuffix(SUFFIX))
     result = import_files(
-        empty, path.resolve().parent, [source], retarget="yes" if retarget else "no", contacts=contacts
+        before,
+        path.resolve().parent,
+        [source],
+        retarget="yes" if options.retarget else "no",
+        contacts=not options.no_contacts,
     )
     if not result.loaded:
         why = result.failures[0] if result.failures else "no clip was found in it"
         raise FileError(
             source, why, "on importing it", "Clips are BVH, GLB, glTF, VRM animation or FBX files."
         )
-    return result.into(empty), [*result.failures, *result.notes]
+    known = {(x, entry.take) for entry in before.clips.values() for x in (entry.path, entry.digest)}
+    fresh = replace(
+        result,
+        loaded=tuple(
+            (name, take, content, clip)
+            for name, take, content, clip in result.loaded
+            if known.isdisjoint({(name, take), (content, take)})
+        ),
+    )
+    project = fresh.into(before) if fresh.loaded else before
+    clips = [clip for clip in project.clips if clip not in before.clips]
+    notes = [*result.failures, *result.notes]
+    skipped = len(result.loaded) - len(fresh.loaded)
+    return Begun(project, clips if merged else None, notes, before, merged, skipped, len(waiting(before)))
+
+
+def _beside_work(before: Project, labelled: Project, bridge: bool) -> tuple[Project, tuple[Bridge, ...]]:
+    """Return a project whose new clips are labelled, with everything else as it was `before`; and, if wanted,
+    bridges to the stances that are new.
+    """
+    from metagraph.graph.model import LAYERS
+    from metagraph.suggest.bridges import bridged_at
+
+    graphs = dict(labelled.graphs)
+    for layer in LAYERS:
+        if before.graphs[layer].stances:
+            graphs[layer] = replace(graphs[layer], weights=before.graphs[layer].weights)
+    labelled = replace(labelled, graphs=graphs)
+    made: list[Bridge] = []
+    for layer in LAYERS if bridge else ():
+        for stance in labelled.graphs[layer].stances.keys() - before.graphs[layer].stances.keys():
+            labelled, some = bridged_at(labelled, stance)
+            made += some
+    return labelled, tuple(made)
+
+
+def _free_report(path: Path) -> Path:
+    """Return where the report goes: beside the project, and over nothing but an earlier report."""
+    from metagraph.errors import FileError
+    from metagraph.formats.outputs import claim
+    from metagraph.formats.store import SUFFIX
+
+    stem = path.name.removesuffix(SUFFIX)
+    for number in range(1, 100):
+        place = path.with_name(f"{stem}.labels{f' {number}' if number > 1 else ''}.html")
+        with suppress(FileError):
+            claim(place)
+            return place
+    return place

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from app.cli import live_graph_options
 from app.cli.kept_options import kept_name, kept_seed
+from app.cli.outputs import ProjectOutput
 from metagraph.live import OSC_PORT, PORT
 
 if TYPE_CHECKING:
@@ -174,7 +175,7 @@ def _keep(session: LiveSession, options: Namespace) -> None:
     Raises FileError, which says where the session is.
     """
     from metagraph.errors import FileError
-    from metagraph.formats.store import open_project, save_project
+    from metagraph.formats.store import open_project
     from metagraph.graph.performance_edits import add_performance
 
     played = session.performance(options.keep)
@@ -182,8 +183,9 @@ def _keep(session: LiveSession, options: Namespace) -> None:
     if lacks:
         print(f"note: {lacks}", file=sys.stderr)
     try:
-        project, ident = add_performance(open_project(options.project).project, played)
-        save_project(project, options.project, options.project)
+        with ProjectOutput(options.project) as output:
+            project, ident = add_performance(open_project(options.project).project, played)
+            output.save(project)
     except (FileError, ValueError, RuntimeError) as error:
         place = _kept_beside(session.project, played, options.project)
         remedy = f"What was played is kept in '{place}', which can be opened." if place is not None else ""

@@ -5,9 +5,11 @@ from __future__ import annotations
 import json
 import sys
 from argparse import ArgumentParser, Namespace
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from app.cli.outputs import ProjectOutput
 from metagraph.graph.words import LAYERS
 
 if TYPE_CHECKING:
@@ -73,11 +75,7 @@ def run(options: Namespace) -> int:
     """Tell what is seen in keypoints; with `out` write the character mimicking it, with `keep` keep it in the
     project.
     """
-    from app.cli.command_output import opened
     from app.cli.render_command import size_of
-    from metagraph.formats.keypoints import read_keypoints
-    from metagraph.graph.requests import Performance
-    from metagraph.mimicry.performing import REST, mimic_performance, placed
 
     if options.out is not None and options.out.suffix not in OUT:
         name = options.out.suffix or options.out.name
@@ -86,6 +84,22 @@ def run(options: Namespace) -> int:
         raise ValueError(f"a take is written as {' or '.join(TAKES)}, not as '{options.take.suffix}'")
     picture = size_of(options.picture) if options.picture else None
     size = size_of(options.size)
+    with ProjectOutput(options.project) if options.keep is not None else nullcontext() as output:
+        return _mimicked(options, picture, size, output)
+
+
+def _mimicked(
+    options: Namespace,
+    picture: tuple[int, int] | None,
+    size: tuple[int, int],
+    output: ProjectOutput | None,
+) -> int:
+    """output: where the project is saved, if it is."""
+    from app.cli.command_output import opened
+    from metagraph.formats.keypoints import read_keypoints
+    from metagraph.graph.requests import Performance
+    from metagraph.mimicry.performing import REST, mimic_performance, placed
+
     project = opened(options.project)
     seen = read_keypoints(options.keypoints, options.fps, picture)
     length = round(seen.seconds + REST, 3)
@@ -98,7 +112,7 @@ def run(options: Namespace) -> int:
     written = [
         str(x)
         for x in (
-            _keep(options, project, kept),
+            _keep(output, project, kept),
             _write(options, project, kept, made, size),
             _take(options, project, seen),
         )
@@ -148,14 +162,13 @@ def _planned(project: Project, kept: Performance) -> Plan:
     return perform(project, asks_of(kept), kept.length, kept.seed, dict(kept.stances), kept.idle)
 
 
-def _keep(options: Namespace, project: Project, kept: Performance) -> Path | None:
-    if options.keep is None:
+def _keep(output: ProjectOutput | None, project: Project, kept: Performance) -> Path | None:
+    if output is None:
         return None
-    from metagraph.formats.store import save_project
     from metagraph.graph.performance_edits import add_performance
 
-    save_project(add_performance(project, kept)[0], options.project, options.project)
-    return Path(options.project)
+    output.save(add_performance(project, kept)[0])
+    return output.path
 
 
 def _write(

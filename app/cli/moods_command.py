@@ -5,6 +5,8 @@ from __future__ import annotations
 from argparse import ArgumentParser, Namespace
 
 from app.cli.command_output import opened, say
+from app.cli.outputs import ProjectOutput
+from metagraph.graph.model import Project
 from metagraph.graph.words import FEELINGS
 
 
@@ -25,20 +27,26 @@ def arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Tell moods; set those that are asked for, and keep them in the project."""
-    from metagraph.formats.store import save_project
     from metagraph.graph.performance_edits import set_life
     from metagraph.playback.understand import felt
 
-    before = project = opened(options.project)
     told = felt(_mood(options.mood), options.intensity)  # type: ignore[arg-type]
-    if told:
-        project = set_life(project, **told)
-    if options.from_voices:
-        from metagraph.speech.voice_mood import with_voice_moods
+    if not told and not options.from_voices:
+        return _said(options, opened(options.project))
+    with ProjectOutput(options.project) as output:
+        before = project = opened(options.project)
+        if told:
+            project = set_life(project, **told)
+        if options.from_voices:
+            from metagraph.speech.voice_mood import with_voice_moods
 
-        project = with_voice_moods(project, options.project.resolve().parent)
-    if project != before:
-        save_project(project, options.project, options.project)
+            project = with_voice_moods(project, options.project.resolve().parent)
+        if project != before:
+            output.save(project)
+    return _said(options, project)
+
+
+def _said(options: Namespace, project: Project) -> int:
     life = project.life
     words = [
         f"the character: valence {life.valence:g}, arousal {life.arousal:g}, intensity {life.intensity:g}"

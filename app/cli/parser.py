@@ -12,6 +12,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from app.cli.outputs import offer_overwrite, outputs_of
 from metagraph import __version__
 
 ERROR = 1
@@ -128,6 +129,7 @@ def _parser(chosen: str) -> argparse.ArgumentParser:
         if name not in GROUPS:
             command.add_argument("--json", action="store_true", help="print what a program can read")
         _module(name).arguments(command)
+        offer_overwrite(command, name)
     return parser
 
 
@@ -151,9 +153,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser = _parser("window")
     options = parser.parse_args(given)
     from metagraph.errors import FileError
+    from metagraph.formats.outputs import writing
 
     try:
-        return int(_module(options.command).run(options))
+        with writing(outputs_of(options)):
+            return int(_module(options.command).run(options))
     except BrokenPipeError:  # whoever read our words has read enough
         sys.stdout = None  # nothing is left to flush
         return 0

@@ -61,16 +61,18 @@ def make(options: Namespace) -> int:
 
     from app.cli.command_output import say
     from app.cli.perceive_stimuli import Stimuli
+    from metagraph.formats.outputs import claim
     from metagraph.speech.soundtrack import RATE
     from metagraph.study.allocation import make_secret
     from metagraph.study.perceive.design import design, sequences
-    from metagraph.study.perceive.folder import level_times, write_folder
+    from metagraph.study.perceive.folder import KEY, level_times, write_folder
     from metagraph.study.perceive.perceive_plan import FILE, read_plan
     from preview.video import write_video
 
     path = options.plan / FILE if options.plan.is_dir() else options.plan
     plan = read_plan(path)
     empty(options.into)
+    claim(*(options.into / name for name in ("show/index.html", FILE, KEY)))
     stimuli = Stimuli(path.resolve(), plan)
     sounds = stimuli.sounds()  # what is missing is told before anything is drawn
     videos = options.into / "show" / "videos"
@@ -189,14 +191,17 @@ def collect(options: Namespace) -> int:
 
 def report(options: Namespace) -> int:
     from app.cli.command_output import say
+    from metagraph.formats.outputs import claim
     from metagraph.study.perceive.folder import read_folder
     from metagraph.study.perceive.perceive_analysis import analyse
     from metagraph.study.perceive.perceive_data import collect as read_answers
-    from metagraph.study.perceive.perceive_report import summary, tables, write_report
+    from metagraph.study.perceive.perceive_report import NAME, summary, tables, write_report
 
     study = read_folder(options.folder)
+    place = options.out or study.folder / "report"
+    claim(place / NAME)
     results = analyse(read_answers(study))
-    written = write_report(results, options.out or study.folder / "report")
+    written = write_report(results, place)
     for words in results.answers.odd:
         print(f"note: {words}", file=sys.stderr)
     columns, rows = tables(results)["pairs.csv"]

@@ -13,6 +13,8 @@ import numpy as np
 from app.cli.command_output import opened, performance_arguments, say, staged
 from app.look.names import node_names
 from app.stage.playback_source import ASIDE, Shown, alone
+from metagraph.formats.outputs import claim, reads
+from metagraph.formats.store import files_of
 from metagraph.graph.model import Layer, Project
 from metagraph.motion.clip import Clip
 from metagraph.playback.bake import bake
@@ -221,7 +223,10 @@ def run(options: Namespace) -> int:
             if clip is not None
             else Shown(project, staged(project, options), options.start + options.seconds)
         )
+    for one in shown.everyone:
+        reads(*files_of(one.project, one.folder or folder))
     if options.out.suffix in MOTION:
+        claim(*_outs(options.out, shown))
         for one, out in zip(shown.everyone, _outs(options.out, shown), strict=True):
             bake_to(out, one, options.seconds, options.fps, one.folder or folder, options.start)
     else:

@@ -52,13 +52,14 @@ def run(options: Namespace) -> int:
     from metagraph import __version__
     from metagraph.exhibits.exhibit import chosen
     from metagraph.exhibits.page import data_of, page, text_of
-    from metagraph.formats.atomic import write_atomically
+    from metagraph.formats.outputs import claim, write_together
 
     exhibits = chosen(options.exhibits)
     if options.list:
         return _list(options, exhibits)
     if options.into is None:
         raise ValueError("say where the report goes: --into FOLDER; or --list for what there is")
+    claim(options.into / "report.html", options.into / "report.json")
     material = _material(options)
     made = []
     for exhibit in exhibits:
@@ -73,8 +74,7 @@ def run(options: Namespace) -> int:
         "report.json": json.dumps({**told, "exhibits": data_of(made), "notes": material.notes}, indent=1)
         + "\n",
     }
-    for name, text in content.items():
-        write_atomically(options.into / name, text.encode())
+    write_together(options.into, {name: text.encode() for name, text in content.items()})
     for note in dict.fromkeys(material.notes):
         print(f"note: {note}", file=sys.stderr)
     words = [text_of(e, s) for e, s, _ in made]

@@ -6,9 +6,12 @@ from __future__ import annotations
 
 import sys
 from argparse import ArgumentParser, Namespace
+from contextlib import nullcontext
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from app.cli.outputs import ProjectOutput
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.formats.conversations import Read
@@ -52,22 +55,28 @@ def arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Read a conversation, tell what is in it; with `out` write it, with `project` keep it there."""
+    words = [path for some in options.words for path in some]
+    out: Path | None = options.out
+    if out is not None and out.suffix.casefold() not in [s.casefold() for s in OUT]:
+        raise ValueError(f"it is written as {', '.join(OUT)}, not as '{out.suffix or out.name}'")
+    with ProjectOutput(options.project) if options.project is not None else nullcontext() as output:
+        return _read(options, words, out, output)
+
+
+def _read(options: Namespace, words: list[Path], out: Path | None, output: ProjectOutput | None) -> int:
+    """output: where the conversation is kept, if it is."""
     from app.cli.command_output import opened, say
     from app.cli.language_options import speaking_of
     from metagraph.formats.conversations import read_conversation
     from metagraph.speech.gaze_shares import together
 
-    words = [path for some in options.words for path in some]
-    out: Path | None = options.out
-    if out is not None and out.suffix.casefold() not in [s.casefold() for s in OUT]:
-        raise ValueError(f"it is written as {', '.join(OUT)}, not as '{out.suffix or out.name}'")
     folder = options.project.resolve().parent if options.project is not None else None
     project = opened(options.project) if options.project is not None else None
     speaking = speaking_of(options, project.language) if project is not None else speaking_of(options)
     read = read_conversation(options.audio, words, folder, options.name, speaking=speaking)
     if options.speakers is not None:
         read = replace(read, conversation=_with_speakers(read.conversation, options.speakers))
-    ident = _keep(options.project, project, read) if project is not None else None
+    ident = _keep(output, project, read) if output is not None and project is not None else None
     if out is not None:
         _write(out, read, folder)
     for note in read.notes:
@@ -141,12 +150,11 @@ def _row(n: int, side: Side) -> dict[str, Any]:
     return out
 
 
-def _keep(path: Path, project: Project, read: Read) -> str:
-    from metagraph.formats.store import save_project
+def _keep(output: ProjectOutput, project: Project, read: Read) -> str:
     from metagraph.graph.conversation_edits import add_conversation
 
     project, ident = add_conversation(project, read.conversation)
-    save_project(project, path, path)
+    output.save(project)
     return ident
 
 

@@ -103,10 +103,12 @@ def run(options: Namespace) -> int:
 def report(options: Namespace) -> int:
     from app.cli.command_output import say
     from app.cli.study_papers import papers_maker
-    from metagraph.study.report import summary, write_report
+    from metagraph.formats.outputs import claim
+    from metagraph.study.report import NAME, summary, write_report
     from metagraph.study.study_plan import read_study
 
     place = options.out or read_study(options.folder).folder / "report"
+    claim(place / NAME)
     results = _results(options)
     written = write_report(results, place, papers_maker())
     _tell_missing(results)
@@ -118,6 +120,7 @@ def report(options: Namespace) -> int:
 
 def export(options: Namespace) -> int:
     from app.cli.command_output import say
+    from metagraph.formats.outputs import claim
     from metagraph.study.bids import write_bids
     from metagraph.study.study_plan import read_study
     from metagraph.study.xes import write_xes
@@ -127,6 +130,7 @@ def export(options: Namespace) -> int:
     study, lines = read_study(options.folder), []
     data: dict[str, Any] = {}
     if options.bids is not None:
+        claim(options.bids / "dataset_description.json")
         results = _results(options)
         written = write_bids(study, results, options.bids)
         _tell_missing(results)

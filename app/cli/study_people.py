@@ -109,6 +109,7 @@ def _told(paths: list[Path]) -> None:
 def gaze(options: Namespace) -> int:
     from app.cli.command_output import say
     from metagraph.formats.atomic import write_atomically
+    from metagraph.formats.outputs import claim
     from metagraph.study.gaze import dwelt, read_gaze
     from metagraph.study.log import read
     from metagraph.study.report_tables import table
@@ -116,8 +117,9 @@ def gaze(options: Namespace) -> int:
 
     study = read_study(options.study)
     study.plan.known(options.participant)
-    found = dwelt(read(study.log(options.participant)), read_gaze(options.recording), options.clap)
     out = options.out or study.data(options.participant) / "gaze.csv"
+    claim(out)
+    found = dwelt(read(study.log(options.participant)), read_gaze(options.recording), options.clap)
     write_atomically(out, table(*found).encode())
     lines = [f"{row[2]} ({row[1]}): {row[3]} {row[4]:.1f} s, {row[5]:.0%}" for row in found[1]]
     say(options, "\n".join([*lines, str(out)]), {"written": str(out), "rows": len(found[1])})

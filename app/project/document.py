@@ -15,6 +15,7 @@ from PySide6.QtCore import QObject, QStandardPaths, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from app.project.opening import with_motion_of
+from app.project.version_count import version_count
 from app.project.writing import Writing, project_name
 from app.translation import in_english, tr
 from metagraph.errors import FileError
@@ -273,7 +274,7 @@ class Document(QObject):
         if self._journal is not None:
             with suppress(FileError):  # it is about to be saved
                 mark = self._journal.mark()
-        return Writing(self.project, self.path, target, self._journal, mark)
+        return Writing(self.project, self.path, target, self._journal, mark, version_count())
 
     def end_saving(self, writing: Writing) -> None:
         """The file is written: what it holds is the saved state. Edits that were made meanwhile are not."""

@@ -55,6 +55,9 @@ class Files(QObject):
         self.document, self.jobs, self.window = document, jobs, window
         self.saver = Saver(document, jobs, self)
         self.saver.saved.connect(self._saved)
+        self.saver.noted.connect(
+            lambda path, note: self.report.emit(tr("Saved {name}, but", name=path.name), [note])
+        )
         self.saver.failed.connect(self._not_saved)
         self.unsaved = Unsaved(self)
         self.outside = Outside(self)

@@ -9,15 +9,17 @@ from PySide6.QtCore import QEventLoop, QObject, Signal
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.project.writing import FileChangedError, Writing
-from app.translation import tr
+from app.translation import tr, tr_told
 
 
 class Saver(QObject):
-    """saved: the path that was written. failed: why not, and the place asked for (None: its own). changed:
-    FileChangedError, when another program has written the file. idle: nothing is being written any more.
+    """saved: the path that was written. noted: that path, and a remark. failed: why not, and the place asked
+    for (None: its own). changed: FileChangedError, when another program has written the file. idle: nothing
+    is being written any more.
     """
 
     saved = Signal(object)
+    noted = Signal(object, str)
     failed = Signal(object, object)
     changed = Signal(object)
     idle = Signal()
@@ -78,6 +80,8 @@ class Saver(QObject):
             self.document.end_saving(writing)
         self._writing = None
         self.saved.emit(writing.target)
+        if writing.note is not None:
+            self.noted.emit(writing.target, tr_told(writing.note))
         self._go_on()
 
     def _stopped(self, error: Exception, path: Path | None) -> None:

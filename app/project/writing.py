@@ -7,9 +7,9 @@ from dataclasses import field, replace
 from pathlib import Path
 
 from metagraph.errors import FileError
-from metagraph.formats.atomic import write_atomically
 from metagraph.formats.journal import Journal
 from metagraph.formats.store import SUFFIX, content_digest, encoded, file_digest, moved, read_with_digest
+from metagraph.formats.versions import write_project
 from metagraph.graph.model import Project
 from metagraph.records import dataclass
 
@@ -28,8 +28,9 @@ class FileChangedError(Exception):
 class Writing:
     """One writing of a project as it was when it was asked for.
 
-    was: the file its paths are relative to. mark: where it stands in the journal. When it is written: after,
-    the project as the file has it, and digest, that file's SHA-256.
+    was: the file its paths are relative to. mark: where it stands in the journal. versions: how many earlier
+    ones are kept. When it is written: after, the project as the file has it, digest, that file's SHA-256, and
+    note, why its earlier version could not be kept.
     """
 
     project: Project
@@ -37,8 +38,10 @@ class Writing:
     target: Path
     journal: Journal | None = None
     mark: int | None = None
+    versions: int = 0
     after: Project = field(default_factory=Project)
     digest: str = ""
+    note: str | None = None
 
     def write(self, expected: str | None = None) -> None:
         """Write the file whole or not at all. expected: the digest it has to have. Raises FileError,
@@ -56,7 +59,7 @@ class Writing:
         if self.journal is not None and self.mark is not None:
             with suppress(FileError):  # what cannot be journalled is to be saved all the same
                 self.journal.settle(self.mark, self.digest)
-        write_atomically(self.target, content)
+        self.note = write_project(self.target, content, self.versions)
 
 
 def file_changed(path: Path, expected: str) -> FileChangedError | None:

@@ -12,10 +12,15 @@ from metagraph.graph.model import Project
 from metagraph.graph.offered import tools
 
 
+def tools_name(stem: str) -> str:
+    """Return what the file is called beside an export that is called so."""
+    return f"{stem}.tools.json"
+
+
 def write_tools(project: Project, folder: Path) -> Path:
     """Write `offered.tools` as JSON into a folder; return the file. Raises FileError where it cannot be
     written.
     """
-    path = folder / f"{stem_of(project)}.tools.json"
+    path = folder / tools_name(stem_of(project))
     write_atomically(path, msgspec.json.format(msgspec.json.encode(tools(project)), indent=1))
     return path

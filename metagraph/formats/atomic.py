@@ -16,6 +16,7 @@ from pathlib import Path
 
 from metagraph.errors import FileError
 from metagraph.formats.locking import mark_is_gone, process_mark
+from metagraph.formats.outputs import being_written
 
 FORSAKEN = 86_400.0  # seconds after which an unfinished file of a computer that cannot be asked is nobody's
 # Unfinished files. Those being written say by whom; the others are of before they did, or stay a moment.
@@ -43,7 +44,8 @@ def write_atomically(path: Path, content: bytes) -> None:
         if path.exists() and not os.access(path, os.W_OK):
             raise PermissionError(errno.EACCES, "it is read-only")
         later = _LATER.get()
-        replace_file(path, content, sync=later is None)
+        with being_written(path, content):
+            replace_file(path, content, sync=later is None)
         if later is not None:
             later.append(path)
     except OSError as error:
@@ -96,7 +98,7 @@ def replace_file(path: Path, content: bytes, sync: bool = True) -> None:
 
     sync: wait until it is safely on the disk; before what is there goes.
     """
-    temporary: Path | None = path.with_name(_unfinished())
+    temporary: Path | None = path.with_name(unfinished())
     assert temporary is not None
     try:
         # The system takes the umask off; asking for it would mean to set it, for every thread of the process.
@@ -158,7 +160,7 @@ def sync_folder(folder: Path) -> None:
 # --- what was left half-written
 
 
-def _unfinished() -> str:
+def unfinished() -> str:
     """Return a name for a file that is being written by this process."""
     return f".saving-{process_mark()}-{uuid.uuid4().hex[:12]}"
 

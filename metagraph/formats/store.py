@@ -230,6 +230,18 @@ def _with_paths(project: Project, renew: Callable[[str], str]) -> Project:
     )
 
 
+def files_of(project: Project, folder: Path) -> tuple[Path, ...]:
+    """Return every file that a project in a folder names: clips, the character, sounds, other projects."""
+    found: dict[Path, None] = {}
+
+    def note(text: str) -> str:
+        found[folder / text] = None
+        return text
+
+    _with_paths(project, note)
+    return tuple(found)
+
+
 def _conversations(project: Project, renew: Callable[[str], str]) -> Mapping[str, Conversation]:
     """Return the project's conversations with other paths to their sounds, their characters and the projects
     that move them.

@@ -17,7 +17,7 @@ from typing import Any
 
 from metagraph import __version__
 from metagraph.errors import FileError
-from metagraph.formats.atomic import write_atomically
+from metagraph.formats.outputs import write_together
 from metagraph.study.analysis import Results
 from metagraph.study.analysis_read import Data
 from metagraph.study.bids_phenotype import phenotype
@@ -157,9 +157,7 @@ def write_bids(study: Study, results: Results, out: Path) -> list[Path]:
         content[f"phenotype/{name}.tsv"] = table(heads, answered, "\t")
         content[f"phenotype/{name}.json"] = _json(told)
     content |= _derived(study, results)
-    for name, text in content.items():
-        write_atomically(out / name, text.encode())
-    return [out / name for name in content]
+    return write_together(out, {name: text.encode() for name, text in content.items()})
 
 
 def _description(title: str, kind: str) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from html import escape
 from pathlib import Path
 
-from metagraph.formats.atomic import write_atomically
+from metagraph.formats.outputs import write_together
 from metagraph.study import plots
 from metagraph.study.analysis import ABOVE, BELOW, TITLES, Comparison, Measure, Results
 from metagraph.study.analysis_read import TOTALS
@@ -60,9 +60,7 @@ def write_report(results: Results, folder: Path, paper: Paper | None = None) -> 
     content |= {f"figures/{name}.pdf": made for name, made in papers.items()}
     notebooks = Path(__file__).with_name("notebooks")
     content |= {f"notebooks/{n}": (notebooks / n).read_bytes() for n in ("figures.ipynb", "figures.R")}
-    for name, data in content.items():
-        write_atomically(folder / name, data)
-    return [folder / name for name in content]
+    return write_together(folder, content)
 
 
 def figures(results: Results) -> dict[str, tuple[str, str]]:

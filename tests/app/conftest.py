@@ -105,6 +105,7 @@ def settings_place(tmp_path_factory: pytest.TempPathFactory) -> None:
 def own_settings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing of the user's settings is read or written, and nothing of another test's."""
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+    monkeypatch.setenv("METAGRAPH_DATA", str(tmp_path / "data" / "Metagraph" / "Metagraph"))
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
     # Not XDG_CACHE_HOME: there Mesa keeps its shaders.
     monkeypatch.setattr("app.stage.kept_pictures.pictures_folder", lambda: tmp_path / "cache")

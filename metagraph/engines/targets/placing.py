@@ -26,6 +26,7 @@ from metagraph.files import is_file, is_inside, read_file
 from metagraph.formats.atomic import FORSAKEN, write_atomically
 from metagraph.formats.clips import digest
 from metagraph.formats.locking import mark_is_gone, process_mark
+from metagraph.formats.outputs import refuse_inputs
 from metagraph.wording import told
 
 RECORD = ".metagraph-export.json"
@@ -101,6 +102,7 @@ def place(
     """
     before = read_record(folder)
     digests = {name: digest(staged.path / name) for name in names}
+    refuse_inputs(folder / name for name in (*digests, RECORD))
     others = foreign(folder, digests, target, project)
     if others and not overwrite:
         raise ForeignFilesError(folder, others, before)

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from html import escape
 from pathlib import Path
 
-from metagraph.formats.atomic import write_atomically
+from metagraph.formats.outputs import write_together
 from metagraph.study.figure_files import standalone
 from metagraph.study.perceive.perceive_analysis import Compared, PerceiveResults
 from metagraph.study.perceive.perceive_figures import figures
@@ -48,9 +48,7 @@ def write_report(results: PerceiveResults, folder: Path) -> list[Path]:
     content = {NAME: page(results).encode()}
     content |= {name: csv_of(*rows).encode() for name, rows in tables(results).items()}
     content |= {f"figures/{name}.svg": standalone(d).encode() for name, (d, _) in drawn.items()}
-    for name, data in content.items():
-        write_atomically(folder / name, data)
-    return [folder / name for name in content]
+    return write_together(folder, content)
 
 
 def summary(results: PerceiveResults) -> list[str]:

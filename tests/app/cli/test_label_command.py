@@ -178,7 +178,9 @@ def test_what_was_taught_is_used_only_when_asked_for(
     Learned().edit(lambda p: p.with_pattern("kinds", "shrug", "fidget"))
     out = tmp_path / "taught.metagraph.yaml"
     for options, kind in (([], "gesture"), (["--learned"], "fidget")):
-        main(["label", str(folder), "-o", str(out), "--from", "name", "--no-pictures", *options])
+        main(
+            ["label", str(folder), "-o", str(out), "--from", "name", "--no-pictures", "--overwrite", *options]
+        )
         assert {k for name, k in kinds(out).items() if "shrug" in name} == {kind}
 
 
@@ -216,6 +218,7 @@ def test_clips_of_another_skeleton_are_left_out_or_retargeted_as_asked(
     project = open_project(out.with_name("p.metagraph.yaml")).project
     assert sum(bool(e.brought_from) for e in project.clips.values()) == 6
     assert [x.contacts for x in project.joint_maps.values()] == [True]
-    main(["label", str(folder), "-o", str(out), "--no-pictures", "--retarget", "--no-contacts"])
+    again = ["label", str(folder), "-o", str(out), "--no-pictures", "--retarget", "--no-contacts"]
+    main([*again, "--overwrite"])
     project = open_project(out.with_name("p.metagraph.yaml")).project
     assert [x.contacts for x in project.joint_maps.values()] == [False]

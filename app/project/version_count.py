@@ -1,0 +1,31 @@
+"""How many earlier versions of a project a save keeps: one setting for the window and the command line."""
+
+from __future__ import annotations
+
+import os
+
+from PySide6.QtCore import QCoreApplication, QSettings
+
+from metagraph.formats.versions import KEPT, MOST
+
+KEY = "versions"
+
+
+def version_count() -> int:
+    """Return how many versions are kept, 0 for none; METAGRAPH_VERSIONS goes before what the window set."""
+    told = os.environ.get("METAGRAPH_VERSIONS")
+    try:
+        return max(0, min(MOST, int(str(_settings().value(KEY, KEPT) if told is None else told))))
+    except ValueError:
+        return KEPT
+
+
+def set_version_count(count: int) -> None:
+    _settings().setValue(KEY, max(0, min(MOST, count)))
+
+
+def _settings() -> QSettings:
+    """Return the window's settings, where the command line runs without the window's application, too."""
+    if QCoreApplication.organizationName():
+        return QSettings()
+    return QSettings("Metagraph", "Metagraph")

@@ -1,0 +1,322 @@
+"""What a command may write over: nothing that somebody else made, that it reads, or that is open elsewhere.
+
+While a command runs (`writing`), each writer of files asks first (`being_written`). A file that is there may
+be replaced where this user's Metagraph wrote it and nobody has changed it since, which a note in the user's
+data folder tells (path and SHA-256), or where `--overwrite` was said. What the command reads, and a project
+that a window has open, is never replaced. Elsewhere, as in the window, which asks by itself, nothing is
+checked.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import stat
+import sys
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from urllib.parse import unquote
+
+import msgspec
+
+from metagraph.budgets import TEXT_FILE
+from metagraph.errors import FileError
+from metagraph.files import read_file
+from metagraph.formats.locking import holder, lock_path
+
+STAGED = ".exporting-"  # how folders begin in which an export is staged
+MOST = 4000  # notes that are kept; beyond them the oldest go
+# Files of folders that are read which no command reads: reports that were written there.
+_REPORTS = (".csv", ".html", ".svg", ".pdf", ".xes", ".tsv")
+
+
+class _Written(msgspec.Struct, frozen=True):
+    path: str
+    sha256: str
+
+
+def data_folder() -> Path | None:
+    """Return the user's folder for what the program remembers, METAGRAPH_DATA where that is set; None where
+    nobody's home is known.
+    """
+    if "METAGRAPH_DATA" in os.environ:
+        return Path(os.environ["METAGRAPH_DATA"])
+    try:
+        home = Path.home()
+    except RuntimeError:
+        return None
+    if sys.platform == "win32":
+        base = Path(os.environ.get("APPDATA", home / "AppData" / "Roaming"))
+    elif sys.platform == "darwin":
+        base = home / "Library" / "Application Support"
+    else:
+        base = Path(os.environ.get("XDG_DATA_HOME") or home / ".local" / "share")
+    return base / "Metagraph" / "Metagraph"
+
+
+class Outputs:
+    """The outputs of one command. overwrite: whether it was told to replace what others made."""
+
+    def __init__(self, overwrite: bool = False) -> None:
+        self.overwrite = overwrite
+        self._read: list[Path] = []  # files
+        self._folders: list[Path] = []  # whose files are read
+        self._made: list[Path] = []  # folders that are written
+        self._claimed: list[Path] = []  # files that will be written
+        self._own: list[Path] = []  # files and folders that the command keeps up by itself
+        data = data_folder()
+        self._notes = data / "written" if data is not None else None
+
+    def reads(self, *paths: Path) -> None:
+        """Say that the command reads files, or folders of them. Raises FileError where it would write over
+        one.
+        """
+        for path in paths:
+            whole = _whole(path)
+            (self._folders if whole.is_dir() else self._read).append(whole)
+            if whole.suffix.lower() == ".gltf":
+                self._read += map(_whole, _beside(whole))
+        for claimed in self._claimed:
+            self.refuse_input(claimed)
+
+    def keeps_up(self, *paths: Path) -> None:
+        """Say that the command changes files in place, which is what it is for, or files in a folder."""
+        self._own += map(_whole, paths)
+
+    def claim(self, path: Path) -> None:
+        """Say what will be written, a file or a folder, before the work begins. Raises FileError where that
+        would take something away.
+        """
+        if path.is_dir():
+            self._made.append(_whole(path))
+            return
+        self.check(path)
+        self._claimed.append(path)
+        if not path.exists():
+            self._made.append(_whole(path))  # it may become a folder
+
+    def check(self, path: Path, content: bytes | None = None) -> None:
+        """Raise FileError where a file must not be written. content: what will be in it; who has the same
+        there loses nothing.
+        """
+        whole = _whole(path)
+        if any(own in (whole, *whole.parents) for own in self._own):
+            return
+        self.refuse_input(path)
+        if not whole.exists() or not stat.S_ISREG(whole.stat().st_mode):
+            return  # also: a pipe, a terminal
+        refuse_locked(whole)
+        if self.overwrite or self._is_own(whole) or (content is not None and _holds(whole, content)):
+            return
+        raise FileError(
+            path,
+            "is there already, and this command did not write it, or it was changed since",
+            "",
+            "Write to another file, or say --overwrite to replace it.",
+        )
+
+    def refuse_input(self, path: Path) -> None:
+        """Raise FileError where a file is one that the command reads, by whatever name."""
+        whole = _whole(path)
+        source = self._input(whole)
+        if source is not None:
+            same = "is read by this very command, and must not be written over"
+            linked = f"is the same file as {source}, which this command reads"
+            cause = same if source == whole else linked
+            raise FileError(path, cause, "", "Write to another file.")
+
+    def wrote(self, path: Path) -> None:
+        """Remember that a file was written; where that cannot be noted, the next command asks for
+        --overwrite.
+        """
+        whole = _whole(path)
+        if self._notes is None or any(own in (whole, *whole.parents) for own in self._own):
+            return
+        if any(part.startswith(STAGED) for part in whole.parts):
+            return  # it is moved to its place later, where the export knows its own files
+        from metagraph.formats.atomic import replace_file
+
+        with suppress(OSError):
+            if stat.S_ISREG(whole.stat().st_mode):
+                self._notes.mkdir(parents=True, exist_ok=True)
+                note = msgspec.json.encode(_Written(str(whole), _digest(whole)))
+                replace_file(self._note(whole), note, sync=False)
+
+    def tidy(self) -> None:
+        """Let the oldest of too many notes go."""
+        if self._notes is None:
+            return
+        with suppress(OSError):
+            notes = sorted(self._notes.iterdir(), key=lambda note: note.stat().st_mtime)
+            for old in notes[: max(0, len(notes) - MOST)]:
+                old.unlink(missing_ok=True)
+
+    def _note(self, whole: Path) -> Path:
+        assert self._notes is not None
+        return self._notes / f"{hashlib.sha256(os.fsencode(whole)).hexdigest()[:40]}.json"
+
+    def _is_own(self, whole: Path) -> bool:
+        if self._notes is None:
+            return False
+        try:
+            note = msgspec.json.decode(self._note(whole).read_bytes(), type=_Written)
+            return note.path == str(whole) and note.sha256 == _digest(whole)
+        except (OSError, msgspec.MsgspecError, UnicodeError):
+            return False
+
+    def _input(self, whole: Path) -> Path | None:
+        """Return which input a file is, by whatever name or link; None where it is none."""
+        for path in self._read:
+            if path == whole:
+                return path
+            with suppress(OSError):
+                if path.samefile(whole):
+                    return path
+        if not whole.exists() or whole.suffix.lower() in _REPORTS:
+            return None
+        for folder in self._folders:
+            inside = folder in whole.parents
+            apart = any(folder in made.parents and made in whole.parents for made in self._made)
+            if inside and not apart and not self._is_own(whole):
+                return whole
+        return None if whole.stat().st_nlink < 2 else self._linked(whole)
+
+    def _linked(self, whole: Path) -> Path | None:
+        """Return a file of a folder that is read which is this one by another name."""
+        here = whole.stat()
+        for folder in self._folders:
+            for top, _, names in os.walk(folder):
+                for name in names:
+                    with suppress(OSError):
+                        found = Path(top, name).stat()
+                        if (found.st_dev, found.st_ino) == (here.st_dev, here.st_ino):
+                            return Path(top, name)
+        return None
+
+
+def refuse_locked(path: Path) -> None:
+    """Raise FileError where a window, or another command, has a project file open."""
+    if path.suffix.lower() not in (".yaml", ".yml"):
+        return
+    found = holder(lock_path(_whole(path)))
+    if found is None or found.sure:
+        return
+    raise locked_error(path, found)
+
+
+def locked_error(path: Path, found: object) -> FileError:
+    """Return the error that says who has a project file. found: a `Holder`."""
+    owner = getattr(found, "owner", None)
+    whose = f" by {owner.user} on {owner.host} (process {owner.pid})" if owner is not None else ""
+    return FileError(
+        path,
+        f"is open in a window or another command{whose}",
+        "",
+        f"Close it there first. If nobody has it open, remove {lock_path(_whole(path)).name} beside it.",
+    )
+
+
+_now: Outputs | None = None
+
+
+@contextmanager
+def writing(outputs: Outputs) -> Iterator[Outputs]:
+    """Check what is written inside."""
+    global _now
+    before, _now = _now, outputs
+    try:
+        yield outputs
+    finally:
+        _now = before
+        outputs.tidy()
+
+
+@contextmanager
+def being_written(path: Path, content: bytes | None = None) -> Iterator[None]:
+    """Ask whether a file may be written, and remember that it was. content: see `Outputs.check`. Raises
+    FileError.
+    """
+    outputs = _now
+    if outputs is None:
+        yield
+        return
+    outputs.check(path, content)
+    yield
+    outputs.wrote(path)
+
+
+def claim(*paths: Path) -> None:
+    """Say what the command that runs will write; see `Outputs.claim`."""
+    if _now is not None:
+        for path in paths:
+            _now.claim(path)
+
+
+def reads(*paths: Path) -> None:
+    """Say what the command that runs reads; see `Outputs.reads`."""
+    if _now is not None:
+        _now.reads(*paths)
+
+
+def keeps_up(*paths: Path) -> None:
+    """Say what the command that runs changes in place; see `Outputs.keeps_up`."""
+    if _now is not None:
+        _now.keeps_up(*paths)
+
+
+def refuse_inputs(paths: Iterable[Path]) -> None:
+    """Raise FileError where one of some files is read by the command that runs."""
+    if _now is not None:
+        for path in paths:
+            _now.refuse_input(path)
+
+
+def wrote(*paths: Path) -> None:
+    """Remember what was written by other means than `being_written`."""
+    if _now is not None:
+        for path in paths:
+            _now.wrote(path)
+
+
+def write_together(folder: Path, files: dict[str, bytes]) -> list[Path]:
+    """Write files into a folder, or none of them where one must not be written. Raises FileError."""
+    from metagraph.formats.atomic import write_atomically
+
+    claim(*(folder / name for name in files))
+    for name, content in files.items():
+        write_atomically(folder / name, content)
+    return [folder / name for name in files]
+
+
+def _beside(path: Path) -> list[Path]:
+    """Return the files that a glTF names: its buffers and pictures."""
+    try:
+        data = msgspec.json.decode(read_file(path, TEXT_FILE))
+        things = [*data.get("buffers", ()), *data.get("images", ())]
+        uris = [str(thing.get("uri", "data:")) for thing in things]
+    except (FileError, msgspec.MsgspecError, UnicodeError, AttributeError, TypeError, RecursionError):
+        return []  # whoever reads it says what is wrong
+    return [path.parent / unquote(uri) for uri in uris if not uri.startswith("data:")]
+
+
+def _whole(path: Path) -> Path:
+    return Path(os.path.realpath(path))
+
+
+def _holds(path: Path, content: bytes) -> bool:
+    return path.stat().st_size == len(content) and path.read_bytes() == content
+
+
+def _digest(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def all_paths(values: Iterable[object]) -> Iterator[Path]:
+    """Give the paths among values, and in lists of them."""
+    for value in values:
+        if isinstance(value, Path):
+            yield value
+        elif isinstance(value, (list, tuple)):
+            yield from all_paths(value)
