@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from app.cli.command_output import opened, say
 from app.cli.outputs import ProjectOutput, project_name
-from metagraph.formats.outputs import claim
+from metagraph.formats.outputs import claim, wrote
 
 if TYPE_CHECKING:
     from metagraph.graph.model import Layer, Project
@@ -36,6 +36,10 @@ def run(options: Namespace) -> int:
     out = options.project if options.out is None else project_name(options.out)
     if not (out.exists() and out.samefile(options.project)):
         claim(out)
+        with ProjectOutput(out) as output:
+            code = _found(options, output)
+        wrote(out)
+        return code
     with ProjectOutput(out) as output:
         return _found(options, output)
 

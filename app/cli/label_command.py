@@ -72,7 +72,7 @@ def run(options: Namespace) -> int:
     """Label a folder or project; write the project and an HTML report beside it."""
     from app.cli.outputs import ProjectOutput, project_name
     from metagraph.errors import FileError
-    from metagraph.formats.outputs import claim
+    from metagraph.formats.outputs import claim, wrote
     from metagraph.formats.store import SUFFIX
 
     source: Path = options.folder
@@ -90,7 +90,10 @@ def run(options: Namespace) -> int:
     if source.is_file() and not (path.exists() and path.samefile(source)):
         claim(path)  # clips of a folder are added to a project that is there; two projects are not mixed
     with ProjectOutput(path) as output:
-        return _labelled(options, output)
+        code = _labelled(options, output)
+    if source.is_file() and not path.samefile(source):
+        wrote(path)
+    return code
 
 
 def _labelled(options: Namespace, output: ProjectOutput) -> int:

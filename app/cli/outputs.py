@@ -59,13 +59,14 @@ def outputs_of(options: Namespace) -> Outputs:
     """Return the outputs of a command line, and claim what its options name. Raises FileError."""
     from metagraph.formats.outputs import Outputs, all_paths, data_folder
 
-    made = Outputs(bool(getattr(options, "overwrite", False)))
     command, action = options.command, getattr(options, "step", None) or getattr(options, "action", None)
+    name = " ".join(filter(None, (command, action)))
+    made = Outputs(bool(getattr(options, "overwrite", False)), name)
     written = [*OUTPUTS, *(dest for c, a, dest in WRITTEN if (c, a) == (command, action))]
     out: list[Path] = []
-    for name, value in vars(options).items():
+    for option, value in vars(options).items():
         paths = all_paths([value])
-        if name in written:
+        if option in written:
             out += paths
         else:
             made.reads(*paths)
@@ -73,7 +74,7 @@ def outputs_of(options: Namespace) -> Outputs:
     if data is not None:
         made.keeps_up(data)
     if command == "study" and action in STUDIES:
-        given = [p for name in ("study", "folder") for p in all_paths([getattr(options, name, None)])]
+        given = list(all_paths(getattr(options, option, None) for option in ("study", "folder")))
         made.keeps_up(*(p if p.is_dir() else p.parent for p in given))
     if command not in PROJECTS and (command, action) not in NEVER:
         for path in out:

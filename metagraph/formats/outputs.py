@@ -34,6 +34,7 @@ _REPORTS = (".csv", ".html", ".svg", ".pdf", ".xes", ".tsv")
 class _Written(msgspec.Struct, frozen=True):
     path: str
     sha256: str
+    command: str
 
 
 def data_folder() -> Path | None:
@@ -56,10 +57,12 @@ def data_folder() -> Path | None:
 
 
 class Outputs:
-    """The outputs of one command. overwrite: whether it was told to replace what others made."""
+    """The outputs of one command. overwrite: whether it was told to replace what others made. command: its
+    name, since it replaces what it made itself, and not what another command did.
+    """
 
-    def __init__(self, overwrite: bool = False) -> None:
-        self.overwrite = overwrite
+    def __init__(self, overwrite: bool = False, command: str = "") -> None:
+        self.overwrite, self.command = overwrite, command
         self._read: list[Path] = []  # files
         self._folders: list[Path] = []  # whose files are read
         self._made: list[Path] = []  # folders that are written
@@ -111,7 +114,7 @@ class Outputs:
             return
         raise FileError(
             path,
-            "is there already, and this command did not write it, or it was changed since",
+            "is there already, and this command did not write it, or it was changed since then",
             "",
             "Write to another file, or say --overwrite to replace it.",
         )
@@ -126,12 +129,13 @@ class Outputs:
             cause = same if source == whole else linked
             raise FileError(path, cause, "", "Write to another file.")
 
-    def wrote(self, path: Path) -> None:
+    def wrote(self, path: Path, whatever: bool = False) -> None:
         """Remember that a file was written; where that cannot be noted, the next command asks for
-        --overwrite.
+        --overwrite. whatever: also one that the command keeps up.
         """
         whole = _whole(path)
-        if self._notes is None or any(own in (whole, *whole.parents) for own in self._own):
+        own = any(own in (whole, *whole.parents) for own in self._own)
+        if self._notes is None or (own and not whatever):
             return
         if any(part.startswith(STAGED) for part in whole.parts):
             return  # it is moved to its place later, where the export knows its own files
@@ -140,7 +144,7 @@ class Outputs:
         with suppress(OSError):
             if stat.S_ISREG(whole.stat().st_mode):
                 self._notes.mkdir(parents=True, exist_ok=True)
-                note = msgspec.json.encode(_Written(str(whole), _digest(whole)))
+                note = msgspec.json.encode(_Written(str(whole), _digest(whole), self.command))
                 replace_file(self._note(whole), note, sync=False)
 
     def tidy(self) -> None:
@@ -161,7 +165,7 @@ class Outputs:
             return False
         try:
             note = msgspec.json.decode(self._note(whole).read_bytes(), type=_Written)
-            return note.path == str(whole) and note.sha256 == _digest(whole)
+            return (note.path, note.command) == (str(whole), self.command) and note.sha256 == _digest(whole)
         except (OSError, msgspec.MsgspecError, UnicodeError):
             return False
 
@@ -276,7 +280,7 @@ def wrote(*paths: Path) -> None:
     """Remember what was written by other means than `being_written`."""
     if _now is not None:
         for path in paths:
-            _now.wrote(path)
+            _now.wrote(path, whatever=True)
 
 
 def write_together(folder: Path, files: dict[str, bytes]) -> list[Path]:

@@ -62,7 +62,7 @@ class ForeignFilesError(ExportError):
         whose = f"; the folder holds an export of '{of.project}' for '{of.target}'" if of is not None else ""
         super().__init__(
             f"{folder} already has {', '.join(files[:NAMED])}{more}{whose}. Choose another folder, or say "
-            "that they may be overwritten."
+            "that they may be overwritten (on the command line: --overwrite)."
         )
 
 
