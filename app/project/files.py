@@ -90,11 +90,12 @@ class Files(QObject):
         if name:
             self.open(Path(name))
 
-    def open(self, path: Path, template: bool = False) -> None:
+    def open(self, path: Path, template: bool = False, name: str | None = None) -> None:
         """Open a project; its clips load on a thread. Asks about unsaved changes, about another window that
         has it open, and about journals that were left behind.
 
-        template: a copy without a file is opened; saving asks for a place of one's own.
+        template: a copy without a file is opened; saving asks for a place of one's own. name: what that is
+        called, if not as the project is.
         """
         if self.refuse():
             return
@@ -102,7 +103,7 @@ class Files(QObject):
             return
         left = self.document.project
         if template:
-            self._open(path, left, template=True)
+            self._open(path, left, template=True, name=name)
             return
         owner = self.document.owner
         self.jobs.start(
@@ -146,6 +147,7 @@ class Files(QObject):
         choices: Sequence[tuple[Left, Choice]] = (),
         template: bool = False,
         read_only: bool = False,
+        name: str | None = None,
     ) -> None:
         """Load a project and its clips, and show it in place of `before`. choices: what becomes of journals'
         edits.
@@ -169,7 +171,8 @@ class Files(QObject):
                 _release(lock, self.document)
                 return  # it was edited meanwhile
             if template:
-                self.document.load(absolute(opened.project, path.parent), None)
+                copy = absolute(opened.project, path.parent)
+                self.document.load(copy if name is None else replace(copy, name=name), None)
             else:
                 self.document.load(
                     opened.project,

@@ -74,11 +74,11 @@ def _read(
             continue
         left.insert(0, found)
     folder = saved.parent if saved is not None else None
-    poses = {found.path: _pose(found.project, folder) for found in left[:PICTURES]}
+    poses = {found.path: pose_of(found.project, folder) for found in left[:PICTURES]}
     return tuple(left), tuple(notes), {path: clip for path, clip in poses.items() if clip is not None}
 
 
-def _pose(project: Project, folder: Path | None) -> Clip | None:
+def pose_of(project: Project, folder: Path | None) -> Clip | None:
     """Return a clip that shows what a project is about: of its base pose, else its first stance, else its
     first.
     """

@@ -42,6 +42,26 @@ def contribute(shell: Shell) -> Contribution:
         if place is None and load.clips:
             session.selection.select_clips(load.clips if len(load.clips) < 2 else ())
 
+    def show_versions() -> None:
+        from app.features.files.versions_dialog import Found, VersionsDialog, found_versions
+        from app.project.questions import moment_words
+
+        path, now = shell.document.path, shell.document.project
+        if path is None:
+            return
+
+        def open_copy(found: Found) -> None:
+            words = moment_words(found.version.saved).replace(":", ".")
+            files.open(found.version.path, template=True, name=f"{now.name} {words}")
+
+        def show(found: tuple[Found, ...]) -> None:
+            if shell.document.path == path:
+                VersionsDialog(path.name, found, open_copy, shell.widget).open()
+
+        shell.jobs.start(
+            tr("Reading earlier versions"), lambda _: found_versions(path, now), show, files.show_failure
+        )
+
     files.opened.connect(session.open_project)
     files.report.connect(lambda title, lines: _report(shell, title, lines))
     importing.report.connect(lambda title, lines: _report(shell, title, lines))
@@ -95,6 +115,15 @@ def contribute(shell: Shell) -> Contribution:
             ),
             Command("save", menu, "save", tr("&Save"), files.save, (Standard.Save,)),
             Command("save_as", menu, "save", tr("Save &as…"), files.save_as, (Standard.SaveAs,)),
+            Command(
+                "versions",
+                menu,
+                "save",
+                tr("Earlier &versions…"),
+                show_versions,
+                tip=tr("What each save has kept of this project, and how many are kept"),
+                enabled=lambda: shell.document.path is not None,
+            ),
             Command(
                 "import",
                 menu,
