@@ -29,6 +29,7 @@ from metagraph.study.freeze import ABSENT, changed, seal
 from metagraph.study.log import NAME, wall_time
 from metagraph.study.perceive.design import Design, Key
 from metagraph.study.perceive.perceive_plan import FILE, PerceivePlan, read_plan
+from metagraph.study.perceive.sealed import sealed
 
 KEY, LOCK, SHOW, PAGE = "key.json", "perceive.frozen.json", "show", "index.html"
 PLACE = "__STUDY__"  # in the page, where what it shows is put
@@ -80,8 +81,9 @@ def write_folder(folder: Path, plan: PerceivePlan, text: bytes, made: Design) ->
     FileError.
     """
     page = files(__package__).joinpath("page.html").read_text("utf-8")
+    shown = {**made.public, "sessions": sealed(made.public["sessions"], made.public["design"])}
     # Nothing in a text may end the script that holds it.
-    told = json.dumps(made.public, ensure_ascii=True, separators=(",", ":")).replace("<", "\\u003c")
+    told = json.dumps(shown, ensure_ascii=True, separators=(",", ":")).replace("<", "\\u003c")
     write_atomically(folder / SHOW / PAGE, page.replace(PLACE, told).encode())
     write_atomically(folder / FILE, text)
     write_atomically(folder / KEY, msgspec.json.format(msgspec.json.encode(made.key), indent=1) + b"\n")
