@@ -4,7 +4,6 @@ here.
 
 from __future__ import annotations
 
-import sys
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +14,7 @@ import numpy as np
 from msgspec import Struct
 
 from metagraph.errors import FileError
+from metagraph.formats.kernel_lock import try_hold
 from metagraph.generation.stored import SUFFIX
 from metagraph.generation.train_plan import FOLDER, PLAN, TrainingPlan, read_plan
 
@@ -106,21 +106,7 @@ def hold(training: Path) -> IO[bytes] | None:
     """Take a training's folder for this process until what is returned is closed, or the process ends however
     it ends; None where another process has it. Raises OSError where nothing can be written.
     """
-    held = (training / LOCK).open("ab")
-    try:
-        if sys.platform == "win32":
-            import msvcrt
-
-            held.seek(0)
-            msvcrt.locking(held.fileno(), msvcrt.LK_NBLCK, 1)
-        else:
-            import fcntl
-
-            fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
-        held.close()
-        return None
-    return held
+    return try_hold(training / LOCK)
 
 
 def busy(training: Path) -> bool:

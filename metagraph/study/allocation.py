@@ -8,11 +8,9 @@ from __future__ import annotations
 import hashlib
 import hmac
 import json
-import os
 import secrets
-import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,13 +21,13 @@ from metagraph.budgets import LOG_FILE
 from metagraph.errors import FileError
 from metagraph.files import read_file
 from metagraph.formats.atomic import append_line, write_atomically
+from metagraph.formats.kernel_lock import alone
 from metagraph.study.order import williams
 
 if TYPE_CHECKING:
     from metagraph.study.study_plan import Study
 
 SECRET, LOG = "allocation.secret", "allocation.jsonl"
-PATIENCE = 5.0  # seconds to wait for another window that draws just now
 
 
 def prepare(study: Study) -> str:
@@ -41,9 +39,12 @@ def make_secret(folder: Path) -> str:
     """Return a folder's secret, made unless there is one. Raises FileError."""
     path = folder / SECRET
     if not path.is_file():
-        write_atomically(path, (secrets.token_hex(32) + "\n").encode())
-        with suppress(OSError):
-            path.chmod(0o600)
+        folder.mkdir(parents=True, exist_ok=True)
+        with alone(folder / f".{SECRET}.lock"):
+            if not path.is_file():
+                write_atomically(path, (secrets.token_hex(32) + "\n").encode())
+                with suppress(OSError):
+                    path.chmod(0o600)
     return read_secret(folder)
 
 
@@ -153,21 +154,3 @@ def problems(study: Study) -> list[str]:
         if number != expected:
             out.append(f"{who} has order {number}, but the secret gives {expected}")
     return out
-
-
-@contextmanager
-def alone(path: Path) -> Iterator[None]:
-    """Wait until no other program holds the lock at `path`, then hold it."""
-    until = time.monotonic() + PATIENCE
-    while True:
-        try:
-            os.close(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY))
-            break
-        except FileExistsError:
-            if time.monotonic() > until:  # whoever made it is gone
-                path.unlink(missing_ok=True)
-            time.sleep(0.05)
-    try:
-        yield
-    finally:
-        path.unlink(missing_ok=True)

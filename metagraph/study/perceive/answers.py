@@ -4,8 +4,7 @@ the same kind that sittings have, appended and synced before anything is acknowl
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
@@ -16,7 +15,7 @@ from msgspec import Meta, Struct
 
 from metagraph.errors import FileError
 from metagraph.files import guarded, read_file
-from metagraph.study.allocation import alone
+from metagraph.formats.kernel_lock import alone
 from metagraph.study.log import Event, Writer, read
 from metagraph.study.perceive.folder import Perceived
 from metagraph.study.questionnaires import Name
@@ -113,7 +112,7 @@ def keep(study: Perceived, sheet: Sheet) -> Kept:
     _check(study, sheet)
     path = study.log(sheet.code)
     path.parent.mkdir(parents=True, exist_ok=True)
-    with _held(path):
+    with alone(path.with_name(".answers.lock")):
         before = list(read(path).events) if path.is_file() else []
         runs = [e["page"] for e in before if isinstance(e.get("page"), str)]
         if runs and sheet.run not in runs:
@@ -129,12 +128,6 @@ def keep(study: Perceived, sheet: Sheet) -> Kept:
             finally:
                 writer.close()
     return Kept(have + len(new), len(new))
-
-
-@contextmanager
-def _held(log: Path) -> Iterator[None]:
-    with alone(log.with_name(".answers.lock")):
-        yield
 
 
 def _fields(sheet: Sheet, event: PageEvent) -> dict[str, Any]:
