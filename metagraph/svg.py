@@ -5,7 +5,8 @@ page's style, light or dark.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from html import escape
+
+from metagraph.xml_text import escape
 
 WIDTH = 640
 

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from html import escape
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -17,6 +16,7 @@ from metagraph.generation.evaluation import Judged
 from metagraph.generation.features import PARTNER, SELF
 from metagraph.generation.statistics import MEASURES, Row, mean_landmarks
 from metagraph.study.report_style import STYLE
+from metagraph.xml_text import escape
 
 REPORT = ("report.html", "report.json", "report.csv")  # what is written
 NAMES = (*MEASURES, "diversity")

@@ -9,7 +9,6 @@ import os
 import shlex
 import subprocess
 from collections.abc import Iterable, Mapping
-from html import escape
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -22,6 +21,7 @@ from metagraph.suggest.estimate import Belief
 from metagraph.suggest.flags import chance_wrong, doubt, gain, needs_a_look
 from metagraph.suggest.left_aside import reasons
 from metagraph.suggest.propose import Proposal, Proposals, Taken
+from metagraph.xml_text import escape
 
 KIND_MARKS = {
     "stance": "●",

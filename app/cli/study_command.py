@@ -124,6 +124,7 @@ def export(options: Namespace) -> int:
     from metagraph.study.bids import write_bids
     from metagraph.study.study_plan import read_study
     from metagraph.study.xes import write_xes
+    from metagraph.xml_text import INSTEAD
 
     if options.bids is None and options.xes is None:
         raise ValueError("say what to write: --bids OUT, --xes OUT")
@@ -139,6 +140,8 @@ def export(options: Namespace) -> int:
     if options.xes is not None:
         count = write_xes(study, options.xes)
         lines.append(f"{options.xes}: {count} tasks")
+        if INSTEAD in options.xes.read_text(encoding="utf-8"):
+            print(f"note: {INSTEAD} stands for what XML cannot hold", file=sys.stderr)
         data |= {"xes": str(options.xes), "traces": count}
     say(options, "\n".join(lines), data)
     return 0

@@ -5,11 +5,11 @@ any other, coloured by the page.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from html import escape
 from math import isfinite
 
 from metagraph.study.plot_axes import RATIOS, Place, log_axis, plain_axis
 from metagraph.svg import WIDTH, dot, line, number, svg, text
+from metagraph.xml_text import escape
 
 Axis = tuple[Place, list[float]]
 Bar = tuple[str, float, float | None, float | None]  # class, value, ends of its interval

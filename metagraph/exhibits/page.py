@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from html import escape
 from typing import Any
 
 from metagraph.exhibits.exhibit import Drawing, Exhibit, ExhibitTable, Shown
 from metagraph.exhibits.published import PAPERS
 from metagraph.generation import figures
 from metagraph.study.report_style import STYLE
+from metagraph.xml_text import escape
 
 _STYLE = f"""
 body {{ max-width: 1000px; }} .wide-table {{ overflow-x: auto; }}

@@ -8,22 +8,20 @@ from __future__ import annotations
 
 import io
 import os
-import re
 from collections import Counter
 from collections.abc import Sequence
 from datetime import UTC, datetime
 from itertools import zip_longest
 from pathlib import Path
 from urllib.parse import quote
-from xml.sax.saxutils import escape, quoteattr
 
 import msgspec
 
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.transcript_words import TO_ALL
 from metagraph.graph.conversation import EVERYBODY, Conversation, Side
+from metagraph.xml_text import escape, quoted, xml_text
 
-_CANNOT = re.compile("[\x00-\x08\x0b-\x1f\ud800-\udfff\ufffe\uffff]")
 _PEAK = 0.02  # seconds a peak lasts where points are not known
 _MEDIA = {".wav": "audio/x-wav", ".mp3": "audio/mpeg", ".flac": "audio/flac", ".ogg": "audio/ogg"}
 Row = tuple[float, float, str]  # start, end (seconds), text
@@ -47,10 +45,8 @@ def write_elan(conversation: Conversation, path: str | Path, folder: Path | None
         place = Path(sound) if folder is None else folder / sound
         kind = _MEDIA.get(place.suffix.lower(), "audio/x-wav")
         near = _near(place, path.parent)
-        beside = f" RELATIVE_MEDIA_URL={quoteattr(near)}" if near else ""
-        out.write(
-            f'        <MEDIA_DESCRIPTOR MEDIA_URL={quoteattr(_url(place))} MIME_TYPE="{kind}"{beside}/>\n'
-        )
+        beside = f" RELATIVE_MEDIA_URL={quoted(near)}" if near else ""
+        out.write(f'        <MEDIA_DESCRIPTOR MEDIA_URL={quoted(_url(place))} MIME_TYPE="{kind}"{beside}/>\n')
     tiers = [
         (f"{what}@{name}", name, _in_milliseconds(rows)) for name, what, rows in _tiers(conversation, _PEAK)
     ]
@@ -73,7 +69,7 @@ def write_elan(conversation: Conversation, path: str | Path, folder: Path | None
     out.write("    </TIME_ORDER>\n")
     number = 0
     for n, (ident, whose, rows) in enumerate(tiers):
-        at = f'LINGUISTIC_TYPE_REF="speech" PARTICIPANT={quoteattr(whose)} TIER_ID={quoteattr(ident)}'
+        at = f'LINGUISTIC_TYPE_REF="speech" PARTICIPANT={quoted(whose)} TIER_ID={quoted(ident)}'
         out.write(f"    <TIER {at}>\n")
         for m, (_, _, text) in enumerate(rows):
             number += 1
@@ -81,7 +77,7 @@ def write_elan(conversation: Conversation, path: str | Path, folder: Path | None
                 f'        <ANNOTATION>\n            <ALIGNABLE_ANNOTATION ANNOTATION_ID="a{number}" '
                 f'TIME_SLOT_REF1="{slot[n, m, 0]}" '
                 f'TIME_SLOT_REF2="{slot[n, m, 1]}">\n                '
-                f"<ANNOTATION_VALUE>{escape(_printable(text))}</ANNOTATION_VALUE>\n"
+                f"<ANNOTATION_VALUE>{escape(text, quote=False)}</ANNOTATION_VALUE>\n"
                 "            </ALIGNABLE_ANNOTATION>\n        </ANNOTATION>\n"
             )
         out.write("    </TIER>\n")
@@ -204,12 +200,7 @@ def _filled(rows: Sequence[Row], length: float) -> list[Row]:
 
 
 def _quoted(text: str) -> str:
-    return '"' + " ".join(_printable(text).split()).replace('"', '""') + '"'
-
-
-def _printable(text: str) -> str:
-    """Return text without what XML cannot hold."""
-    return _CANNOT.sub(" ", text)
+    return '"' + " ".join(xml_text(text).split()).replace('"', '""') + '"'
 
 
 def _url(place: Path) -> str:

@@ -11,9 +11,9 @@ from typing import Any
 import msgspec
 
 from metagraph.graph import requests as a
+from metagraph.xml_text import xml_text
 
 NAMESPACES = 'xmlns="http://www.bml-initiative.org/bml/bml-1.0" xmlns:metagraph="urn:metagraph:bml"'
-_FORBIDDEN = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # what XML 1.0 cannot hold
 _POINT = re.compile(r"[-+.\deE]+[\s,]+[-+.\deE]+[\s,]+[-+.\deE]+")
 
 
@@ -21,14 +21,15 @@ def write_bml(asks: Iterable[a.AnyRequest]) -> str:
     """Return asks as a block which reads back to the same asks; lines' numbers come back as texts, `told` is
     not kept.
 
-    Raises RequestError for what no block can hold: characters XML forbids, ids that are not unique, a block
-    within a block.
+    Characters that XML cannot hold are replaced, see `xml_text`. Raises RequestError for what no block can
+    hold: ids that are not unique, a block within a block.
     """
     rows, seen = [], set[str]()
     for ask in asks:
-        if ask.id and ask.id in seen:
-            raise a.RequestError(f"two asks are called '{ask.id}'; a block needs ids of their own")
-        seen.add(ask.id)
+        ident = xml_text(ask.id)
+        if ident and ident in seen:
+            raise a.RequestError(f"two asks are called '{ident}'; a block needs ids of their own")
+        seen.add(ident)
         rows.append(f"  {_element(ask)}\n")
     return f"<bml {NAMESPACES}>\n{''.join(rows)}</bml>\n"
 
@@ -159,11 +160,7 @@ def _tag(name: str, attributes: dict[str, Any], inner: str = "") -> str:
 
 
 def _escaped(text: str, attribute: bool) -> str:
-    bad = _FORBIDDEN.search(text)
-    if bad is not None:
-        raise a.RequestError(
-            f"XML cannot hold the character U+{ord(bad[0]):04X}; leave it out of {text[:40]!r}"
-        )
+    text = xml_text(text)
     out = text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;").replace("\r", "&#13;")
     if attribute:
         out = out.replace('"', "&quot;").replace("\n", "&#10;").replace("\t", "&#9;")

@@ -8,12 +8,12 @@ stacked bar.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from html import escape
 from math import isfinite
 
 from metagraph.study.plot_axes import COUNTS, PLAIN_TIMES, RATIOS, TIMES, Place, finite, log_axis, plain_axis
 from metagraph.study.stats import Estimate
 from metagraph.svg import dot, line, number, svg, text
+from metagraph.xml_text import escape
 
 
 def seconds(value: float) -> str:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from html import escape
 
 from metagraph.svg import WIDTH, line, number, svg
+from metagraph.xml_text import escape
 
 WIDE, HIGH, GAP = 250, 44, 26
 

@@ -5,7 +5,6 @@ The same data give the same bytes.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from html import escape
 from pathlib import Path
 
 from metagraph.formats.outputs import write_together
@@ -40,6 +39,7 @@ from metagraph.study.report_doubts import (
 from metagraph.study.report_style import METHODS, STYLE
 from metagraph.study.report_tables import tables
 from metagraph.study.stats import Estimate
+from metagraph.xml_text import escape
 
 __all__ = ["NAME", "Paper", "chance", "figures", "gathered", "page", "summary", "write_report"]
 

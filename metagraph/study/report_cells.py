@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from base64 import b64encode
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from html import escape
 from math import isfinite
 
 from metagraph.study.analysis import TITLES, Comparison
 from metagraph.study.figure_files import standalone
 from metagraph.study.plots import seconds
 from metagraph.study.stats import Estimate, Test
+from metagraph.xml_text import escape
 
 Say = Callable[[float], str]
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from html import escape
-
 from metagraph.study import plots
 from metagraph.study.analysis import TITLES, Results
 from metagraph.study.plots import seconds
 from metagraph.study.plots_flow import flow
 from metagraph.study.report_cells import gathered, interval, table, two
 from metagraph.study.sensitivity import BY_HAND, PRACTICE, SECOND
+from metagraph.xml_text import escape
 
 LEFT = {
     "not begun": "did not begin",

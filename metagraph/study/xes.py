@@ -14,6 +14,7 @@ from metagraph.formats.atomic import write_atomically
 from metagraph.study.log import Log, read
 from metagraph.study.study_plan import Study
 from metagraph.study.tasks import Event, steps
+from metagraph.xml_text import xml_text
 
 EXTENSIONS = {
     "Concept": ("concept", "http://www.xes-standard.org/concept.xesext"),
@@ -107,7 +108,7 @@ def _event(trace: ElementTree.Element, event: Event, seconds: float, who: str) -
     node = ElementTree.SubElement(trace, "event")
     what = event.get("what", event.get("state", event.get("name")))
     _string(node, "concept:name", f"{event['type']} {what}" if what else event["type"])
-    ElementTree.SubElement(node, "date", {"key": "time:timestamp", "value": event["wall"]})
+    ElementTree.SubElement(node, "date", {"key": "time:timestamp", "value": xml_text(str(event["wall"]))})
     _string(node, "org:resource", who)
     _string(node, "lifecycle:transition", "complete")
     _string(node, "sort", event["type"])
@@ -121,6 +122,4 @@ def _event(trace: ElementTree.Element, event: Event, seconds: float, who: str) -
 
 
 def _string(node: ElementTree.Element, key: str, value: str) -> None:
-    # What XML cannot hold is left out.
-    plain = "".join(c for c in value if c in "\t\n" or (ord(c) >= 32 and not 0xD800 <= ord(c) < 0xE000))
-    ElementTree.SubElement(node, "string", {"key": key, "value": plain})
+    ElementTree.SubElement(node, "string", {"key": key, "value": xml_text(value)})

@@ -6,10 +6,12 @@ import json
 import re
 import shutil
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -23,6 +25,7 @@ from metagraph.graph import edits
 from metagraph.graph.anatomy import base_pose, roles
 from metagraph.graph.expand import chain, connections, ends_in
 from metagraph.graph.model import LAYERS, Project
+from metagraph.graph.requests import Nod, Performance, Say
 from metagraph.motion import rotation
 from metagraph.playback.bml import read_bml
 from metagraph.playback.planner import make_plan
@@ -401,3 +404,29 @@ def test_gesture_json_goes_in_holds_and_comes_out_in_order(written: Any) -> None
         assert 0 == into["from"] <= into["to"] == hold["from"] <= hold["to"] == out["from"] <= out["to"]
         assert out["to"] == pytest.approx(clips[name].duration * 30, abs=1)
         assert "loopCount" not in hold
+
+
+def test_control_characters_in_names_and_texts_spoil_no_export(sample: Project, tmp_path: Path) -> None:
+    """Whatever a target writes as XML is read by a parser; what was replaced is told, and the rest is whole."""
+    bad = "bell \x07 and \x1b[31m \ufffe"
+    first, *rest = sample.actions()
+    project = edits.update_actions(sample, [first.id, rest[0].id], tags=(bad,))
+    project = edits.rename_stance(project, first.stance, bad)
+    line = next(iter(project.lines))
+    changed = msgspec.structs.replace(project.lines[line], text=bad)
+    project = replace(project, name=f"ca\x01se {bad}", lines={**project.lines, line: changed})
+    asks = (Say(text=bad), Nod(at=1.0))
+    kept = Performance(name="kept", length=5.0, asks=asks)
+    project = replace(project, performances={**project.performances, "p9999": kept})
+    parsed = 0
+    for name in ("bml", "scxml"):
+        report = registry.write(project, name, tmp_path / name)
+        for path in report.files:
+            if path.suffix in (".bml", ".scxml", ".xml", ".svg"):
+                ElementTree.parse(path)
+                parsed += 1
+        if name == "bml":
+            assert any("\ufffd stands for them" in note for note in report.warnings)
+            said = [read_bml(p.read_text()) for p in report.files if p.suffix == ".bml"]
+            assert any(len(asks) == 2 for asks in said)
+    assert parsed >= 3

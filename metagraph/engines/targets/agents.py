@@ -16,13 +16,16 @@ from metagraph.engines.engine_machine import Machine, State, animations, machine
 from metagraph.engines.targets.losses import MACHINE
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
+from metagraph.errors import error_words
 from metagraph.file_names import file_stems
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Project
+from metagraph.graph.requests import RequestError
 from metagraph.playback.bml_writer import write_bml
 from metagraph.playback.phases import phases
 from metagraph.wording import told
+from metagraph.xml_text import replaced_note
 
 # --- BML
 
@@ -62,9 +65,19 @@ def vocabulary(project: Project) -> dict[str, Any]:
 def write_blocks(order: ExportOrder) -> Made:
     """Write a file for each block, and the vocabulary."""
     files: list[Path] = []
+    notes: list[str] = []
     for name, asks in blocks(order.project):
         path = order.folder / f"{_file(name, files)}.bml"
-        write_atomically(path, write_bml(_numbered(asks)).encode())
+        numbered = tuple(_numbered(asks))
+        try:
+            content = write_bml(numbered).encode()
+        except RequestError as error:
+            notes.append(told("'{name}' is left out: {why}", name=name, why=error_words(error)))
+            continue
+        lost = replaced_note([msgspec.to_builtins(numbered)])
+        if lost is not None:
+            notes.append(told("{file}: {what}", file=path.name, what=lost))
+        write_atomically(path, content)
         files.append(path)
     words = order.folder / f"{order.stem}.vocabulary.json"
     write_atomically(words, json.dumps(vocabulary(order.project), indent=1, ensure_ascii=False).encode())
@@ -73,7 +86,7 @@ def write_blocks(order: ExportOrder) -> Made:
         if files
         else ("no performance is kept and no line has requests of its own: there is the vocabulary alone",)
     )
-    return Made((*files, words), none)
+    return Made((*files, words), (*notes, *none))
 
 
 def _numbered(asks: tuple[a.AnyRequest, ...]) -> Iterator[a.AnyRequest]:

@@ -5,7 +5,6 @@ files. The same answers give the same bytes.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from html import escape
 from pathlib import Path
 
 from metagraph.formats.outputs import write_together
@@ -17,6 +16,7 @@ from metagraph.study.report_style import STYLE
 from metagraph.study.report_tables import Table
 from metagraph.study.report_tables import table as csv_of
 from metagraph.study.stats import Estimate
+from metagraph.xml_text import escape
 
 NAME = "report.html"
 
