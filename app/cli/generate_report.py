@@ -10,6 +10,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
+from metagraph.csv_text import csv_text
 from metagraph.formats.outputs import write_together
 from metagraph.generation import figures
 from metagraph.generation.evaluation import Judged
@@ -93,15 +94,14 @@ def text_of(rows: Sequence[Row]) -> str:
 
 def csv_of(rows: Sequence[Row]) -> str:
     """Return the table as CSV: name, measure, value and its interval a line."""
-    lines = ["system,measure,value,low,high"]
+    lines = [["system", "measure", "value", "low", "high"]]
     for row in rows:
         for n in NAMES:
             if n in row.values:
                 low, high = row.spread.get(n, (float("nan"), float("nan")))
                 cells = (_number(v, 6) for v in (row.values[n], low, high))
-                name = '"' + row.name.replace('"', '""') + '"' if set(row.name) & set(',"') else row.name
-                lines.append(",".join([name, n, *("" if c == "-" else c for c in cells)]))
-    return "\n".join(lines) + "\n"
+                lines.append([row.name, n, *("" if c == "-" else c for c in cells)])
+    return csv_text(lines)
 
 
 def write_report(judged: Judged, told: dict[str, Any], notes: Sequence[str], folder: Path) -> list[Path]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 
-from PySide6.QtCore import QCoreApplication, QSettings
+from PySide6.QtCore import QSettings
 
 from metagraph.formats.versions import KEPT, MOST
 
@@ -25,7 +25,5 @@ def set_version_count(count: int) -> None:
 
 
 def _settings() -> QSettings:
-    """Return the window's settings, where the command line runs without the window's application, too."""
-    if QCoreApplication.organizationName():
-        return QSettings()
-    return QSettings("Metagraph", "Metagraph")
+    """Return the window's settings, also for the command line, which has no application that is called so."""
+    return QSettings(QSettings.defaultFormat(), QSettings.Scope.UserScope, "Metagraph", "Metagraph")

@@ -16,6 +16,7 @@ from io import StringIO
 from pathlib import Path
 from typing import Any
 
+from metagraph.csv_text import csv_text, restored
 from metagraph.errors import FileError
 from metagraph.files import guarded, read_file
 from metagraph.graph import manual_groups
@@ -90,7 +91,8 @@ def rows_of(text: str) -> list[Row]:
                 continue
             if len(out) >= MOST_ROWS:
                 raise ValueError(told("it has more than {most:,} rows", most=MOST_ROWS))
-            known = {n: c.strip() for n, c in zip(names, cells, strict=False) if n in COLUMNS and c.strip()}
+            told_of = ((n, restored(c).strip()) for n, c in zip(names, cells, strict=False) if n in COLUMNS)
+            known = {n: c for n, c in told_of if c}
             out.append(Row(lines.line_num, known))
     except csv.Error as error:
         raise ValueError(
@@ -243,15 +245,13 @@ def _number(word: str, column: str, least: float = 0.0) -> float:
 
 def table_of(manual: Manual) -> str:
     """Return a machine's links as a table with commas, which `rows_of` reads."""
-    out = StringIO(newline="")
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(COLUMNS)
+    rows: list[Sequence[str]] = [COLUMNS]
     for x in manual.links.values():
         ends = ("any" if x.source == ANY else name_of(manual, x.source), name_of(manual, x.target))
         c = x.condition
         numbers = (f"{c.weight:g}", _exit_word(x), f"{x.blend:g}")
-        writer.writerow((*ends, c.when, c.trigger if c.when == "request" else "", *numbers))
-    return out.getvalue()
+        rows.append((*ends, c.when, c.trigger if c.when == "request" else "", *numbers))
+    return csv_text(rows)
 
 
 def _exit_word(link: Link) -> str:

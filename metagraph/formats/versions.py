@@ -4,6 +4,7 @@ the most recent, `.2` and so on.
 
 from __future__ import annotations
 
+import errno
 import os
 from contextlib import suppress
 from pathlib import Path
@@ -80,6 +81,9 @@ def _keep(path: Path, content: bytes, versions: int) -> None:
     first = version_path(path, 1)
     if before == content or (first.is_file() and first.read_bytes() == before):
         return
+    for number in range(1, versions + 1):
+        if version_path(path, number).is_dir():
+            raise IsADirectoryError(errno.EISDIR, f"{version_path(path, number).name} is a folder")
     copy = _copied(path, before)
     try:
         free = next((n for n in range(1, versions + 1) if not version_path(path, n).exists()), versions)

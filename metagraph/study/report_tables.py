@@ -4,12 +4,11 @@ seconds.
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterable, Mapping, Sequence
-from io import StringIO
 from math import isfinite
 from typing import Any
 
+from metagraph.csv_text import csv_text
 from metagraph.study.analysis import Results
 from metagraph.study.analysis_read import Data
 from metagraph.study.score import WORDS, Score
@@ -35,11 +34,7 @@ def tables(results: Results) -> dict[str, str]:
 
 def table(columns: Sequence[str], rows: Iterable[Sequence[Any]], separator: str = ",") -> str:
     """Return rows as text; None is written as MISSING, numbers to six digits at most."""
-    out = StringIO()
-    writer = csv.writer(out, delimiter=separator, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows([cell(v) for v in row] for row in rows)
-    return out.getvalue()
+    return csv_text([columns, *([cell(v) for v in row] for row in rows)], separator)
 
 
 def cell(value: Any) -> str:

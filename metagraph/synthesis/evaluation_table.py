@@ -2,28 +2,21 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterator, Sequence
 from dataclasses import astuple, fields
 from statistics import fmean
 
+from metagraph.csv_text import csv_text
 from metagraph.synthesis.search_evaluation import Case, Evaluation
 
 
 def csv_of(cases: Sequence[Case]) -> str:
     """Return cases as comma-separated values, a line each, under a line of names."""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow([f.name for f in fields(Case)])
-    for case in cases:
-        writer.writerow(
-            [
-                round(v, 6) if isinstance(v, float) else int(v) if isinstance(v, bool) else v
-                for v in astuple(case)
-            ]
-        )
-    return out.getvalue()
+    rows = (
+        [round(v, 6) if isinstance(v, float) else int(v) if isinstance(v, bool) else v for v in astuple(case)]
+        for case in cases
+    )
+    return csv_text([[f.name for f in fields(Case)], *rows])
 
 
 def table_of(evaluation: Evaluation) -> str:

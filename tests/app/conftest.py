@@ -110,6 +110,7 @@ def own_settings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     # Not XDG_CACHE_HOME: there Mesa keeps its shaders.
     monkeypatch.setattr("app.stage.kept_pictures.pictures_folder", lambda: tmp_path / "cache")
     QSettings().clear()
+    QSettings(QSettings.defaultFormat(), QSettings.Scope.UserScope, "Metagraph", "Metagraph").clear()
 
 
 class Driver(Handles):
