@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 
 from app.look.theme import strengthen
 from app.project.writing import FileChangedError
-from app.translation import tr
+from app.translation import tr, tr_told
 from metagraph.formats.locking import Holder
 from metagraph.graph.differences import differences
 from metagraph.graph.model import Project
@@ -178,6 +178,6 @@ class DifferencesDialog(QDialog):
         shown = QListWidget(self)
         shown.setWordWrap(True)
         shown.setAccessibleName(title)
-        shown.addItems(list(lines))
+        shown.addItems(list(map(tr_told, lines)))
         column.addWidget(shown)
         row.addLayout(column, 1)

@@ -11,33 +11,40 @@ from typing import Any
 import msgspec
 
 from metagraph.graph.model import LAYERS, Project
+from metagraph.wording import Told, told
 
 _NAMED = {
-    "clips": "Clip",
-    "lines": "Line",
-    "points": "Point",
-    "performances": "Performance",
-    "conversations": "Conversation",
+    "clips": told("Clip"),
+    "lines": told("Line"),
+    "points": told("Point"),
+    "performances": told("Performance"),
+    "conversations": told("Conversation"),
 }
-_REST = (
-    "name",
-    "character",
-    "hidden",
-    "base",
-    "roles",
-    "parts",
-    "markov",
-    "settings",
-    "language",
-    "life",
-    "face",
-    "tiers",
-    "labels",
-    "notes",
-    "marks",
-    "joint_maps",
-    "skeleton",
-)
+_KINDS = {
+    "stance": told("Stance loop"),
+    "gesture": told("Gesture"),
+    "fidget": told("Fidget"),
+    "transition": told("Transition"),
+}
+_REST = {
+    "name": told("Name"),
+    "character": told("Character"),
+    "hidden": told("Hidden"),
+    "base": told("Base"),
+    "roles": told("Roles"),
+    "parts": told("Parts"),
+    "markov": told("Markov"),
+    "settings": told("Settings"),
+    "language": told("Language"),
+    "life": told("Life"),
+    "face": told("Face"),
+    "tiers": told("Tiers"),
+    "labels": told("Labels"),
+    "notes": told("Notes"),
+    "marks": told("Marks"),
+    "joint_maps": told("Joint maps"),
+    "skeleton": told("Skeleton"),
+}
 _UNSEEN = ("id", "digest", "clip_name", "clip_sha256")  # of no use to a reader
 
 
@@ -48,47 +55,77 @@ def differences(before: Project, after: Project) -> list[str]:
     if before is after:
         return []
     lines: list[str] = []
-    for name in _REST:
+    for name, word in _REST.items():
         old, new = getattr(before, name), getattr(after, name)
         if old is not new and old != new:
-            lines.append(f"{name.replace('_', ' ').capitalize()} changed{_what(old, new)}")
+            lines.append(_line(word, "changed", _what(old, new)))
     for name, word in _NAMED.items():
         lines += _keyed(word, getattr(before, name), getattr(after, name))
     for layer in LAYERS:
         old, new = before.graphs[layer], after.graphs[layer]
-        lines += _keyed("Stance", old.stances, new.stances, f" ({layer})")
-        lines += _keyed("", old.actions, new.actions, f" ({layer})")
+        lines += _keyed(told("Stance"), old.stances, new.stances, layer)
+        lines += _keyed("", old.actions, new.actions, layer)
         if old.start != new.start:
             names = [
-                f"'{g.stances[g.start].name}'" if g.start is not None and g.start in g.stances else "none"
+                f"'{g.stances[g.start].name}'"
+                if g.start is not None and g.start in g.stances
+                else told("none")
                 for g in (old, new)
             ]
-            lines.append(f"First stance of {layer}: {names[0]} → {names[1]}")
+            first, then = (" ".join(n.split()) if n.startswith("'") else n for n in names)
+            words = told(
+                "First stance of {layer}: {before} → {after}", layer=_plain(layer), before=first, after=then
+            )
+            lines.append(words)
         if old.weights != new.weights:
-            lines.append(f"Weights of {layer} changed{_what(old.weights, new.weights)}")
+            weights = told("Weights of {layer}", layer=_plain(layer))
+            lines.append(_line(weights, "changed", _what(old.weights, new.weights)))
         old_machine, new_machine = before.manual.get(layer), after.manual.get(layer)
         if old_machine != new_machine:
-            lines.append(f"Manual state machine ({layer}) {_fate(old_machine, new_machine)}")
-    return [" ".join(line.split()) for line in lines]  # names may hold anything
+            machine = told("Manual state machine ({layer})", layer=_plain(layer))
+            lines.append(_line(machine, _fate(old_machine, new_machine)))
+    return lines
+
+
+def _line(what: str, fate: str, how: str = "") -> str:
+    """Return a line: what it is, what became of it, and which fields differ."""
+    if fate == "added":
+        return told("{what} added", what=what)
+    if fate == "removed":
+        return told("{what} removed", what=what)
+    if not how:
+        return told("{what} changed", what=what)
+    return told("{what} changed: {how}", what=what, how=" ".join(how.split()))  # values may hold anything
+
+
+def _plain(word: str) -> str:
+    """Return a word of the project file, as words that know their template."""
+    return Told(word, {})
 
 
 def _fate(old: object, new: object) -> str:
     return "added" if old is None else "removed" if new is None else "changed"
 
 
-def _keyed(word: str, before: Mapping[str, Any], after: Mapping[str, Any], where: str = "") -> Iterator[str]:
+def _keyed(word: str, before: Mapping[str, Any], after: Mapping[str, Any], layer: str = "") -> Iterator[str]:
     if before is after:
         return
     for ident in dict.fromkeys((*before, *after)):
         old, new = before.get(ident), after.get(ident)
         if old is new or old == new:
             continue
+        if old is not None and new is not None and all(a == b for _, a, b in _fields(old, new)):
+            continue  # only what no reader sees
         some: Any = old if new is None else new
+        kind = word or _KINDS[some.kind]
+        name = " ".join(_title(some, ident).split())  # names may hold anything
         title = (
-            f"{word or ('Stance loop' if some.kind == 'stance' else some.kind.capitalize())} "
-            f"'{_title(some, ident)}'{where}"
+            told("{kind} '{name}' ({layer})", kind=kind, name=name, layer=_plain(layer))
+            if layer
+            else told("{kind} '{name}'", kind=kind, name=name)
         )
-        yield f"{title} {_fate(old, new)}{_what(old, new) if old is not None and new is not None else ''}"
+        fate = _fate(old, new)
+        yield _line(title, fate, _what(old, new) if fate == "changed" else "")
 
 
 def _title(value: Any, ident: str) -> str:
@@ -98,7 +135,7 @@ def _title(value: Any, ident: str) -> str:
 def _what(old: Any, new: Any) -> str:
     """Return which fields differ, with their values where those are short."""
     words = [word for name, a, b in _fields(old, new) if a != b and (word := _change(name, a, b))]
-    return f": {', '.join(words)}" if words else ""
+    return ", ".join(words)
 
 
 def _fields(old: Any, new: Any, prefix: str = "") -> Iterator[tuple[str, Any, Any]]:

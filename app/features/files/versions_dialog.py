@@ -194,7 +194,7 @@ class VersionsDialog(QDialog):
         if one.project is None:
             self.changes.addItem(tr_told(one.why))
             return
-        self.changes.addItems(list(one.changes[:LINES]) or [tr("Nothing")])
+        self.changes.addItems(list(map(tr_told, one.changes[:LINES])) or [tr("Nothing")])
         if len(one.changes) > LINES:
             self.changes.addItem(tr("and {count} more", count=len(one.changes) - LINES))
 
