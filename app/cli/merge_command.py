@@ -7,9 +7,11 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from app.cli.command_output import say
+from app.cli.outputs import ProjectOutput
 from metagraph.errors import FileError
 from metagraph.formats.merging import MergeError, merge
-from metagraph.formats.store import read_project, save_project
+from metagraph.formats.outputs import claim, wrote
+from metagraph.formats.store import read_project
 from metagraph.graph.model import Project
 from metagraph.wording import told
 
@@ -30,8 +32,20 @@ def arguments(parser: ArgumentParser) -> None:
 
 
 def run(options: Namespace) -> int:
+    path = options.output or options.ours
+    if not (path.exists() and path.samefile(options.ours)):
+        claim(path)
+    # What Git merges is a passing file of its own, and it keeps the versions itself.
+    with ProjectOutput(path, 0 if options.name is not None else None) as output:
+        code = _merged(options, output)
+    if not path.samefile(options.ours):
+        wrote(path)
+    return code
+
+
+def _merged(options: Namespace, output: ProjectOutput) -> int:
     base, ours, theirs = (_read(path) for path in (options.base, options.ours, options.theirs))
-    name, output = options.name or options.ours.name, options.output or options.ours
+    name = options.name or options.ours.name
     sides = (told("in ours"), told("in theirs"))
     try:
         if options.prefer == "theirs":
@@ -45,12 +59,12 @@ def run(options: Namespace) -> int:
             told("the project"),
             told("Open one of the two and import the other into it (File > Import)."),
         ) from None
-    save_project(found.project, output)
+    output.save(found.project)
     for line in found.kept:
         print(f"{name}: {line}", file=sys.stderr)
     count = len(found.kept)
     words = f"{name}: merged" + (f"; {count} to look at, listed above" if count else "")
-    say(options, words, {"output": str(output), "conflicts": list(map(str, found.kept))})
+    say(options, words, {"output": str(output.path), "conflicts": list(map(str, found.kept))})
     return 3 if found.kept else 0
 
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:  # reading a command line must not wait for what only writing 
     from metagraph.graph.model import Project
 
 # Options that name what is written. All others of type Path are read, unless `WRITTEN` says otherwise.
-OUTPUTS = ("out", "into", "bids", "xes", "take", "video")
+OUTPUTS = ("out", "output", "into", "bids", "xes", "take", "video")
 # Command, action and option of those whose name alone does not tell.
 WRITTEN = (("motion-graph", "build", "keep"),)
 # Commands, and actions of some, whose output is a folder, in which nothing but their own files is replaced.
@@ -34,7 +34,7 @@ FOLDERS = (
 # Commands that refuse whatever is there, whoever made it.
 NEVER = (("generate", "train"), ("generate", "planted"), ("study", "simulate"))
 # Commands whose output is a project, which they claim themselves: it may be the one they read.
-PROJECTS = ("label", "contacts")
+PROJECTS = ("label", "contacts", "merge")
 # Actions that change a study's folder in place, with rules of their own for what is there.
 STUDIES = ("run", "freeze", "withdraw", "delete", "import", "plan", "collect", "serve")
 OVERWRITE = "also replace files that this command did not write, or that were changed since"
@@ -86,11 +86,12 @@ def outputs_of(options: Namespace) -> Outputs:
 class ProjectOutput:
     """A project file that a command makes or changes: nobody else may have it open meanwhile.
 
-    Enter it before the project is read. Raises FileError where a window or another command has it.
+    Enter it before the project is read. Raises FileError where a window or another command has it. versions:
+    how many earlier ones are kept, as the settings say when None.
     """
 
-    def __init__(self, path: Path) -> None:
-        self.path = path
+    def __init__(self, path: Path, versions: int | None = None) -> None:
+        self.path, self.versions = path, versions
 
     def __enter__(self) -> ProjectOutput:
         from metagraph.formats.locking import Lock, new_owner
@@ -129,7 +130,8 @@ class ProjectOutput:
             )
         if was_at is not None:
             project = moved(project, was_at, self.path)
-        note = write_project(self.path, encoded(project, self.path), version_count())
+        versions = version_count() if self.versions is None else self.versions
+        note = write_project(self.path, encoded(project, self.path), versions)
         if note is not None:
             print(f"note: {note}", file=sys.stderr)
         self._digest = file_digest(self.path)

@@ -47,7 +47,21 @@ def commands() -> dict[str, argparse.ArgumentParser]:
 
 # Options of type Path that are read, in all commands. A new one goes here, or among the outputs.
 READ = {
-    *("project", "path", "paths", "labels", "folder", "patterns", "annotation", "sounds", "takes", "voice"),
+    *(
+        "base",
+        "ours",
+        "theirs",
+        "project",
+        "path",
+        "paths",
+        "labels",
+        "folder",
+        "patterns",
+        "annotation",
+        "sounds",
+        "takes",
+        "voice",
+    ),
     *(
         "keypoints",
         "audio",
@@ -109,8 +123,11 @@ def project(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Path:
         write_glb(tmp_path / "clips" / f"{name}.glb", [clip(name)])
     path = tmp_path / f"small{SUFFIX}"
     assert main(["import", str(path), str(tmp_path / "clips")]) == 0
-    made = edits.add_stance(open_project(path).project, "arms", "rest", ["c1"])
-    save_project(edits.place(made, ["c2", "c3"], "arms", "gesture", "s4"), path)
+    made = open_project(path).project
+    of = {entry.name: ident for ident, entry in made.clips.items()}
+    made = edits.add_stance(made, "arms", "rest", [of["idle"]])
+    (stance,) = made.graphs["arms"].stances
+    save_project(edits.place(made, [of["wave"], of["nod"]], "arms", "gesture", stance), path)
     capsys.readouterr()
     return path
 
