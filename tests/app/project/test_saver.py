@@ -35,15 +35,15 @@ def saver(qapp, toy, tmp_path):
 @pytest.fixture
 def gate(monkeypatch):
     """Writing waits until the gate is opened; it counts how often the file was written."""
-    gate, write = threading.Event(), writing.write_atomically
+    gate, write = threading.Event(), writing.write_project
     gate.count = 0
 
-    def late(path, content):
+    def late(path, content, versions):
         assert gate.wait(20)
-        write(path, content)
+        write(path, content, versions)
         gate.count += 1
 
-    monkeypatch.setattr(writing, "write_atomically", late)
+    monkeypatch.setattr(writing, "write_project", late)
     yield gate
     gate.set()
 
