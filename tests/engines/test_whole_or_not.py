@@ -159,7 +159,7 @@ def test_a_record_that_names_files_elsewhere_takes_none_away(small: Project, tmp
     victim = tmp_path / "victim"
     victim.write_text("x")
     record = msgspec.json.decode((out / RECORD).read_bytes(), type=placing.Record)
-    spoilt = {**record.files, "../victim": placing._digest(victim)}
+    spoilt = {**record.files, "../victim": placing.digest(victim)}
     (out / RECORD).write_bytes(msgspec.json.encode(msgspec.structs.replace(record, files=spoilt)))
     registry.write(small, "metagraph", out)
     assert victim.read_text() == "x"
