@@ -225,9 +225,9 @@ def crash(desk) -> None:
     """Forget the document without closing it, as a killed program does."""
     document = desk.document
     place = document.journal_place
-    document._journal.close()
+    document.autosave.journal.close()
     kill_sittings(place.parent)
-    document._journal = document.lock = None
+    document.autosave.journal = document.lock = None
     document.owner = new_owner()
     document.undo_stack.setClean()
 

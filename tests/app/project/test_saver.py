@@ -38,9 +38,9 @@ def gate(monkeypatch):
     gate, write = threading.Event(), writing.write_atomically
     gate.count = 0
 
-    def late(path, content):
+    def late(*args):
         assert gate.wait(20)
-        write(path, content)
+        write(*args)
         gate.count += 1
 
     monkeypatch.setattr(writing, "write_atomically", late)
