@@ -311,6 +311,7 @@ class Files(QObject):
             return
         warnings = list(dict.fromkeys(self._warnings))
         self._warnings.clear()
+
         def show() -> None:
             self.report.emit(tr("Your unsaved edits"), warnings)
 

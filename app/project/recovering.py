@@ -60,6 +60,8 @@ def left_words(left: Left, saved: Path | None) -> tuple[str, str]:
         ),
         f"{many(len(left.project.clips), 'clip')}, {many(sum(1 for _ in left.project.actions()), 'action')}",
     ]
+    if saved is not None and left.saved is not None and left.saved.name != saved.name:
+        words.append(tr("Made when the project file was called {name}", name=left.saved.name))
     if saved is None and named is not None:
         words.append(tr("In {folder}", folder=named.parent))
     if named is not None and not is_file(named):

@@ -30,8 +30,8 @@ class AppendedFile:
 
     def begin(self, content: bytes, like: Access | None, sync: bool) -> None:
         """Write it anew, whole or not at all. like: who may read it. sync: wait for the disk."""
+        replace_file(self.path, content, sync, like)  # until it is there, what was open is all there is
         self.close()
-        replace_file(self.path, content, sync, like)
         self._like, self._torn, self._size = like, False, len(content)
         with suppress(OSError):  # tried again with the next line
             self._open()

@@ -232,7 +232,9 @@ class Journal:
         """
         self._base = (base, unsaved, done) if base is not None else None
         try:
-            records = [self._head, self._foundation()]
+            foundation = self._foundation()
+            holds = {"holds": next(iter(foundation), ""), "unsaved": unsaved}
+            records = [{**self._head, **holds}, foundation]
             records += [record for edit in done if (record := _record(*edit, "done"))]
         except DataError as error:
             raise self._unsayable(error) from None

@@ -108,16 +108,26 @@ def read_journal(journal: Path, saved: Path | None) -> Left | None:
     kept = rest[_settled(rest, now) :]
     all_of_it = len(kept) == len(rest)
     base = head.get("base") if all_of_it else None
-    before = head.get("unsaved", 0) if isinstance(base, dict) and _is_number(head.get("unsaved", 0)) else 0
+    unsaved = head.get("unsaved", 0)
+    before = unsaved if isinstance(base, dict) and _is_number(unsaved) else 0
     edits = [e.data for e in kept if isinstance(e, Record) and "mark" not in e.data]
     lost = [e for e in kept if isinstance(e, LostEdit)]
+    if all_of_it and records.foundation and not isinstance(base, dict) and _is_number(unsaved):
+        lost = [LostEdit()] * unsaved + lost
     if not edits and not before and not lost:
         return None
     changed = all_of_it and head.get("saved") != now
     if not isinstance(base, dict) and (changed or saved is None):
         base = _of_text(head.get("text"), journal)
     behind = changed and isinstance(base, dict)
-    doubtful = bool(records.foundation) and all_of_it and (behind or saved is None)
+    doubtful = bool(records.foundation) and all_of_it and (changed or head.get("holds") != "text")
+    if (
+        doubtful
+        and head.get("holds") == "base"
+        and not isinstance(base, dict)
+        and _is_number(head["unsaved"])
+    ):
+        lost = [LostEdit()] * head["unsaved"] + lost
     if not isinstance(base, dict):
         base = to_data(read_project(saved, []) if saved is not None and saved.is_file() else Project())
     project, good, unfit = _worked_in(base, edits)

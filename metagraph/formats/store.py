@@ -93,7 +93,7 @@ def from_text(text: str, path: Path, notes: list[str] | None = None) -> Project:
     except DataError as error:
         cause = f"{error.where} {error}".strip()
         raise FileError(
-            path, cause, _line_of(lines(), error.where), told("Correct it, or restore a backup.")
+            path, cause, _line_of(lines, error.where), told("Correct it, or restore a backup.")
         ) from None
 
 
@@ -116,11 +116,15 @@ def _upgraded(data: Any, path: Path) -> Any:
     return data
 
 
-def _line_of(lines: Mapping[str, int], where: str) -> str:
+def _line_of(lines: Callable[[], Mapping[str, int]], where: str) -> str:
     """Return "line n" of a field, or of what it is in."""
-    while where not in lines and where:
+    try:
+        found = lines()
+    except TextError as error:  # a key that is longer than YAML's may be
+        return f"line {error.line}" if error.line else where
+    while where not in found and where:
         where = where[: max(where.rfind("."), where.rfind("["), 0)]
-    return f"line {lines.get(where, 1)}"
+    return f"line {found.get(where, 1)}"
 
 
 # --- files
