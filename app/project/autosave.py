@@ -7,6 +7,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from PySide6.QtCore import QStandardPaths
+
 from app.translation import tr, tr_told
 from metagraph.errors import FileError
 from metagraph.formats.journal import Done, How, Journal, journal_path
@@ -164,3 +166,11 @@ class Autosave:
 def shelter(folder: Path) -> Path:
     """Return where journals are listed, and lie that can lie nowhere else."""
     return folder / "journals"
+
+
+def state_folder() -> Path:
+    """Return where recent projects and the journal of unsaved work are kept; made if need be."""
+    folder = Path(QStandardPaths.writableLocation(QStandardPaths.StandardLocation.AppDataLocation))
+    with suppress(OSError):  # whoever writes there says so
+        folder.mkdir(parents=True, exist_ok=True)
+    return folder

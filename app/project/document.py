@@ -11,10 +11,10 @@ from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
-from PySide6.QtCore import QObject, QStandardPaths, Signal
+from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
-from app.project.autosave import Autosave
+from app.project.autosave import Autosave, state_folder
 from app.project.opening import with_motion_of
 from app.project.writing import Writing, project_name
 from app.translation import in_english, tr
@@ -397,11 +397,3 @@ class Document(QObject):
             return file_digest(self.path)
         except FileError:
             return None
-
-
-def state_folder() -> Path:
-    """Return where recent projects and the journal of unsaved work are kept; made if need be."""
-    folder = Path(QStandardPaths.writableLocation(QStandardPaths.StandardLocation.AppDataLocation))
-    with suppress(OSError):  # whoever writes there says so
-        folder.mkdir(parents=True, exist_ok=True)
-    return folder

@@ -14,7 +14,8 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from app.faults import is_foreseen
-from app.project.document import Document, state_folder
+from app.project.autosave import state_folder
+from app.project.document import Document
 from app.project.jobs import WORDS, Job, Jobs
 from app.project.keeper import Keeper
 from app.project.leftovers import FoundJournal, forget, keep_as_copy, look_beside

@@ -10,8 +10,7 @@ from contextlib import suppress
 from dataclasses import field, replace
 from pathlib import Path
 
-from app.project.autosave import shelter
-from app.project.document import state_folder
+from app.project.autosave import shelter, state_folder
 from metagraph.errors import FileError
 from metagraph.files import is_file
 from metagraph.formats.atomic import sweep

@@ -38,6 +38,7 @@ from metagraph.formats.data import (
 from metagraph.formats.fields import Data, DataError
 from metagraph.formats.journal_records import framed
 from metagraph.formats.journal_register import JournalRegister
+from metagraph.formats.journal_words import displaced, unsayable, unwritten
 from metagraph.formats.locking import Owner
 from metagraph.formats.manual_data import alias_data, link_data, manual_data, state_data
 from metagraph.formats.new_file import Access, access_of
@@ -237,7 +238,7 @@ class Journal:
             records = [{**self._head, **holds}, foundation]
             records += [record for edit in done if (record := _record(*edit, "done"))]
         except DataError as error:
-            raise self._unsayable(error) from None
+            raise unsayable(self.path, error) from None
         content = b"".join(framed(record, number) for number, record in enumerate(records))
         with self._turn:
             try:
@@ -246,7 +247,7 @@ class Journal:
                 sync = self._base is not None or self.path.exists()
                 self._file.begin(content, self._like, sync)
             except OSError as error:
-                raise self._unwritten(error, told("on beginning it")) from None
+                raise unwritten(self.path, error, told("on beginning it")) from None
             self._begun, self._number = True, len(records)
         if self._register is not None:
             self._register.add(self.path, self._saved, self._head)
@@ -273,7 +274,7 @@ class Journal:
         try:
             record = _record(before, after, step, how)
         except DataError as error:
-            raise self._unsayable(error) from None
+            raise unsayable(self.path, error) from None
         if record:
             if not self._begun:
                 self._begin_with(before)
@@ -327,7 +328,7 @@ class Journal:
             finally:
                 os.close(handle)
         except OSError as error:
-            self.error = self._unwritten(error, told("on looking after it"))
+            self.error = unwritten(self.path, error, told("on looking after it"))
             return False
         return whole
 
@@ -338,47 +339,17 @@ class Journal:
                 self._number += 1
                 self._look()  # an edit in a file that was removed is no edit that was kept
             except OSError as error:
-                raise self._unwritten(error, told("on adding to it")) from None
+                raise unwritten(self.path, error, told("on adding to it")) from None
 
     def _look(self) -> None:
         """Look whether the file is in its place, and put it there again. Raises OSError."""
         was = self.path
         what = self._file.look()
-        if what == "removed":
-            self.notes.append(
-                told(
-                    "Another program removed or replaced the file in {folder} in which Metagraph keeps your "
-                    "unsaved edits. It has been written again, with all of them.",
-                    folder=was.parent.name,
-                )
-            )
-        elif what == "moved":
-            self.notes.append(
-                told(
-                    "The folder {folder} is now {place}. Your unsaved edits are kept there; saving asks for "
-                    "the place.",
-                    folder=was.parent.name,
-                    place=self.path.parent,
-                )
-            )
+        if what:
+            self.notes.append(displaced(what, was, self.path))
         if what and self._register is not None:
+            self._register.remove(was)
             self._register.add(self.path, self._saved, self._head)
-
-    def _unwritten(self, error: OSError, where: str) -> FileError:
-        return FileError(
-            self.path,
-            told("cannot be written ({value})", value=error.strerror or error),
-            where,
-            told("Make room on the disk and save the project, or save it in another place."),
-        )
-
-    def _unsayable(self, error: DataError) -> FileError:
-        return FileError(
-            self.path,
-            told("cannot be written ({error})", error=error),
-            error.where,
-            told("Correct that value."),
-        )
 
     def close(self) -> None:
         with self._turn:

@@ -65,6 +65,5 @@ class JournalRegister:
         return sorted(found, key=lambda known: known.begun)
 
     def _entry(self, journal: Path) -> Path:
-        """Return the file of a journal, whose name says whose sitting it is, wherever it lies."""
-        key = hashlib.sha256(journal.name.encode("utf-8", "surrogateescape")).hexdigest()[:24]
+        key = hashlib.sha256(str(journal.absolute()).encode("utf-8", "surrogateescape")).hexdigest()[:24]
         return self.folder / f"{key}.json"

@@ -192,7 +192,7 @@ def _worked_in(base: Data, edits: Sequence[Data]) -> tuple[Project, list[Data], 
     good: list[Data] = []
     unfit: list[Data] = []
     rest = list(edits)
-    project = _replayed(base, []) or Project()
+    project: Project | None = None
     while rest:
         fits, bad = 0, len(rest) + 1
         count = len(rest)
@@ -206,7 +206,7 @@ def _worked_in(base: Data, edits: Sequence[Data]) -> tuple[Project, list[Data], 
         good += rest[:fits]
         unfit += rest[fits : fits + 1] if len(unfit) < _UNFIT else rest[fits:]
         rest = rest[fits + 1 :] if len(unfit) <= _UNFIT else []
-    return project, good, unfit
+    return project or _replayed(base, []) or Project(), good, unfit
 
 
 def _unfit(record: Data) -> LostEdit:

@@ -7,8 +7,8 @@ import shutil
 
 import pytest
 
-from app.project.autosave import shelter
-from app.project.document import Document, state_folder
+from app.project.autosave import shelter, state_folder
+from app.project.document import Document
 from app.project.writing import project_name
 from metagraph.errors import FileError
 from metagraph.formats.journal_records import read_records
