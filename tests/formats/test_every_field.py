@@ -13,7 +13,7 @@ import pytest
 from msgspec import inspect
 
 from metagraph.errors import FileError
-from metagraph.formats.data import STRUCTS, to_data
+from metagraph.formats.data import FORMAT, STRUCTS, to_data
 from metagraph.formats.fields import Data
 from metagraph.formats.store import SUFFIX, encoded, from_text
 from metagraph.formats.text import to_text
@@ -188,12 +188,11 @@ def whole() -> Data:
     state = {"id": "n6", "clip": "c1", "name": "state", "x": 1, "y": 2, "joint_weights": {"Head": 0.5}}
     link = {"id": "l8", "source": "n6", "target": "n6", "blend": 0.2, "exit_part": 0.5, "when": "finished"}
     data = {
-        "metagraph": 1,
+        "metagraph": FORMAT,
         "name": "whole",
         "character": "ada.glb",
         "hidden": ["Hat"],
         "language": "de",
-        "next_id": 9,
         "base": {"clip": "c1", "frame": 2},
         "settings": {
             "alpha": 3,
@@ -289,7 +288,7 @@ def check(data: Data, path: Path) -> bool:
 
 def part(top: str) -> Data:
     """Return the whole with nothing in it but one of its fields."""
-    return {"metagraph": 1, **({top: WHOLE[top]} if top != "metagraph" else {})}
+    return {"metagraph": FORMAT, **({top: WHOLE[top]} if top != "metagraph" else {})}
 
 
 def refused_or_saved(place: Place, values: Sequence[Any], path: Path) -> int:
@@ -355,6 +354,6 @@ def test_a_number_that_is_too_large_is_refused_with_its_place_and_limits() -> No
 
 
 def test_a_long_name_in_a_file_that_is_wrong_elsewhere_is_no_error_of_its_own() -> None:
-    text = f"metagraph: 1\nroles:\n  {'k' * 2_000}: x\nsettings:\n  alpha: x\n"
+    text = f"metagraph: {FORMAT}\nroles:\n  {'k' * 2_000}: x\nsettings:\n  alpha: x\n"
     with pytest.raises(FileError, match=r"settings\.alpha"):
         from_text(text, Path("x"))
