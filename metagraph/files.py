@@ -68,12 +68,12 @@ def opened(path: str | Path, most: int) -> Iterator[BufferedReader]:
         file = _handle(path)
     except (OSError, ValueError) as error:
         raise unreadable(path, error) from None
-    with file:
-        try:
+    try:
+        with file:
             _checked(path, os.fstat(file.fileno()), most)
             yield file
-        except OSError as error:
-            raise unreadable(path, error) from None
+    except OSError as error:
+        raise unreadable(path, error) from None
 
 
 def read_file(path: str | Path, most: int) -> bytes:

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 BY_PATH = ("open", "replace", "unlink", "chmod", "mkdir")
-BY_HANDLE = ("write", "fsync", "ftruncate", "fstat", "dup", "close")
+BY_HANDLE = ("write", "fsync", "ftruncate", "fstat", "fchmod", "dup", "close")
 
 
 class Killed(BaseException):

@@ -8,6 +8,8 @@ import sys
 from functools import cache
 from pathlib import Path
 
+from metagraph.formats.journal_records import framed, whole_record
+
 
 @cache
 def ended() -> int:
@@ -21,6 +23,8 @@ def kill_sittings(folder: Path) -> None:
     """Let every journal and lock in a folder be of a process that was killed."""
     for path in [*folder.glob(".*.journal"), *folder.glob(".*.lock")]:
         first, _, rest = path.read_bytes().partition(b"\n")
-        head = json.loads(first)
+        record = whole_record(first)
+        head = record.data if record is not None else json.loads(first)
         head.get("owner", head)["pid"] = ended()
-        path.write_bytes(json.dumps(head).encode() + b"\n" + rest)
+        line = framed(head, 0)[:-2] if record is not None else json.dumps(head).encode()
+        path.write_bytes(line + b"\n" + rest)

@@ -7,6 +7,7 @@ from argparse import ArgumentParser, Namespace
 from collections import Counter
 
 from app.cli.command_output import opened
+from app.cli.journal_note import warn_of_journals
 from metagraph.graph.check import check as find_problems
 from metagraph.graph.check import grave
 
@@ -20,6 +21,7 @@ def arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     problems = find_problems(opened(options.project))
+    warn_of_journals(options.project)
     counts = Counter(p.severity for p in problems)
     if options.json:
         fields = ("severity", "code", "message", "remedy", "layer", "stance", "action", "clip")

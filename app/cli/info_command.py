@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from app.cli.command_output import opened, say
+from app.cli.journal_note import warn_of_journals
 from metagraph.formats.clips import SUFFIXES, read_clips
 from metagraph.graph.expand import size
 from metagraph.graph.model import KINDS, LAYERS
@@ -50,6 +51,7 @@ def run(options: Namespace) -> int:
         project = read_export(path, motions=False)
     else:
         project = opened(path)
+        warn_of_journals(path)
     whole = size(project)
     layers = {
         layer: {

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
-from app.project.document import state_folder
+from app.project.autosave import state_folder
 from metagraph.budgets import LIST_FILE
 from metagraph.errors import FileError
 from metagraph.files import read_file

@@ -11,18 +11,21 @@ from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
-from PySide6.QtCore import QObject, QStandardPaths, Signal
+from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
+from app.project.autosave import Autosave, state_folder
 from app.project.opening import with_motion_of
 from app.project.version_count import version_count
 from app.project.writing import Writing, project_name
 from app.translation import in_english, tr
 from metagraph.errors import FileError
+from metagraph.formats.appended_file import Identity, folder_now, identity_of
 from metagraph.formats.history import Step
-from metagraph.formats.journal import How, Journal, journal_path
+from metagraph.formats.journal import Done, How
 from metagraph.formats.limits import refusal
 from metagraph.formats.locking import Lock, new_owner
+from metagraph.formats.new_file import Access, access_of
 from metagraph.formats.store import file_digest, moved
 from metagraph.graph.edits import EditError
 from metagraph.graph.listing_edits import listed_otherwise
@@ -79,11 +82,11 @@ class Document(QObject):
     one.
 
     state_changed: comes after `changed`, too: path, dirty mark or undo texts may differ. saved: it was
-    written. failed: words for the user.
+    written. failed: words for the user. warned: words that the user must have read.
 
     common: the project as its file was when it was read or saved last, None where that is not known; digest:
     of that file, SHA-256. lock: of the file, while this window has it. read_only: another window has it, so
-    saving asks for another place.
+    saving asks for another place. access: who may read the file, and so all that is written beside it.
     """
 
     changed = Signal(object, object)
@@ -91,6 +94,7 @@ class Document(QObject):
     state_changed = Signal()
     saved = Signal()
     failed = Signal(str)
+    warned = Signal(str)
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -104,9 +108,11 @@ class Document(QObject):
         self.read_only = False
         self.common: Project | None = None
         self.digest: str | None = None
-        self._journal: Journal | None = None
+        self.access: Access | None = None
+        self._home: Identity | None = None  # of the folder that the file is in, whatever its name
+        self.autosave = Autosave(self, state_folder())
         self._returned = False  # motion came back that earlier steps do not have
-        self._restored: Project | None = None  # while steps are: what the next one begins with
+        self._restoring = False  # steps of before a crash
 
     # --- editing
 
@@ -154,23 +160,15 @@ class Document(QObject):
             self.state_changed.emit()
 
     def _set(self, project: Project, text: str, how: How) -> None:
-        if self._restored is not None:  # a step of before a crash
-            self._write_edit(self._restored, project, text, how)
+        if self._restoring:
             return
         if self._returned:
             project = with_motion_of(project, self.project)
         before, self.project = self.project, project
-        if self._journal is None:  # the first edit of a window that opened nothing
-            self._begin_journal(before if self.path is None or self.read_only else None)
-        self._write_edit(before, project, text, how)
+        if self.autosave.journal is None:  # the first edit of a window that opened nothing
+            self.autosave.begin(before if self.path is None or self.read_only else None)
+        self.autosave.write(before, project, text, how)
         self.changed.emit(before, project)
-
-    def _write_edit(self, before: Project, after: Project, text: str, how: How) -> None:
-        if self._journal is not None:
-            try:
-                self._journal.edit(before, after, text, how)
-            except (FileError, OSError) as error:
-                self.failed.emit(tr("This edit was not autosaved: {error}", error=error))
 
     def undo(self) -> None:
         self.undo_stack.undo()
@@ -214,24 +212,26 @@ class Document(QObject):
         before, self.project = self.project, project
         self.path, self.lock, self.read_only, self._returned = path, lock, read_only, False
         self.digest = digest or self._digest_now()
+        self._settle_in()
         first = steps[0].before if steps else project
         self.common = common if recovered else first
         self.undo_stack.clear()
         if recovered:
             self.undo_stack.resetClean()
-        self._begin_journal(first if recovered or steps or path is None else None, recovered)
         self._restore(steps)
+        done = [(step.before, step.after, step.text) for step in steps]
+        self.autosave.begin(first if recovered or steps or path is None else None, recovered, done)
         self.loaded.emit()
         self.changed.emit(before, project)
         self.state_changed.emit()
 
     def _restore(self, steps: Sequence[Step]) -> None:
-        """Put steps on the stack that were made before a crash, and into this sitting's journal."""
+        """Put steps on the stack that were made before a crash."""
         self.undo_stack.blockSignals(True)  # the views follow once, in the end
+        self._restoring = True
         for step in steps:
-            self._restored = step.before
             self.undo_stack.push(_Change(self, step.text, step.before, step.after, None))
-        self._restored = None
+        self._restoring = False
         self.undo_stack.blockSignals(False)
 
     def reload(self, project: Project, digest: str) -> None:
@@ -242,7 +242,7 @@ class Document(QObject):
             self.undo_stack.push(_Change(self, tr("Reload from disk"), self.project, project, None))
         self.common, self.digest = self.project, digest
         self.undo_stack.setClean()
-        self._begin_journal(None)
+        self.autosave.begin(None)
         self.state_changed.emit()
 
     def merge(self, project: Project, theirs: Project, digest: str) -> None:
@@ -270,11 +270,12 @@ class Document(QObject):
         target = path or self.path
         if target is None:
             raise ValueError("a project that was never saved needs a path")
-        mark = None
-        if self._journal is not None:
+        mark, journal = None, self.autosave.journal
+        if journal is not None:
             with suppress(FileError):  # it is about to be saved
-                mark = self._journal.mark()
-        return Writing(self.project, self.path, target, self._journal, mark, version_count())
+                mark = journal.mark()
+        home = self._home if target == self.path else None
+        return Writing(self.project, self.path, target, journal, mark, version_count(), home, self.access)
 
     def end_saving(self, writing: Writing) -> None:
         """The file is written: what it holds is the saved state. Edits that were made meanwhile are not."""
@@ -291,19 +292,45 @@ class Document(QObject):
             self.project, self.path, self.read_only, self._returned = after, writing.target, False, False
             self.changed.emit(before, after)
         self.common, self.digest = writing.after, writing.digest
+        self._settle_in()
         if edited:
             self.undo_stack.resetClean()
         else:
             self.undo_stack.setClean()
         if elsewhere or not edited:  # else the journal has a mark behind which it goes on
-            self._begin_journal(self.project if edited else None, int(edited))
+            self.autosave.begin(self.project if edited else None, int(edited))
         self.state_changed.emit()
         self.saved.emit()
+
+    def _settle_in(self) -> None:
+        """Remember what the file and its folder are known by."""
+        self.access = access_of(self.path) or (self.access if self.path is not None else None)
+        self._home = identity_of(self.path.parent) if self.path is not None else None
+
+    def folder_now(self) -> Path | None:
+        """Return where the file's folder is by now, where it was renamed or moved while this window had it
+        open.
+        """
+        if self.path is None:
+            return None
+        journal = self.autosave.journal
+        return folder_now(self.path.parent, self._home, journal.path if journal is not None else None)
+
+    def follow(self, folder: Path) -> None:
+        """The folder of the project has another name, and all that lies in it has moved along."""
+        assert self.path is not None
+        self.path = folder / self.path.name
+        if self.lock is not None:
+            self.lock = Lock(self.path, self.owner, self.access)
+            self.lock.acquire()
+        self._settle_in()
+        self.keep_all()
+        self.state_changed.emit()
 
     # --- lock
 
     def _move_lock(self, target: Path) -> None:
-        lock = Lock(target, self.owner)
+        lock = Lock(target, self.owner, self.access)
         if self.lock is None or self.lock.path != lock.path:
             lock.acquire()  # where somebody else has it, the window has asked before
             if self.lock is not None:
@@ -326,64 +353,42 @@ class Document(QObject):
     @property
     def journal_place(self) -> Path:
         """Where this sitting keeps its edits."""
-        if self.path is None:
-            return journal_path(state_folder() / "untitled", self.owner.sitting)
-        return journal_path(self.path, self.owner.sitting)
-
-    def _begin_journal(self, base: Project | None, unsaved: int = 0) -> None:
-        """base: what the journal has to hold itself, since no file does; unsaved: how many edits that has
-        which no file has.
-        """
-        old, self._journal = self._journal, None
-        if old is not None:
-            old.close()
-        journal = Journal(self.journal_place, self.path, self.owner, self.digest)
-        if base is not None:
-            try:
-                journal.begin(base, unsaved)
-            except (FileError, OSError) as error:  # what was in the old one stays there
-                self._journal = journal  # which tries again with each edit
-                self.failed.emit(tr("Autosave is off: {error}", error=error))
-                return
-        if (
-            base is not None or not self.read_only
-        ):  # else it begins with the first edit, and with the project before that
-            self._journal = journal
-        if old is not None and (base is None or old.path != journal.path):
-            old.remove()
+        journal = self.autosave.journal
+        return journal.path if journal is not None else self.autosave.place
 
     def keep_all(self) -> None:
         """Write the whole project into the journal, since the file it builds on is another one now."""
-        if not self.dirty:
-            return
+        if self.dirty:
+            self.autosave.begin(*self.unsaved(self.project))
+
+    def unsaved(self, now: Project) -> tuple[Project, int, list[Done]]:
+        """Return what leads to the project as it is now: what it builds on, how many edits of that are in no
+        file, and the edits after it.
+        """
         stack = self.undo_stack
         clean = stack.cleanIndex()
         made = [stack.command(n) for n in range(max(0, clean), stack.index())]
         steps = [c for c in made if isinstance(c, _Change)]
-        if not steps:  # what was saved has been undone
-            self._begin_journal(self.project, 1)
-            return
-        self._begin_journal(steps[0].before, int(clean < 0))
-        for step in steps:
-            self._write_edit(step.before, step.after, step.text(), "done")
+        if not steps:  # what was saved has been undone, or nothing was done
+            return now, int(now is not self.common and now != self.common), []
+        done = [(step.before, step.after, step.text()) for step in steps]
+        return steps[0].before, int(clean < 0), done
 
     def secured(self) -> bool:
         """Return whether the journal is safely on the disk with every edit that is in no file."""
-        return self._journal is not None and self._journal.secure()
+        return self.autosave.secure()
 
     def touch_journal(self) -> None:
         """See `Journal.touch`."""
-        if self._journal is not None:
-            self._journal.touch()
+        if self.autosave.journal is not None:
+            self.autosave.journal.touch()
 
     def close_journal(self) -> None:
         """Forget the journal, and give the file back; when the user has saved or chosen to discard."""
         self._leave_file(None)
 
     def _leave_file(self, lock: Lock | None) -> None:
-        if self._journal is not None:
-            self._journal.remove()
-            self._journal = None
+        self.autosave.forget()
         if self.lock is not None and (lock is None or lock.path != self.lock.path):
             self.lock.release()
         self.lock = None
@@ -391,12 +396,5 @@ class Document(QObject):
     def _digest_now(self) -> str | None:
         try:
             return file_digest(self.path)
-        except OSError:
+        except FileError:
             return None
-
-
-def state_folder() -> Path:
-    """Return where recent projects and the journal of unsaved work are kept; made if need be."""
-    folder = Path(QStandardPaths.writableLocation(QStandardPaths.StandardLocation.AppDataLocation))
-    folder.mkdir(parents=True, exist_ok=True)
-    return folder

@@ -10,11 +10,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import QObject, QTimer, Signal
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from app.faults import is_foreseen
-from app.project.document import Document, state_folder
+from app.project.autosave import state_folder
+from app.project.document import Document
 from app.project.jobs import WORDS, Job, Jobs
 from app.project.keeper import Keeper
 from app.project.leftovers import FoundJournal, forget, keep_as_copy, look_beside
@@ -23,11 +24,14 @@ from app.project.opening import load_recovered, open_whole
 from app.project.outside import Outside
 from app.project.saver import Saver
 from app.project.unsaved import Unsaved, not_steps
+from app.project.writing import FolderGoneError
 from app.translation import tr, tr_error
 from metagraph.errors import FileError
+from metagraph.files import is_file
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.history import Step
 from metagraph.formats.locking import Lock
+from metagraph.formats.new_file import PRIVATE
 from metagraph.formats.recovery import Left
 from metagraph.formats.store import SUFFIX, Opened, absolute, read_project
 from metagraph.graph.model import Project
@@ -61,11 +65,14 @@ class Files(QObject):
             lambda path, note: self.report.emit(tr("Saved {name}, but", name=path.name), [note])
         )
         self.saver.failed.connect(self._not_saved)
+        self.saver.gone.connect(self._folder_gone)
         self.unsaved = Unsaved(self)
         self.outside = Outside(self)
         self.keeper = Keeper(document, jobs, self)
         self.keeper.told.connect(self.told)
         self.network = NetworkFiles(self)
+        self._warnings: list[str] = []
+        document.warned.connect(self._warn)
         self._asked_for: Lock | None = None  # of the place that is being saved to
         self.closed = ""  # why no other project or clip may be brought in now, in words
 
@@ -108,16 +115,25 @@ class Files(QObject):
         if template:
             self._open(path, left, template=True, name=name)
             return
+        self._look(path, left, None)
+
+    def go_on(self, chosen: Left, path: Path) -> None:
+        """Open a project, and go on with what a journal adds to it."""
+        self._look(path, self.document.project, chosen)
+
+    def _look(self, path: Path, before: Project, chosen: Left | None) -> None:
         owner = self.document.owner
         self.jobs.start(
             tr("Opening {name}", name=path.name),
             lambda _: look_beside(path, owner),
-            lambda found: self._looked(path, left, found),
+            lambda found: self._looked(path, before, found, chosen),
             self.show_failure,
         )
 
-    def _looked(self, path: Path, before: Project, found: FoundJournal) -> None:
-        """Ask about what was found beside a project file, and open it."""
+    def _looked(self, path: Path, before: Project, found: FoundJournal, chosen: Left | None = None) -> None:
+        """Ask about what was found beside a project file, and open it. chosen: what to go on with, where that
+        was asked before.
+        """
         # Dialogs are imported when there is something to ask: the first picture does not wait for them.
         from app.project.questions import ask_held
         from app.project.recovering import ask_recover
@@ -134,6 +150,9 @@ class Files(QObject):
             read_only = answer == "read only"
             if answer == "take over" and found.lock is not None:
                 holder = found.lock.acquire(take_over=True)
+        if chosen is not None:
+            self._open(path, before, found, ((chosen, "recover"),), read_only=read_only)
+            return
         choices = ask_recover(self.window, found, path) if found.left else ()
         if choices is None:
             _release(found.lock, self.document)
@@ -166,7 +185,7 @@ class Files(QObject):
             kept = [keep_as_copy(other, path) for other in copies]
             if chosen is None:
                 return open_whole(path, job.tell), None, kept, ()
-            common = chosen.common if chosen.behind else read_project(path)
+            common = read_project(path) if is_file(path) and not chosen.behind else chosen.common
             opened, steps = load_recovered(chosen, path.parent, job.tell)
             return replace(opened, digest=chosen.digest), common, kept, steps
 
@@ -191,9 +210,13 @@ class Files(QObject):
                 )
                 self._remember(path)
             over = chosen is not None and self.document.secured()  # else it stays, and is offered again
-            for other in [*dropped, *copies, *([chosen] if chosen is not None and over else [])]:
+            for other in [*copies, *([chosen] if chosen is not None and over else [])]:
                 forget(other.path)
+            for other in dropped:
+                forget(other.path, discard=True)
             self.opened.emit()
+            if chosen is not None:
+                self.tell_lost(chosen)
             if chosen is not None and chosen.behind:
                 self.look_at_file()
             if kept:
@@ -208,6 +231,19 @@ class Files(QObject):
             self.show_failure(error)
 
         self.jobs.start(tr("Opening {name}", name=path.name), work, done, failed)
+
+    def tell_lost(self, left: Left) -> None:
+        """Say which edits of a damaged journal are lost."""
+        from app.project.recovering import lost_words
+
+        if left.is_damaged:
+            kept = tr("The damaged file is kept: {place}", place=left.path.parent)
+            self.report.emit(tr("The kept edits were damaged"), [*lost_words(left), kept])
+
+    def recover(self) -> None:
+        """Offer all work that is in no file, wherever it lies."""
+        if not self.refuse():
+            self.unsaved.offer_all()
 
     def recover_untitled(self, otherwise: Callable[[], object] | None = None) -> None:
         """Offer what was never saved before a crash; where nothing is, or is wanted, do `otherwise`."""
@@ -237,7 +273,7 @@ class Files(QObject):
             return False
         path = Path(name)
         path = path if path.suffix in (".yaml", ".yml") else path.with_name(path.name + SUFFIX)
-        lock = Lock(path, self.document.owner)
+        lock = Lock(path, self.document.owner, self.document.access)
         holder = lock.acquire()
         if holder is not None:
             from app.project.questions import holder_words
@@ -260,10 +296,40 @@ class Files(QObject):
         self.saver.save(path)
         return True
 
-    def _saved(self, path: Path) -> None:
+    def _saved(self, path: Path, anew: bool) -> None:
         self._asked_for = None  # the document's now
         self._remember(path)
-        self.told.emit(tr("Saved {name}", name=path.name))
+        if anew and path == self.document.path:
+            self.told.emit(tr("{name} was not there any more. It has been written again.", name=path.name))
+        else:
+            self.told.emit(tr("Saved {name}", name=path.name))
+
+    def _folder_gone(self, error: FolderGoneError) -> None:
+        """The folder of the project is not at its place: ask where to save it."""
+        from app.project.questions import ask_folder_gone
+
+        answer = ask_folder_gone(self.window, error)
+        if answer == "there" and error.place is not None:
+            self.document.follow(error.place)
+            self.saver.save()
+        elif answer == "save as":
+            self.save_as()
+
+    def _warn(self, words: str) -> None:
+        """Say what the user must have read: at once, and until it was looked at."""
+        self._warnings.append(words)
+        QTimer.singleShot(0, self._show_warnings)  # a project that is being shown clears what was said before
+
+    def _show_warnings(self) -> None:
+        if not self._warnings:
+            return
+        warnings = list(dict.fromkeys(self._warnings))
+        self._warnings.clear()
+
+        def show() -> None:
+            self.report.emit(tr("Your unsaved edits"), warnings)
+
+        self.noticed.emit(tr("About your unsaved edits: look…"), "\n".join(warnings), show)
 
     def _not_saved(self, error: Exception, path: Path | None) -> None:
         if self._asked_for is not None:
@@ -302,7 +368,7 @@ class Files(QObject):
     def _remember(self, path: Path) -> None:
         names = [str(path.resolve()), *(str(p) for p in self.recent() if p != path.resolve())]
         try:
-            write_atomically(state_folder() / "recent.json", json.dumps(names[:RECENT]).encode())
+            write_atomically(state_folder() / "recent.json", json.dumps(names[:RECENT]).encode(), PRIVATE)
         except (FileError, OSError):
             self.told.emit(tr("The list of recent projects could not be written."))
 

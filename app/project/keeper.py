@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
-
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.project.document import Document
@@ -35,12 +33,21 @@ class Keeper(QObject):
         document, lock = self.document, self.document.lock
 
         def work(_: object) -> bool:
-            with suppress(OSError):
-                document.touch_journal()
+            document.touch_journal()
             return lock is None or lock.refresh()
 
         def done(ours: bool) -> None:
             self._busy = False
+            document.autosave.look_after()
+            if lock is not None and lock.made_again and document.path is not None:
+                lock.made_again = False
+                document.warned.emit(
+                    tr(
+                        "Another program removed the file beside {name} that tells other windows that it is "
+                        "open. It is there again.",
+                        name=document.path.name,
+                    )
+                )
             if not ours and document.lock is lock and document.path is not None:
                 document.lose_lock()
                 self.told.emit(

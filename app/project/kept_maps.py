@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from app.project.document import state_folder
+from app.project.autosave import state_folder
 from metagraph.formats.atomic import write_atomically
 from metagraph.motion.joint_map import JointMap, RetargetError
 

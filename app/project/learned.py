@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QLockFile, QObject, QSettings, Signal
 
-from app.project.document import Document, state_folder
+from app.project.autosave import state_folder
+from app.project.document import Document
 from app.translation import tr
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically

@@ -4,16 +4,21 @@ ended in a crash.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import field, replace
 from pathlib import Path
 
-from app.project.document import state_folder
+from app.project.autosave import shelter, state_folder
 from metagraph.errors import FileError
+from metagraph.files import is_file
 from metagraph.formats.atomic import sweep
+from metagraph.formats.journal_register import JournalRegister
+from metagraph.formats.journal_search import every_journal, journals_for, project_of
 from metagraph.formats.locking import Holder, Lock, Owner
-from metagraph.formats.recovery import Left, journals_in, left_journals, read_journal
+from metagraph.formats.new_file import access_of
+from metagraph.formats.recovery import DAMAGED, Left, in_order, journals_in, read_journal, retire
 from metagraph.formats.store import SUFFIX, load_returned, save_project
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
@@ -37,44 +42,73 @@ class FoundJournal:
     poses: Mapping[Path, Clip] = field(default_factory=dict)
 
 
+def register() -> JournalRegister:
+    """Return the list of all journals of this user."""
+    return JournalRegister(shelter(state_folder()))
+
+
 def look_beside(path: Path, owner: Owner) -> FoundJournal:
-    """Take the lock of a project file, and read the journals that were left beside it; what was left
-    half-written there goes.
+    """Take the lock of a project file, and read the journals that belong to it, wherever they are; what was
+    left half-written there goes. A file that is gone has journals, too.
     """
-    if not path.is_file():
+    journals = journals_for(path, register())
+    if not is_file(path) and not (journals and path.parent.is_dir()):
         return FoundJournal(None, None, (), ())
     sweep(path.resolve().parent)
     lock = Lock(path, owner)
-    return FoundJournal(lock, lock.acquire(), *_read(left_journals(path), path))
+    holder = lock.acquire()
+    return FoundJournal(lock, holder, *_read([(journal, path) for journal in journals]))
 
 
 def untitled_journals() -> list[Path]:
-    """Return the journals of projects never saved whose windows are gone."""
-    return journals_in(state_folder(), UNTITLED)
+    """Return the journals that opening no project would offer, the latest last: of projects never saved whose
+    windows are gone, and of those whose file is not there any more.
+    """
+    folder = state_folder()
+    homeless = []
+    for journal in every_journal(register(), ()):
+        project = project_of(journal)
+        if project is not None and not journal.name.endswith(DAMAGED) and not is_file(project):
+            homeless.append(journal)
+    return in_order([*journals_in(folder, UNTITLED), *homeless])
+
+
+def known_journals(recent: Sequence[Path]) -> list[Path]:
+    """Return every journal there is whose window is gone, the latest last. recent: projects in whose folders
+    they are looked for, too.
+    """
+    found = [*journals_in(state_folder(), UNTITLED), *untitled_damaged()]
+    return in_order([*found, *every_journal(register(), dict.fromkeys(path.parent for path in recent))])
+
+
+def untitled_damaged() -> list[Path]:
+    return journals_in(state_folder(), rf"({UNTITLED}){re.escape(DAMAGED)}")
 
 
 def read_untitled(journals: Sequence[Path]) -> FoundJournal:
+    """Read journals, each with the project file it belongs to."""
     sweep(state_folder())
-    return FoundJournal(None, None, *_read(journals, None))
+    return FoundJournal(None, None, *_read([(journal, project_of(journal)) for journal in journals]))
 
 
 def _read(
-    journals: Sequence[Path], saved: Path | None
+    journals: Sequence[tuple[Path, Path | None]],
 ) -> tuple[tuple[Left, ...], tuple[str, ...], dict[Path, Clip]]:
     left: list[Left] = []
     notes: list[str] = []
-    for journal in journals:
+    folders: dict[Path, Path | None] = {}
+    for journal, saved in journals:
         try:
-            found = read_journal(journal, saved)
+            found = read_journal(journal, saved if is_file(saved or "") else None)
         except FileError as error:
             notes.append(f"{error} ({journal})")
             continue
         if found is None:
             forget(journal)  # all of it was saved, or nothing edited
             continue
+        folders[journal] = saved.parent if saved is not None else None
         left.insert(0, found)
-    folder = saved.parent if saved is not None else None
-    poses = {found.path: pose_of(found.project, folder) for found in left[:PICTURES]}
+    poses = {found.path: pose_of(found.project, folders[found.path]) for found in left[:PICTURES]}
     return tuple(left), tuple(notes), {path: clip for path, clip in poses.items() if clip is not None}
 
 
@@ -93,10 +127,16 @@ def pose_of(project: Project, folder: Path | None) -> Clip | None:
     return None
 
 
-def forget(journal: Path) -> None:
-    """Remove a journal that was taken over or declined; where that is not allowed it is offered again."""
+def forget(journal: Path, discard: bool = False) -> None:
+    """Remove a journal that was taken over or declined; where that is not allowed it is offered again. A
+    damaged one is kept under another name, until somebody discards it.
+    """
     with suppress(OSError):
-        journal.unlink(missing_ok=True)
+        if discard:
+            journal.unlink(missing_ok=True)
+        else:
+            retire(journal)
+        register().remove(journal)
 
 
 def keep_as_copy(left: Left, saved: Path) -> Path:
@@ -109,5 +149,5 @@ def keep_as_copy(left: Left, saved: Path) -> Path:
         place := saved.with_name(f"{stem} recovered{f' {number}' if number > 1 else ''}{SUFFIX}")
     ).exists():
         number += 1
-    save_project(left.project, place)
+    save_project(left.project, place, like=access_of(saved) or access_of(left.path))
     return place

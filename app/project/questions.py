@@ -20,14 +20,15 @@ from PySide6.QtWidgets import (
 )
 
 from app.look.theme import strengthen
-from app.project.writing import FileChangedError
-from app.translation import tr, tr_told
+from app.project.writing import FileChangedError, FolderGoneError
+from app.translation import tr, tr_error, tr_told
 from metagraph.formats.locking import Holder
 from metagraph.graph.differences import differences
 from metagraph.graph.model import Project
 
 Role = QMessageBox.ButtonRole
 Held = Literal["read only", "copy", "take over"]
+Gone = Literal["there", "save as"]
 Changed = Literal["merge", "save as", "reload", "anyway"]
 
 
@@ -81,6 +82,29 @@ def ask_held(window: QWidget, path: Path, holder: Holder) -> Held | None:
     box.setDefaultButton(first)
     box.exec()
     box.deleteLater()  # its parent would keep it
+    return answers.get(box.clickedButton())
+
+
+def ask_folder_gone(window: QWidget, error: FolderGoneError) -> Gone | None:
+    """Ask where to save a project whose folder is not there any more."""
+    box = QMessageBox(
+        QMessageBox.Icon.Warning,
+        tr("Not saved"),
+        tr("The folder of {name} is not there any more.", name=error.path.name),
+        parent=window,
+    )
+    box.setInformativeText(tr_error(error))
+    there = (
+        box.addButton(tr("Save in {name}", name=error.place.name), Role.AcceptRole) if error.place else None
+    )
+    elsewhere = box.addButton(tr("Save as…"), Role.AcceptRole)
+    box.addButton(QMessageBox.StandardButton.Cancel)
+    box.setDefaultButton(there or elsewhere)
+    box.exec()
+    box.deleteLater()  # its parent would keep it
+    answers: dict[object, Gone] = {elsewhere: "save as"}
+    if there is not None:
+        answers[there] = "there"
     return answers.get(box.clickedButton())
 
 

@@ -24,7 +24,12 @@ from app.look.theme import strengthen, theme
 from app.project.leftovers import FoundJournal
 from app.project.questions import moment_words
 from app.translation import tr
+from metagraph.errors import FileError
+from metagraph.files import is_file
+from metagraph.formats.journal_records import LostEdit
+from metagraph.formats.journal_search import project_of
 from metagraph.formats.recovery import Left
+from metagraph.formats.store import read_project
 from metagraph.graph.model import KINDS, LAYERS, Project
 from metagraph.motion.clip import Clip
 from preview.joints import above, drawn
@@ -37,12 +42,16 @@ WORDS: dict[Choice, str] = {
     "discard": tr("Discard"),
 }
 PICTURE = QSize(132, 76)  # pixels
+LOST = 5  # damaged edits that are named
 SHOWN = 4  # sittings that are seen at once
 
 
 def left_words(left: Left, saved: Path | None) -> tuple[str, str]:
-    """Return what a sitting is called, and what is to be known of it."""
-    name = saved.name if saved is not None else left.project.name or tr("untitled")
+    """Return what a sitting is called, and what is to be known of it. saved: the project that is being
+    opened; None where any sitting is listed.
+    """
+    named = saved or project_of(left.path)
+    name = named.name if named is not None else left.project.name or tr("untitled")
     words = [
         tr(
             "{edits} in no file, the last of {moment}",
@@ -51,11 +60,55 @@ def left_words(left: Left, saved: Path | None) -> tuple[str, str]:
         ),
         f"{many(len(left.project.clips), 'clip')}, {many(sum(1 for _ in left.project.actions()), 'action')}",
     ]
-    if left.behind:
+    if saved is not None and left.saved is not None and left.saved.name != saved.name:
+        words.append(tr("Made when the project file was called {name}", name=left.saved.name))
+    if saved is None and named is not None:
+        words.append(tr("In {folder}", folder=named.parent))
+    if named is not None and not is_file(named):
+        words.append(tr("The project file is not there any more; its text is kept with the edits."))
+    elif named is not None and left.behind and is_junk(named):
+        words.append(tr("The project file cannot be read any more; its text is kept with the edits."))
+    elif left.behind:
         words.append(tr("The file has been saved by somebody else since: both can be merged."))
     if left.worked_in:
         words.append(tr("The file has changed since: the edits are worked into what it is now."))
-    return name if saved is not None else tr("{name}, never saved", name=name), "\n".join(words)
+    words += lost_words(left)
+    return name if named is not None else tr("{name}, never saved", name=name), "\n".join(words)
+
+
+def lost_words(left: Left) -> list[str]:
+    """Return what a damaged journal cannot give back, a line each; nothing for a whole one."""
+    words = []
+    if left.lost:
+        words.append(
+            tr("1 edit is damaged and cannot be recovered:")
+            if len(left.lost) == 1
+            else tr("{count} edits are damaged and cannot be recovered:", count=len(left.lost))
+        )
+        words += [_lost_edit(lost) for lost in left.lost[:LOST]]
+        if len(left.lost) > LOST:
+            words.append(tr("and {count} more", count=len(left.lost) - LOST))
+    if left.doubtful:
+        words.append(
+            tr("What the edits begin with is damaged, too: a value in it may be wrong. Look it through.")
+        )
+    return words
+
+
+def _lost_edit(lost: LostEdit) -> str:
+    step = tr("'{step}'", step=lost.step) if lost.step else tr("one whose name is damaged, too")
+    if lost.at is None:
+        return step
+    return tr("{step}, at {moment}", step=step, moment=moment_words(lost.at))
+
+
+def is_junk(path: Path) -> bool:
+    """Return whether a project file cannot be read."""
+    try:
+        read_project(path, [])
+    except FileError:
+        return True
+    return False
 
 
 def ask_recover(window: QWidget, found: FoundJournal, saved: Path | None) -> tuple[Choice, ...] | None:
@@ -86,7 +139,7 @@ class RecoverDialog(QDialog):
         title = (
             tr("{name} was not closed properly", name=saved.name)
             if saved is not None
-            else tr("Work that was never saved")
+            else tr("Work that was not saved")
         )
         heading = QLabel(title, self)
         heading.setProperty("heading", True)

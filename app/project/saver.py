@@ -8,20 +8,22 @@ from PySide6.QtCore import QEventLoop, QObject, Signal
 
 from app.project.document import Document
 from app.project.jobs import Jobs
-from app.project.writing import FileChangedError, Writing
+from app.project.writing import FileChangedError, FolderGoneError, Writing
 from app.translation import tr, tr_told
 
 
 class Saver(QObject):
-    """saved: the path that was written. noted: that path, and a remark. failed: why not, and the place asked
-    for (None: its own). changed: FileChangedError, when another program has written the file. idle: nothing
-    is being written any more.
+    """saved: the path that was written, and whether its own file was not there any more. noted: that path,
+    and a remark. failed: why not, and the place asked for (None: its own). changed: FileChangedError, when
+    another program has written the file. gone: FolderGoneError, when its folder is not there any more. idle:
+    nothing is being written any more.
     """
 
-    saved = Signal(object)
+    saved = Signal(object, bool)
     noted = Signal(object, str)
     failed = Signal(object, object)
     changed = Signal(object)
+    gone = Signal(object)
     idle = Signal()
 
     def __init__(self, document: Document, jobs: Jobs, parent: QObject) -> None:
@@ -79,7 +81,7 @@ class Saver(QObject):
         if not self._left:
             self.document.end_saving(writing)
         self._writing = None
-        self.saved.emit(writing.target)
+        self.saved.emit(writing.target, writing.anew)
         if writing.note is not None:
             self.noted.emit(writing.target, tr_told(writing.note))
         self._go_on()
@@ -91,6 +93,8 @@ class Saver(QObject):
             if not self._left:
                 self.document.keep_all()
                 self.changed.emit(error)
+        elif isinstance(error, FolderGoneError) and not self._left:
+            self.gone.emit(error)
         else:
             self.failed.emit(error, path)
         self._go_on()

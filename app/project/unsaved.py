@@ -1,5 +1,5 @@
-"""Projects that were never saved before a crash: each offered, one gone on with, the others kept or
-discarded.
+"""Work that is in no file after a crash, wherever it lies: each sitting offered, one gone on with, the others
+kept or discarded.
 """
 
 from __future__ import annotations
@@ -10,34 +10,52 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 
-from app.project.leftovers import FoundJournal, forget, read_untitled, untitled_journals
+from app.project.leftovers import (
+    FoundJournal,
+    forget,
+    known_journals,
+    read_untitled,
+    untitled_journals,
+)
 from app.project.opening import load_recovered
 from app.translation import tr
 from metagraph.formats.history import Step
+from metagraph.formats.journal_search import project_of
 from metagraph.formats.recovery import Left
-from metagraph.formats.store import Opened
+from metagraph.formats.store import Opened, absolute
 
 if TYPE_CHECKING:
     from app.project.files import Files
 
 
 class Unsaved(QObject):
-    """The part of a window's files that has none yet."""
+    """The part of a window's files that is in journals alone."""
 
     def __init__(self, files: Files) -> None:
         super().__init__(files)
         self.files = files
 
     def offer(self, otherwise: Callable[[], object] | None = None) -> None:
-        """Offer every one; where nothing is, or is gone on with, do `otherwise`, or say so."""
+        """Offer what opening no project would offer; where nothing is, or is gone on with, do `otherwise`, or
+        say so.
+        """
         journals = untitled_journals()
         if not journals:
             self._nothing(otherwise)
             return
+        self._read(lambda: journals, otherwise)
+
+    def offer_all(self) -> None:
+        """Offer every journal there is, wherever it lies."""
+        recent = self.files.recent()
+        path = self.files.document.path
+        self._read(lambda: known_journals([*recent, path] if path is not None else recent), None)
+
+    def _read(self, journals: Callable[[], Sequence[Path]], otherwise: Callable[[], object] | None) -> None:
         files = self.files
         files.jobs.start(
             tr("Recovering"),
-            lambda _: read_untitled(journals),
+            lambda _: read_untitled(journals()),
             lambda found: self._offer(found, otherwise),
             files.show_failure,
         )
@@ -51,7 +69,7 @@ class Unsaved(QObject):
                 if count == 1
                 else tr("{count} unsaved projects can be recovered: look…", count=count)
             )
-            tip = tr("Work that was never saved, of windows that were not closed properly")
+            tip = tr("Work that is in no file, of windows that were not closed properly")
             self.files.noticed.emit(words, tip, self.offer)
 
     def _nothing(self, otherwise: Callable[[], object] | None) -> None:
@@ -75,12 +93,10 @@ class Unsaved(QObject):
             if choice == "recover":
                 chosen = left
             elif choice == "discard":
-                forget(left.path)
+                forget(left.path, discard=True)
         kept = sum(choice == "later" for choice in choices)
         if kept:
-            files.told.emit(
-                tr("{kept} kept: File > Recover unsaved work offers what is kept again.", kept=kept)
-            )
+            files.told.emit(tr("{kept} kept: File > Recover offers what is kept again.", kept=kept))
         if chosen is None:
             if otherwise is not None:
                 otherwise()
@@ -88,22 +104,32 @@ class Unsaved(QObject):
             self._take_over(chosen)
 
     def _take_over(self, left: Left) -> None:
+        """Go on with a sitting: in its project file's place, where that has a folder still."""
         files = self.files
         document, before = files.document, files.document.project
+        saved = project_of(left.path)
+        if saved is not None and saved.parent.is_dir():
+            files.go_on(left, saved)
+            return
+        folder = saved.parent if saved is not None else Path("/")
 
         def done(result: tuple[Opened, tuple[Step, ...]]) -> None:
             if document.project is not before and not files.may_leave():
                 return  # it is offered again another time
             opened, steps = result
-            document.load(opened.project, None, not_steps(left, steps), steps=steps)
+            if saved is not None:  # its folder is gone: it is a project that was never saved
+                steps = ()
+            project = opened.project if saved is None else absolute(opened.project, folder)
+            document.load(project, None, not_steps(left, steps), steps=steps)
             if document.secured():
                 forget(left.path)
             files.opened.emit()
+            files.tell_lost(left)
             if opened.notes:
                 files.report.emit(tr("It was recovered, but"), list(opened.notes))
 
         files.jobs.start(
-            tr("Recovering"), lambda job: load_recovered(left, Path("/"), job.tell), done, files.show_failure
+            tr("Recovering"), lambda job: load_recovered(left, folder, job.tell), done, files.show_failure
         )
 
 

@@ -7,11 +7,15 @@ from dataclasses import field, replace
 from pathlib import Path
 
 from metagraph.errors import FileError
+from metagraph.files import is_file
+from metagraph.formats.appended_file import Identity, folder_now, identity_of
 from metagraph.formats.journal import Journal
+from metagraph.formats.new_file import Access
 from metagraph.formats.store import SUFFIX, content_digest, encoded, file_digest, moved, read_with_digest
 from metagraph.formats.versions import write_project
 from metagraph.graph.model import Project
 from metagraph.records import dataclass
+from metagraph.wording import told
 
 
 class FileChangedError(Exception):
@@ -24,13 +28,30 @@ class FileChangedError(Exception):
         self.path, self.theirs, self.digest, self.why = path, theirs, digest, why
 
 
+class FolderGoneError(FileError):
+    """The folder of a project is not there any more. place: where it is by now, None where nobody knows."""
+
+    def __init__(self, path: Path, place: Path | None) -> None:
+        self.place = place
+        cause = told("its folder {folder} is not there any more", folder=path.parent)
+        remedy = told("Save the project in another place; your edits are kept until then.")
+        if place is not None:
+            cause = told("its folder {folder} is now {place}", folder=path.parent, place=place)
+            remedy = told("Save the project there, or in another place; your edits are kept until then.")
+        super().__init__(path, cause, told("on saving it"), remedy)
+
+    def __reduce__(self) -> tuple[type[FolderGoneError], tuple[Path, Path | None]]:  # type: ignore[override]
+        return type(self), (self.path, self.place)
+
+
 @dataclass
 class Writing:
     """One writing of a project as it was when it was asked for.
 
     was: the file its paths are relative to. mark: where it stands in the journal. versions: how many earlier
-    ones are kept. When it is written: after, the project as the file has it, digest, that file's SHA-256, and
-    note, why its earlier version could not be kept.
+    ones are kept. home: what the folder of its own file is known by. access: who may read it. When it is
+    written: after, the project as the file has it, digest, that file's SHA-256, note, why its earlier version
+    could not be kept, and anew, whether its own file was not there any more.
     """
 
     project: Project
@@ -39,6 +60,9 @@ class Writing:
     journal: Journal | None = None
     mark: int | None = None
     versions: int = 0
+    home: Identity | None = None
+    access: Access | None = None
+    anew: bool = False
     after: Project = field(default_factory=Project)
     digest: str = ""
     note: str | None = None
@@ -47,6 +71,9 @@ class Writing:
         """Write the file whole or not at all. expected: the digest it has to have. Raises FileError,
         FileChangedError.
         """
+        if self.target == self.was:
+            self._look_for_folder()
+            self.anew = not is_file(self.target)
         self.after = self.project
         if self.target != self.was:
             self.after = replace(moved(self.project, self.was, self.target), name=project_name(self.target))
@@ -59,14 +86,26 @@ class Writing:
         if self.journal is not None and self.mark is not None:
             with suppress(FileError):  # what cannot be journalled is to be saved all the same
                 self.journal.settle(self.mark, self.digest)
-        self.note = write_project(self.target, content, self.versions)
+        self.note = write_project(self.target, content, self.versions, self.access)
+
+    def _look_for_folder(self) -> None:
+        """Raise FolderGoneError where the folder has gone or has another name: nobody looks for the project
+        in a new one.
+        """
+        folder = self.target.parent
+        there = identity_of(folder)
+        if there is None or (self.home not in (None, there) and not is_file(self.target)):
+            journal = self.journal.path if self.journal is not None else None
+            place = folder_now(folder, self.home, journal)
+            if there is None or place is not None:
+                raise FolderGoneError(self.target, place)
 
 
 def file_changed(path: Path, expected: str) -> FileChangedError | None:
     """Return how a project file has changed; None when it has not, or is not there."""
     try:
         now = file_digest(path)
-    except OSError:
+    except FileError:
         return None  # whoever writes or reads it will say so
     if now is None or now == expected:
         return None

@@ -19,7 +19,8 @@ from PySide6.QtWidgets import (
 
 from app import faults
 from app.look.theme import strengthen
-from app.project.document import Document, state_folder
+from app.project.autosave import state_folder
+from app.project.document import Document
 from app.translation import tr, tr_error
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically

@@ -16,6 +16,7 @@ from pathlib import Path
 
 from metagraph.errors import FileError
 from metagraph.formats.locking import mark_is_gone, process_mark
+from metagraph.formats.new_file import Access, access_of, open_new
 from metagraph.formats.outputs import being_written
 
 FORSAKEN = 86_400.0  # seconds after which an unfinished file of a computer that cannot be asked is nobody's
@@ -29,11 +30,12 @@ _LATER: ContextVar[list[Path] | None] = ContextVar("files that are synced later"
 _SWEPT: set[str] = set()  # folders this process has looked through
 
 
-def write_atomically(path: Path, content: bytes) -> None:
+def write_atomically(path: Path, content: bytes, like: Access | None = None) -> None:
     """Write a file whole or not at all; a link is kept, its target written. Raises FileError.
 
-    When it returns, the file survives a power cut, as far as the system keeps its word. What processes that
-    are gone have left half-written in that folder is swept, once a process.
+    like: who may read it where there is none yet (`new_file.access_of` another file); what is replaced keeps
+    its own mode. When it returns, the file survives a power cut, as far as the system keeps its word. What
+    processes that are gone have left half-written in that folder is swept, once a process.
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -45,7 +47,7 @@ def write_atomically(path: Path, content: bytes) -> None:
             raise PermissionError(errno.EACCES, "it is read-only")
         later = _LATER.get()
         with being_written(path, content):
-            replace_file(path, content, sync=later is None)
+            replace_file(path, content, sync=later is None, like=like)
         if later is not None:
             later.append(path)
     except OSError as error:
@@ -93,24 +95,21 @@ def _sync(path: Path) -> None:
         raise _unwritable(path, error) from None
 
 
-def replace_file(path: Path, content: bytes, sync: bool = True) -> None:
+def replace_file(path: Path, content: bytes, sync: bool = True, like: Access | None = None) -> None:
     """Put a file in the place of what is there, or leave that as it was. Raises OSError.
 
-    sync: wait until it is safely on the disk; before what is there goes.
+    sync: wait until it is safely on the disk; before what is there goes. like: see `write_atomically`.
     """
     temporary: Path | None = path.with_name(unfinished())
     assert temporary is not None
     try:
-        # The system takes the umask off; asking for it would mean to set it, for every thread of the process.
-        handle = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY | getattr(os, "O_BINARY", 0), 0o666)
+        handle = open_new(temporary, access_of(path) or like)
         try:
             write_all(handle, content)
             if sync:
                 os.fsync(handle)
         finally:
             os.close(handle)
-        with suppress(FileNotFoundError):
-            temporary.chmod(path.stat().st_mode & 0o777)
         temporary.replace(path)
         temporary = None
     finally:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
 
-from metagraph.formats.fields import Data, DataError, floats, get, known, one_of, plain
+from metagraph.formats.fields import Data, DataError, floats, get, known, number, one_of, plain
 from metagraph.motion.contact_spans import EASE, HANDS, PLACES, ContactKey, ContactSpan
 
 _FIELDS = ("hand", "place", "to", "start", "end", "ease_in", "ease_out", "keys")
@@ -59,4 +59,4 @@ def _key(row: object, where: str) -> ContactKey:
     if not 0.9 < size < 1.1:
         raise DataError(where, "should end with a quaternion of length 1")
     a, b, c, d = turn if abs(size - 1) < 1e-4 else (q / size for q in turn)
-    return ContactKey(time, (x, y, z), (a, b, c, d))
+    return ContactKey(float(number(time)), (x, y, z), (a, b, c, d))

@@ -18,6 +18,7 @@ import numpy as np
 from metagraph.formats.clip_identity import without_clip_identity
 from metagraph.formats.contact_data import contacts_data, contacts_from
 from metagraph.formats.fields import (
+    LARGEST,
     Data,
     DataError,
     fill,
@@ -32,6 +33,7 @@ from metagraph.formats.fields import (
     plain,
     sparse,
     texts,
+    too_large,
 )
 from metagraph.formats.manual_data import manual_data, manual_from
 from metagraph.formats.takes import REPAIRS
@@ -227,12 +229,15 @@ def _rounded(value: Any) -> Any:
 
 
 def struct_from(data: Any, kind: Any, where: str) -> Any:
-    """Return one of `STRUCTS` from data. Raises DataError."""
+    """Return one of `STRUCTS` from data, its numbers rounded as they are written. Raises DataError."""
     try:
-        return msgspec.convert(data, kind)
+        return msgspec.convert(_rounded(data), kind)
     except msgspec.ValidationError as error:
         field, _, rest = words_of(error).rpartition(": ")
         raise DataError(f"{where}.{field}" if field else where, rest) from None
+    except (ValueError, TypeError, RecursionError):
+        words = f"should be a number from {-LARGEST:g} to {LARGEST:g}"
+        raise DataError(too_large(data, where) or where, words) from None
 
 
 # --- reading

@@ -97,8 +97,8 @@ def named(value: Any) -> str:
 
 
 def get(data: Any, key: str, kind: Any, where: str, default: Any = MISSING) -> Any:
-    """Return a field checked for its type, `default` where it is missing or empty; numbers are finite and not
-    beyond `LARGEST`.
+    """Return a field checked for its type, `default` where it is missing or empty; numbers are finite, not
+    beyond `LARGEST`, and rounded as they are written: what can be read can be saved.
     """
     if type(data) is not dict and not isinstance(data, Mapping):
         raise DataError(where, f"should be fields, found {named(data)}")
@@ -115,7 +115,7 @@ def get(data: Any, key: str, kind: Any, where: str, default: Any = MISSING) -> A
         raise DataError(place, f"should be a finite number, found {named(value)}")
     if isinstance(value, dict) and not all(isinstance(k, str) for k in value):
         raise DataError(place, "should be fields with names")
-    return float(value) if kind is float else value
+    return float(number(value)) if kind is float else value
 
 
 def known(data: Data, allowed: Collection[str], where: str) -> None:
@@ -127,6 +127,19 @@ def known(data: Data, allowed: Collection[str], where: str) -> None:
             near = get_close_matches(str(key), allowed, 1)
             hint = f"; did you mean '{near[0]}'?" if near else ""
             raise DataError(f"{where}.{key}" if where else str(key), f"is not a field known here{hint}")
+
+
+def too_large(data: Any, where: str) -> str | None:
+    """Return the place of a number in plain data that no project may hold, None where there is none."""
+    if isinstance(data, dict | list):
+        inside = data.items() if isinstance(data, dict) else enumerate(data)
+        for key, value in inside:
+            place = f"{where}[{key}]" if isinstance(data, list) else f"{where}.{key}"
+            if found := too_large(value, place):
+                return found
+    elif isinstance(data, int | float) and not abs(data) <= LARGEST:
+        return where
+    return None
 
 
 def one_of(value: Any, allowed: tuple[str, ...], where: str) -> Any:

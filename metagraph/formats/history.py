@@ -11,7 +11,8 @@ from typing import Any
 from metagraph.formats.data import FORMAT, from_data, to_data
 from metagraph.formats.fields import Data, DataError
 from metagraph.formats.journal import ABOUT, KEYED
-from metagraph.formats.recovery import Left, Replay
+from metagraph.formats.recovery import Left
+from metagraph.formats.replay import Replay
 from metagraph.graph.model import ClipEntry, MetaGraph, Project
 from metagraph.records import dataclass
 

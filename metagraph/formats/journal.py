@@ -1,18 +1,18 @@
 """The autosave journal: every finished edit is appended at once, so a crash loses nothing that was finished.
 
 A journal belongs to one sitting at a saved project file (or at none, for a project never saved) and begins
-with the file's SHA-256. Each line after that is one edit as JSON: what changed in the project's plain data. A
-torn last line is ignored. While the project is saved, edits go on: a `mark` stands where the saved project
-was, and once more, with the SHA-256 of the file that is about to be written, before it is. So whichever of
-the two files a crash leaves, the edits after it are known. `recovery` reads journals.
+with the file's SHA-256. Each record after that (`journal_records`) is one edit: what changed in the project's
+plain data. A torn last record is ignored. While the project is saved, edits go on: a `mark` stands where the
+saved project was, and once more, with the SHA-256 of the file that is about to be written, before it is. So
+whichever of the two files a crash leaves, the edits after it are known. `recovery` reads journals.
 """
 
 from __future__ import annotations
 
-import json
 import os
 import threading
-from collections.abc import Callable, Mapping
+import time
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from itertools import compress
 from operator import is_not
@@ -23,7 +23,7 @@ from weakref import ref
 import msgspec
 
 from metagraph.errors import FileError
-from metagraph.formats.atomic import replace_file, write_all
+from metagraph.formats.appended_file import AppendedFile
 from metagraph.formats.data import (
     STRUCTS,
     action_data,
@@ -36,15 +36,19 @@ from metagraph.formats.data import (
     weights_data,
 )
 from metagraph.formats.fields import Data, DataError
+from metagraph.formats.journal_records import framed
+from metagraph.formats.journal_register import JournalRegister
+from metagraph.formats.journal_words import displaced, unsayable, unwritten
 from metagraph.formats.locking import Owner
 from metagraph.formats.manual_data import alias_data, link_data, manual_data, state_data
+from metagraph.formats.new_file import Access, access_of
 from metagraph.formats.store import content_digest, file_digest
 from metagraph.graph.manual import Manual
 from metagraph.graph.model import LAYERS, Layer, MetaGraph, Project
 from metagraph.wording import told
 
 KEYED = ("clips", "stances", "actions", "states", "aliases", "links")
-ABOUT = ("step", "how")  # what a record says of its edit, beside what changed
+ABOUT = ("step", "how", "at")  # what a record says of its edit, beside what changed
 How = Literal["done", "merged", "undone", "redone"]
 
 
@@ -171,73 +175,92 @@ def _keyed(
 # --- the file
 
 
+Done = tuple[Project, Project, str]  # an edit: the project before and after it, and what it is called
+
+
 class Journal:
     """Appends edits to a file, begun with the first. Beginning replaces what was in it: whoever does has
     taken that over, or declined it. What cannot be written is tried again with the next edit.
 
     saved: the project file that the edits build on; digest: its SHA-256, where it was another one than it is
-    now. owner: whose sitting it is, so that others leave it alone while that goes on.
+    now. owner: whose sitting it is, so that others leave it alone while that goes on. like: who may read it,
+    where `saved` does not tell. register: where journals are listed, so that they are found wherever they
+    are. notes: what has become of the file, in words for the user; error: why it can no longer be kept there.
+    Whoever reads them takes them out.
     """
 
     def __init__(
-        self, path: Path, saved: Path | None, owner: Owner | None = None, digest: str | None = None
+        self,
+        path: Path,
+        saved: Path | None,
+        owner: Owner | None = None,
+        digest: str | None = None,
+        like: Access | None = None,
+        register: JournalRegister | None = None,
     ) -> None:
-        self.path = path
-        self._file: int | None = None
-        self._begun, self._torn, self._size = False, False, 0  # torn: half a record stands behind `size`
-        self._saved = saved
-        self._base: tuple[Project, int] | None = None
-        self._head: Data = {"saved": digest or file_digest(saved), "file": str(saved) if saved else None}
+        self._file = AppendedFile(path)
+        self._begun = False
+        self._saved, self._register = saved, register
+        self._like = like or access_of(saved)
+        self._base: tuple[Project, int, Sequence[Done]] | None = None
+        if digest is None:
+            with suppress(FileError):
+                digest = file_digest(saved)
+        self._head: Data = {"saved": digest, "file": str(saved) if saved else None, "begun": int(time.time())}
         if owner is not None:
             self._head["owner"] = msgspec.to_builtins(owner)
         self._behind: Project | None = None  # the project before the first edit that could not be written
-        self._marks = 0
+        self._number = 0  # of the next record
         self._turn = threading.RLock()  # a thread that saves writes, too
+        self.notes: list[str] = []
+        self.error: FileError | None = None
 
-    def begin(self, base: Project | None = None, unsaved: int = 0) -> None:
-        """Start anew from the saved file, whose text is kept, or from `base` when there is none. Raises
-        FileError.
+    @property
+    def begun(self) -> bool:
+        """Whether there is a file by now."""
+        return self._begun
 
-        unsaved: how many edits of `base` are in no file.
+    @property
+    def path(self) -> Path:
+        """Where it is; it goes with its folder, when that is renamed."""
+        return self._file.path
+
+    def begin(self, base: Project | None = None, unsaved: int = 0, done: Sequence[Done] = ()) -> None:
+        """Start anew from the saved file, whose text is kept, or from `base` when there is none. Whatever was
+        there stands until the new one is whole. Raises FileError.
+
+        unsaved: how many edits of `base` are in no file. done: edits after it, which are written with it.
         """
-        self._base = (base, unsaved) if base is not None else None
-        head = {**self._head, **self._foundation()}
+        self._base = (base, unsaved, done) if base is not None else None
+        try:
+            foundation = self._foundation()
+            holds = {"holds": next(iter(foundation), ""), "unsaved": unsaved}
+            records = [{**self._head, **holds}, foundation]
+            records += [record for edit in done if (record := _record(*edit, "done"))]
+        except DataError as error:
+            raise unsayable(self.path, error) from None
+        content = b"".join(framed(record, number) for number, record in enumerate(records))
         with self._turn:
-            self.close()
             try:
-                self.path.parent.mkdir(parents=True, exist_ok=True)
                 # Until then the old one stands; where none does, and a file holds all but the first edit,
                 # nobody need wait.
                 sync = self._base is not None or self.path.exists()
-                replace_file(self.path, _encoded(head) + b"\n", sync)
-                self._begun, self._torn = True, False
-                with suppress(OSError):  # tried again with the next edit
-                    self._open()
+                self._file.begin(content, self._like, sync)
             except OSError as error:
-                raise FileError(
-                    self.path,
-                    told("cannot be written ({value})", value=error.strerror or error),
-                    told("on beginning it"),
-                    told("Save the project now and then."),
-                ) from None
+                raise unwritten(self.path, error, told("on beginning it")) from None
+            self._begun, self._number = True, len(records)
+        if self._register is not None:
+            self._register.add(self.path, self._saved, self._head)
 
     def _foundation(self) -> Data:
         """Return what the edits build on, so that they can be read whatever becomes of the project file."""
-        if self._base is None:
-            with suppress(OSError, UnicodeDecodeError):
-                content = self._saved.read_bytes() if self._saved is not None else b""
-                if content_digest(content) == self._head["saved"]:
-                    return {"text": content.decode("utf-8-sig")}
-            return {}
-        try:
-            return {"unsaved": self._base[1], "base": to_data(self._base[0])}
-        except DataError as error:
-            raise FileError(
-                self.path,
-                told("cannot be written ({error})", error=error),
-                error.where,
-                told("Correct that value."),
-            ) from None
+        if self._base is not None:
+            return {"base": to_data(self._base[0]), "unsaved": self._base[1]}
+        with suppress(OSError, UnicodeDecodeError):
+            content = self._saved.read_bytes() if self._saved is not None else b""
+            if content_digest(content) == self._head["saved"]:
+                return {"text": content.decode("utf-8-sig")}
+        return {}
 
     def edit(self, before: Project, after: Project, step: str = "", how: How = "done") -> None:
         """Append one finished edit. Raises FileError when it cannot be written; the edit itself stands, and
@@ -249,18 +272,13 @@ class Journal:
         before = self._behind or before
         self._behind = before
         try:
-            change = changes(before, after)
+            record = _record(before, after, step, how)
         except DataError as error:
-            raise FileError(
-                self.path,
-                told("cannot be written ({error})", error=error),
-                error.where,
-                told("Correct that value."),
-            ) from None
-        if change:
+            raise unsayable(self.path, error) from None
+        if record:
             if not self._begun:
                 self._begin_with(before)
-            self._write(change | ({"step": step} if step else {}) | ({"how": how} if how != "done" else {}))
+            self._write(record)
         self._behind = None
 
     def _begin_with(self, before: Project) -> None:
@@ -278,9 +296,10 @@ class Journal:
         """
         if not self._begun or self._behind is not None:
             return None
-        self._marks += 1
-        self._write({"mark": self._marks})
-        return self._marks
+        with self._turn:
+            number = self._number
+            self._write({"mark": number})
+        return number
 
     def settle(self, mark: int, digest: str) -> None:
         """Write what file a mark is about to become, before it does; on any thread. Raises FileError."""
@@ -289,65 +308,52 @@ class Journal:
             self.secure()  # before the file is
 
     def touch(self) -> None:
-        """Show computers that share the drive that this sitting goes on. Raises OSError."""
-        if self._begun:
-            os.utime(self.path)
-            self.secure()
+        """Show computers that share the drive that this sitting goes on."""
+        if self.secure():
+            with suppress(OSError):
+                self._file.touch()
 
     def secure(self) -> bool:
-        """Let what was written survive a power cut, too; on any thread. Return whether no edit is missing."""
-        with suppress(OSError):
+        """Let what was written survive a power cut, too; on any thread. Return whether no edit is missing:
+        one in a file that was removed is.
+        """
+        if not self._begun:
+            return False
+        try:
             with self._turn:
-                if self._file is None:
-                    return False
-                handle, whole = os.dup(self._file), self._behind is None and not self._torn
+                self._look()
+                handle, whole = self._file.duplicate(), self._behind is None and self._file.whole
             try:
                 os.fsync(handle)  # which may take its time; edits need not wait for it
-                return whole
             finally:
                 os.close(handle)
-        return False
+        except OSError as error:
+            self.error = unwritten(self.path, error, told("on looking after it"))
+            return False
+        return whole
 
     def _write(self, record: Data) -> None:
         with self._turn:
-            self._add(record)
+            try:
+                self._file.add(framed(record, self._number))
+                self._number += 1
+                self._look()  # an edit in a file that was removed is no edit that was kept
+            except OSError as error:
+                raise unwritten(self.path, error, told("on adding to it")) from None
 
-    def _open(self) -> None:
-        handle = os.open(self.path, os.O_RDWR | os.O_APPEND | getattr(os, "O_BINARY", 0))
-        try:
-            if not self._torn:
-                self._size = os.fstat(handle).st_size
-        except OSError:
-            os.close(handle)
-            raise
-        self._file = handle
-
-    def _add(self, record: Data) -> None:
-        line = _encoded(record) + b"\n"
-        try:
-            if self._file is None:  # it could not be opened again
-                self._open()
-            assert self._file is not None
-            if self._torn:
-                os.ftruncate(self._file, self._size)
-            self._torn = True
-            write_all(self._file, line)
-            self._size += len(line)
-            self._torn = False
-        except OSError as error:
-            raise FileError(
-                self.path,
-                told("cannot be written ({value})", value=error.strerror or error),
-                told("on adding to it"),
-                told("Make room on the disk and save the project."),
-            ) from None
+    def _look(self) -> None:
+        """Look whether the file is in its place, and put it there again. Raises OSError."""
+        was = self.path
+        what = self._file.look()
+        if what:
+            self.notes.append(displaced(what, was, self.path))
+        if what and self._register is not None:
+            self._register.remove(was)
+            self._register.add(self.path, self._saved, self._head)
 
     def close(self) -> None:
         with self._turn:
-            if self._file is not None:
-                handle, self._file = self._file, None
-                with suppress(OSError):  # a network drive that is away
-                    os.close(handle)
+            self._file.close()
 
     def remove(self) -> None:
         """Forget the journal: everything in it has been saved, or was declined. Where that is not allowed it
@@ -356,14 +362,18 @@ class Journal:
         self.close()
         self._begun = False
         with suppress(OSError):
-            self.path.unlink()
+            self.path.unlink(missing_ok=True)
+            if self._register is not None:
+                self._register.remove(self.path)
 
 
-def _encoded(record: Data) -> bytes:
-    try:
-        return msgspec.json.encode(record)  # ten times as fast, for long conversations
-    except UnicodeEncodeError:  # a path that is no text
-        return json.dumps(record, separators=(",", ":"), allow_nan=False).encode()
+def _record(before: Project, after: Project, step: str, how: How) -> Data:
+    """Return what is written of an edit, nothing where it changed nothing that is saved. Raises DataError."""
+    change = changes(before, after)
+    if not change:
+        return {}
+    about = ({"step": step} if step else {}) | ({"how": how} if how != "done" else {})
+    return {**change, **about, "at": int(time.time())}
 
 
 def journal_path(saved: Path, sitting: str = "") -> Path:

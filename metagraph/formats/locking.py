@@ -22,6 +22,7 @@ from pathlib import Path
 
 import msgspec
 
+from metagraph.formats.new_file import Access, access_of, open_new
 from metagraph.programs import run, system_program
 from metagraph.records import dataclass
 
@@ -227,13 +228,16 @@ def holder(path: Path) -> Holder | None:
 
 class Lock:
     """The lock of one project file for one sitting. held: whether it is ours; it may be that the folder takes
-    none.
+    none. made_again: whether somebody had removed it while it was held.
+
+    like: who may read it where the project file is not there yet.
     """
 
-    def __init__(self, saved: Path, owner: Owner) -> None:
+    def __init__(self, saved: Path, owner: Owner, like: Access | None = None) -> None:
         self.saved = saved.resolve()  # the file that a link means
-        self.path, self.owner = lock_path(self.saved), owner
-        self.held = False
+        self.path, self.owner, self.like = lock_path(self.saved), owner, like
+        self.held = self.made_again = False
+        self._away = False  # its folder was, when it was looked for
         self._content = msgspec.json.encode(owner) + b"\n"
 
     def acquire(self, take_over: bool = False) -> Holder | None:
@@ -244,9 +248,7 @@ class Lock:
         found: Holder | None = None
         for _ in range(5):
             try:
-                handle = os.open(
-                    self.path, os.O_CREAT | os.O_EXCL | os.O_WRONLY | getattr(os, "O_BINARY", 0), 0o666
-                )
+                handle = open_new(self.path, access_of(self.saved) or self.like)
             except FileExistsError:
                 found = holder(self.path)
                 if found is None:
@@ -267,7 +269,8 @@ class Lock:
                     with contextlib.suppress(OSError):
                         self.path.unlink()
                 finally:
-                    os.close(handle)
+                    with contextlib.suppress(OSError):  # a drive that is away by now
+                        os.close(handle)
                 return None
         return found
 
@@ -287,7 +290,7 @@ class Lock:
         """Say that it is still held; return False when somebody has taken it over, and it is not held any
         more.
         """
-        if not self.held:
+        if not self.held and not self._away:
             return True
         try:
             content = self.path.read_bytes()
@@ -295,7 +298,9 @@ class Lock:
                 os.utime(self.path)
         except FileNotFoundError:  # somebody tidied up
             self.held = False
-            return self.acquire() is None
+            free = self.acquire() is None
+            self.made_again, self._away = self.held, free and not self.held
+            return free
         except OSError:
             return True  # the drive is away
         self.held = content == self._content

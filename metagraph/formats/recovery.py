@@ -6,122 +6,31 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
 import msgspec
 
 from metagraph.errors import FileError
+from metagraph.files import is_file, read_file
+from metagraph.formats.appended_file import Identity
 from metagraph.formats.data import from_data, to_data
 from metagraph.formats.fields import Data, DataError
-from metagraph.formats.journal import ABOUT, KEYED
+from metagraph.formats.journal_records import LostEdit, Record, Records, read_records
 from metagraph.formats.locking import Owner, is_gone
-from metagraph.formats.store import file_digest, from_text, read_project
-from metagraph.graph.model import LAYERS, Project
+from metagraph.formats.replay import Replay
+from metagraph.formats.store import content_digest, file_digest, from_text, read_project
+from metagraph.graph.model import Project
 from metagraph.records import dataclass
 
+JOURNAL = 1 << 33  # bytes of a journal that are read: as many as a person can fill
+DAMAGED = (
+    ".damaged"  # what the name of a damaged journal ends in, once what could be read of it was taken over
+)
+_UNFIT = 50  # edits that may not fit before all after them are left out
 _KEPT = "It is kept."
 _ANOTHER = "belongs to another state of the project file"
-
-
-# --- changes worked in
-
-
-class Replay:
-    """Project data that changes are worked into; lists are held by id, so that a change costs what it is
-    large.
-    """
-
-    def __init__(self, data: Data) -> None:
-        self.top = _opened({key: value for key, value in data.items() if key != "manual"})
-        self.layers = {layer: _opened(data["layers"][layer]) for layer in LAYERS}
-        self.manual = {layer: _opened(machine) for layer, machine in data.get("manual", {}).items()}
-
-    def apply(self, change: Data) -> None:
-        for layer, part in change.get("layers", {}).items():
-            _work_in(self.layers[layer], part)
-        for layer, part in change.get("manual", {}).items():
-            if part is None:
-                self.manual.pop(layer, None)
-            elif layer in self.manual:
-                _work_in(self.manual[layer], part)
-            else:
-                self.manual[layer] = _opened(part)
-        others = {k: v for k, v in change.items() if k not in ("layers", "manual", *ABOUT)}
-        _work_in(self.top, others)
-
-    def data(self) -> Data:
-        out = {**_closed(self.top), "layers": {layer: _closed(part) for layer, part in self.layers.items()}}
-        if not out.get("hidden", True):
-            del out["hidden"]  # as a project without any is written
-        return (
-            {**out, "manual": {layer: _closed(part) for layer, part in self.manual.items()}}
-            if self.manual
-            else out
-        )
-
-
-def _opened(data: Data) -> Data:
-    return {
-        key: {item["id"]: item for item in value} if key in KEYED else value for key, value in data.items()
-    }
-
-
-def _closed(data: Data) -> Data:
-    return {key: list(value.values()) if key in KEYED else value for key, value in data.items()}
-
-
-def _work_in(data: Data, change: Data) -> None:
-    for key, value in change.items():
-        if key in KEYED:
-            items = data.setdefault(key, {})
-            for ident, item in value.items():
-                if item is None:
-                    items.pop(ident, None)
-                else:
-                    items[ident] = item
-        elif not key.endswith(("_order", "_after")):
-            data[key] = value
-    for key in KEYED:
-        if f"{key}_order" in change:
-            data[key] = {i: data[key][i] for i in change[f"{key}_order"]}
-        elif f"{key}_after" in change:
-            data[key] = _inserted(data[key], change[f"{key}_after"])
-
-
-def _inserted(items: Data, places: Mapping[str, str | None]) -> Data:
-    """Return items in the order that puts each of `places` right behind another item, None being the
-    beginning.
-    """
-    following: dict[str | None, list[str]] = {}
-    for ident, before in places.items():
-        following.setdefault(before, []).append(ident)
-    out: Data = {}
-    queue: list[str] = following.pop(None, [])[::-1]
-    rest = iter([i for i in items if i not in places])
-    while True:
-        if not queue:
-            following_one = next(rest, None)
-            if following_one is None:
-                break
-            queue.append(following_one)
-        ident = queue.pop()
-        out[ident] = items[ident]
-        queue.extend(reversed(following.pop(ident, ())))
-    return {**out, **items}
-
-
-def apply(data: Data, change: Data) -> Data:
-    """Return project data with one change worked in. Raises KeyError, TypeError or AttributeError when they
-    do not fit.
-    """
-    replay = Replay(data)
-    replay.apply(change)
-    return replay.data()
-
-
-# --- files
 
 
 @dataclass(frozen=True)
@@ -130,7 +39,9 @@ class Left:
     when the last one was, in seconds since 1970. digest: of the file the edits build on. behind: the project
     file has changed since; the edits are whole, but not in step with it. worked_in: as it has, and the
     journal does not tell what it was: they are worked into what it is now. base: what the edits begin with,
-    as plain data, of which `unsaved` edits are in no file; records: the edits after it.
+    as plain data, of which `unsaved` edits are in no file; records: the edits after it. lost: the edits that
+    the journal cannot give back, since it is damaged. doubtful: what the edits begin with was damaged, too; a
+    value in it may be wrong. saved: the project file as the journal names it.
     """
 
     path: Path
@@ -144,6 +55,13 @@ class Left:
     unsaved: int
     records: tuple[Data, ...]
     worked_in: bool = False
+    lost: tuple[LostEdit, ...] = ()
+    doubtful: bool = False
+    saved: Path | None = None
+
+    @property
+    def is_damaged(self) -> bool:
+        return bool(self.lost) or self.doubtful
 
     @property
     def common(self) -> Project | None:
@@ -164,72 +82,141 @@ def recover(journal: Path, saved: Path | None) -> tuple[Project, int] | None:
 
 
 def read_journal(journal: Path, saved: Path | None) -> Left | None:
-    """Return what a journal holds, None if that is no edit.
+    """Return what a journal holds, None if that is no edit. A damaged record costs no other.
 
     Raises FileError when nothing in it can be used.
     """
     try:
-        content = journal.read_bytes()
+        content = read_file(journal, JOURNAL)
         written = journal.stat().st_mtime
     except FileNotFoundError:
         return None
     except OSError as error:
-        if journal.is_dir():
-            return None
         raise FileError(journal, f"cannot be read ({error.strerror or error})", "", _KEPT) from None
-    lines = content.split(b"\n")[:-1]  # what follows the last newline was torn
-    if len(lines) < 2 and b'"unsaved":' not in content:
+    except FileError as error:
+        if not journal.exists() or journal.is_dir():
+            return None
+        raise FileError(journal, error.cause, "", _KEPT) from None
+    records = read_records(content)
+    if not content.strip(b"\n") or (not records.entries and not records.head):
         return None
-    records: list[Data] = []
-    for line in lines:
-        try:
-            record = json.loads(line)
-        except (ValueError, RecursionError):
-            break
-        if not isinstance(record, dict):
-            break
-        records.append(record)
-    if not records or "saved" not in records[0]:
+    begun = _begun(records, journal)
+    if begun is None:
         raise FileError(journal, "is damaged", "line 1", _KEPT)
-    head, now = records[0], file_digest(saved)
-    begin = _settled(records, now)
-    base = head.get("base") if begin == 1 else None
-    before = head.get("unsaved", 0) if isinstance(base, dict) else 0
-    edits = [record for record in records[begin:] if "mark" not in record]
-    if not edits and not before and (len(records) > 1 or len(lines) < 2):
+    head, rest = begun
+    now = file_digest(saved)
+    kept = rest[_settled(rest, now) :]
+    all_of_it = len(kept) == len(rest)
+    base = head.get("base") if all_of_it else None
+    unsaved = head.get("unsaved", 0)
+    before = unsaved if isinstance(base, dict) and _is_number(unsaved) else 0
+    edits = [e.data for e in kept if isinstance(e, Record) and "mark" not in e.data]
+    lost = [e for e in kept if isinstance(e, LostEdit)]
+    if all_of_it and records.foundation and not isinstance(base, dict) and _is_number(unsaved):
+        lost = [LostEdit()] * unsaved + lost
+    if not edits and not before and not lost:
         return None
-    changed = begin == 1 and head["saved"] != now
+    changed = all_of_it and head.get("saved") != now
     if not isinstance(base, dict) and (changed or saved is None):
         base = _of_text(head.get("text"), journal)
     behind = changed and isinstance(base, dict)
+    doubtful = bool(records.foundation) and all_of_it and (changed or head.get("holds") != "text")
+    if (
+        doubtful
+        and head.get("holds") == "base"
+        and not isinstance(base, dict)
+        and _is_number(head["unsaved"])
+    ):
+        lost = [LostEdit()] * head["unsaved"] + lost
     if not isinstance(base, dict):
         base = to_data(read_project(saved, []) if saved is not None and saved.is_file() else Project())
-    # Usually all are good; else the longest beginning that is.
-    good, bad = 0, len(edits) + 1
-    count = len(edits)
-    found = _replayed(base, []) if before else None
-    while count > good:
-        project = _replayed(base, edits[:count])
-        if project is not None:
-            good, found = count, project
-        else:
-            bad = count
-        count = (good + bad) // 2
-    if found is None:
+    project, good, unfit = _worked_in(base, edits)
+    if not good and not before:
         raise FileError(journal, _ANOTHER if changed and not behind else "is damaged", "line 2", _KEPT)
     return Left(
         journal,
-        found,
-        before + max(1, sum(record.get("how") != "merged" for record in edits[:good])) if good else before,
-        _owner(head),
+        project,
+        before + max(1, sum(record.get("how") != "merged" for record in good)) if good else before,
+        owner_of(head),
         written,
-        head["saved"] if behind else now,
+        head.get("saved") if behind else now,
         behind,
         base,
         before,
-        tuple(edits[:good]),
+        tuple(good),
         changed and not behind,
+        (*lost, *map(_unfit, unfit)),
+        doubtful,
+        _named(head),
     )
+
+
+def _begun(records: Records, journal: Path) -> tuple[Data, tuple[Record | LostEdit, ...]] | None:
+    """Return what a journal begins with and what comes after it; None where that is no journal.
+
+    Where the beginning is damaged it is pieced together: the file's digest is that of its text, and a text
+    with a wrong letter in it is better than none.
+    """
+    entries = records.entries
+    numbered = any(record.number is not None for record in records.whole)
+    if not numbered:
+        if not entries or not isinstance(entries[0], Record) or "saved" not in entries[0].data:
+            return None
+        return entries[0].data, entries[1:]
+    head: Data = {}
+    for number in (0, 1):
+        if entries and isinstance(entries[0], Record) and entries[0].number == number:
+            head |= entries[0].data
+            entries = entries[1:]
+    if records.foundation:
+        head |= _repaired(records.foundation, journal)
+    if records.head and isinstance(head.get("text"), str) and not records.foundation:
+        head["saved"] = content_digest(head["text"].encode())
+    return head, entries
+
+
+def _repaired(line: bytes, journal: Path) -> Data:
+    """Return what a damaged foundation says, as far as a project can be read of it."""
+    with suppress(ValueError, RecursionError):
+        found = json.loads(line.rpartition(b"\t")[0].rpartition(b"\t")[0], strict=False)
+        if isinstance(found, dict) and isinstance(found.get("base"), dict):
+            if _replayed(found["base"], []) is not None:
+                return found
+        elif isinstance(found, dict) and _of_text(found.get("text"), journal) is not None:
+            return {"text": found["text"]}
+    return {}
+
+
+def _worked_in(base: Data, edits: Sequence[Data]) -> tuple[Project, list[Data], list[Data]]:
+    """Return the project with the edits that fit worked in, those, and the others. Usually all fit."""
+    good: list[Data] = []
+    unfit: list[Data] = []
+    rest = list(edits)
+    project: Project | None = None
+    while rest:
+        fits, bad = 0, len(rest) + 1
+        count = len(rest)
+        while count > fits:
+            found = _replayed(base, [*good, *rest[:count]])
+            if found is not None:
+                fits, project = count, found
+            else:
+                bad = count
+            count = (fits + bad) // 2
+        good += rest[:fits]
+        unfit += rest[fits : fits + 1] if len(unfit) < _UNFIT else rest[fits:]
+        rest = rest[fits + 1 :] if len(unfit) <= _UNFIT else []
+    return project or _replayed(base, []) or Project(), good, unfit
+
+
+def _unfit(record: Data) -> LostEdit:
+    at = record.get("at")
+    return LostEdit(str(record.get("step") or ""), at if _is_number(at) else None, "unfit")
+
+
+def _named(head: Data) -> Path | None:
+    name = head.get("file")
+    return Path(name) if isinstance(name, str) and name else None
 
 
 def _of_text(text: object, journal: Path) -> Data | None:
@@ -239,24 +226,35 @@ def _of_text(text: object, journal: Path) -> Data | None:
     return None
 
 
-def _settled(records: Sequence[Data], digest: str | None) -> int:
-    """Return the number of the first record that the file of a digest does not have."""
-    marks = {
-        record["mark"]: n
-        for n, record in reversed(list(enumerate(records)))
-        if "mark" in record and _is_number(record["mark"])
-    }
-    for record in reversed(records):
-        if digest is not None and record.get("saved") == digest and record.get("mark") in marks:
-            return marks[record["mark"]] + 1
-    return 1
+def _settled(entries: Sequence[Record | LostEdit], digest: str | None) -> int:
+    """Return the number of the first entry that the file of a digest does not have."""
+    settled = [e.data for e in entries if isinstance(e, Record) and "mark" in e.data]
+    marks = [r["mark"] for r in settled if digest is not None and r.get("saved") == digest]
+    if not marks:
+        return 0
+    for place, entry in enumerate(entries):
+        if isinstance(entry, Record):
+            if entry.number is None and entry.data.get("mark") == marks[-1] and "saved" not in entry.data:
+                return place + 1
+            if entry.number is not None and _is_number(marks[-1]) and entry.number > marks[-1]:
+                return place - _lost_before(entries[:place], entry.number - marks[-1] - 1)
+    return 0
+
+
+def _lost_before(entries: Sequence[Record | LostEdit], most: int) -> int:
+    """Return how many entries at the end are lost edits, `most` at most."""
+    return next(
+        (n for n, entry in enumerate(entries[::-1][:most]) if isinstance(entry, Record)),
+        min(most, len(entries)),
+    )
 
 
 def _is_number(value: object) -> bool:
     return isinstance(value, int)
 
 
-def _owner(head: Data) -> Owner | None:
+def owner_of(head: Data) -> Owner | None:
+    """Return whose journal it is, by what it begins with; None where that does not tell."""
     try:
         return msgspec.convert(head.get("owner"), Owner)
     except msgspec.ValidationError:
@@ -273,6 +271,9 @@ def _replayed(base: Data, records: Sequence[Data]) -> Project | None:
         return None
 
 
+# --- which there are
+
+
 def left_journals(saved: Path) -> list[Path]:
     """Return the journals of a project file whose sittings are over, the latest last; those that were put
     aside at first, when the file had changed, among them.
@@ -285,24 +286,53 @@ def journals_in(folder: Path, names: str) -> list[Path]:
     the latest last.
     """
     wanted = re.compile(names)
-    found: list[tuple[float, Path]] = []
-    try:
-        for path in folder.iterdir():
-            if wanted.fullmatch(path.name) and path.is_file() and _is_left(path):
-                found.append((path.stat().st_mtime, path))
-    except OSError:
-        pass  # what cannot be listed offers nothing
-    return [path for _, path in sorted(found)]
+    found: list[Path] = []
+    with suppress(OSError):  # what cannot be listed offers nothing
+        found = [path for path in folder.iterdir() if wanted.fullmatch(path.name) and is_file(path)]
+    return in_order(path for path in found if is_left(path))
 
 
-def _is_left(path: Path) -> bool:
+def in_order(journals: Iterable[Path]) -> list[Path]:
+    """Return journals, each once whatever it is called, the latest last."""
+    found: dict[Identity, tuple[float, Path]] = {}
+    for path in journals:
+        with suppress(OSError):
+            told = path.stat()
+            found.setdefault((told.st_dev, told.st_ino), (told.st_mtime, path))
+    return [path for _, path in sorted(found.values())]
+
+
+def is_left(journal: Path) -> bool:
     """Return whether nobody writes to a journal any more; one that does not say whose it is was written
     before they did.
     """
+    owner = owner_of(head_of(journal))
+    return owner is None or is_gone(owner, journal)
+
+
+def retire(journal: Path) -> None:
+    """Remove a journal that was taken over or declined; a damaged one is kept under another name. Raises
+    OSError.
+    """
+    if not is_damaged(journal):
+        journal.unlink(missing_ok=True)
+    elif not journal.name.endswith(DAMAGED):
+        journal.replace(journal.with_name(f"{journal.name}{DAMAGED}"))
+
+
+def is_damaged(journal: Path) -> bool:
+    """Return whether a journal holds records that cannot be read."""
     try:
-        with path.open("rb") as file:
-            head = msgspec.json.decode(file.readline())
-    except (OSError, ValueError):  # ValueError: also what msgspec raises
-        head = None
-    owner = _owner(head) if isinstance(head, dict) else None
-    return owner is None or is_gone(owner, path)
+        records = read_records(read_file(journal, JOURNAL))
+    except FileError:
+        return journal.exists()
+    return bool(records.head or records.foundation) or len(records.whole) < len(records.entries)
+
+
+def head_of(journal: Path) -> Data:
+    """Return what a journal begins with, nothing where that cannot be read."""
+    with suppress(OSError), journal.open("rb") as file:
+        records = read_records(file.readline(1 << 28))
+        if records.whole:
+            return records.whole[0].data
+    return {}

@@ -26,6 +26,7 @@ from metagraph.formats.data import FORMAT, from_data, to_data
 from metagraph.formats.fbx_readers import batch
 from metagraph.formats.fields import Data, DataError
 from metagraph.formats.motion_cache import read_or_kept
+from metagraph.formats.new_file import Access
 from metagraph.formats.text import TextError, as_text, read, to_text
 from metagraph.graph.clip_source import source_of, with_source
 from metagraph.graph.conversation import Conversation, Side
@@ -93,7 +94,7 @@ def from_text(text: str, path: Path, notes: list[str] | None = None) -> Project:
     except DataError as error:
         cause = f"{error.where} {error}".strip()
         raise FileError(
-            path, cause, _line_of(lines(), error.where), told("Correct it, or restore a backup.")
+            path, cause, _line_of(lines, error.where), told("Correct it, or restore a backup.")
         ) from None
 
 
@@ -116,26 +117,32 @@ def _upgraded(data: Any, path: Path) -> Any:
     return data
 
 
-def _line_of(lines: Mapping[str, int], where: str) -> str:
+def _line_of(lines: Callable[[], Mapping[str, int]], where: str) -> str:
     """Return "line n" of a field, or of what it is in."""
-    while where not in lines and where:
+    try:
+        found = lines()
+    except TextError as error:  # a key that is longer than YAML's may be
+        return f"line {error.line}" if error.line else where
+    while where not in found and where:
         where = where[: max(where.rfind("."), where.rfind("["), 0)]
-    return f"line {lines.get(where, 1)}"
+    return f"line {found.get(where, 1)}"
 
 
 # --- files
 
 
-def save_project(project: Project, path: str | Path, was_at: Path | None = None) -> Project:
+def save_project(
+    project: Project, path: str | Path, was_at: Path | None = None, like: Access | None = None
+) -> Project:
     """Save; return the project as it was saved. Raises FileError.
 
     was_at: the project file its paths are relative to, when that is another one; they are then made relative
-    to `path`.
+    to `path`. like: who may read it where there is no file yet.
     """
     path = Path(path)
     if was_at is not None:
         project = moved(project, was_at, path)
-    write_atomically(path, encoded(project, path))
+    write_atomically(path, encoded(project, path), like)
     return project
 
 
@@ -194,11 +201,11 @@ def writable(project: Project) -> Project:
 
 def file_digest(path: Path | None) -> str | None:
     """Return the SHA-256 of a project file, hex, by which it is known to have changed; None where there is no
-    file.
+    file. Raises FileError.
     """
     if path is None or not is_file(path):
         return None
-    return content_digest(path.read_bytes())
+    return content_digest(read_file(path, TEXT_FILE))
 
 
 def content_digest(content: bytes) -> str:

@@ -80,7 +80,7 @@ def _scalar(value: Any) -> str:
     if isinstance(value, list):
         return "[" + ", ".join(map(_scalar, value)) + "]"
     if isinstance(value, dict):
-        return "{" + ", ".join(f"{_scalar(k)}: {_scalar(v)}" for k, v in value.items()) + "}"
+        return "{" + ", ".join(f"{_flow_key(k)} {_scalar(v)}" for k, v in value.items()) + "}"
     if value is None:
         return "null"
     if isinstance(value, bool):
@@ -89,16 +89,32 @@ def _scalar(value: Any) -> str:
     return re.sub(r"^(-?\d+)e", r"\1.0e", text) if "e" in text else text  # YAML 1.1 wants the point
 
 
+_LONG_KEY = 1_000  # characters beyond which YAML takes no key on a line with its value
+
+
+def _key(key: Any, indent: str = "") -> str:
+    """Return a key with what stands between it and its value."""
+    text = _scalar(key)
+    if len(text) <= _LONG_KEY:
+        return f"{indent}{text}:"
+    return f"{indent}? {text}\n{indent}:"
+
+
+def _flow_key(key: Any) -> str:
+    text = _scalar(key)
+    return f"{text}:" if len(text) <= _LONG_KEY else f"? {text} :"
+
+
 def to_text(data: Data) -> str:
     """Return the canonical text of plain project data."""
     lines = [HEADER.rstrip("\n")]
 
     def section(key: str, value: Any, indent: str) -> None:
         if isinstance(value, list) and value and isinstance(value[0], dict | list):
-            lines.append(f"{indent}{_scalar(key)}:")
+            lines.append(_key(key, indent))
             lines.extend(f"{indent}- {_scalar(item)}" for item in value)
         elif isinstance(value, dict) and value and indent == "":
-            lines.append(f"{_scalar(key)}:")
+            lines.append(_key(key))
             for inner, content in value.items():
                 if isinstance(content, dict) and key in (
                     "layers",
@@ -109,13 +125,13 @@ def to_text(data: Data) -> str:
                     "joint_maps",
                     "manual",
                 ):
-                    lines.append(f"  {_scalar(inner)}:")
+                    lines.append(_key(inner, "  "))
                     for name, part in content.items():
                         section(name, part, "    ")
                 else:
-                    lines.append(f"  {_scalar(inner)}: {_scalar(content)}")
+                    lines.append(f"{_key(inner, '  ')} {_scalar(content)}")
         else:
-            lines.append(f"{indent}{_scalar(key)}: {_scalar(value)}")
+            lines.append(f"{_key(key, indent)} {_scalar(value)}")
 
     for key, value in data.items():
         section(key, value, "")

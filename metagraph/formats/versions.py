@@ -13,6 +13,7 @@ from metagraph.budgets import TEXT_FILE
 from metagraph.errors import FileError
 from metagraph.files import read_file
 from metagraph.formats.atomic import sync_folder, unfinished, write_all, write_atomically
+from metagraph.formats.new_file import Access
 from metagraph.records import dataclass
 from metagraph.wording import Told, told
 
@@ -48,11 +49,12 @@ def earlier_versions(path: Path) -> tuple[Version, ...]:
     return tuple(sorted(found, key=lambda version: version.number))
 
 
-def write_project(path: Path, content: bytes, versions: int) -> Told | None:
+def write_project(path: Path, content: bytes, versions: int, like: Access | None = None) -> Told | None:
     """Write a project file, and keep what stood there as its most recent earlier version. Raises FileError
     where the file itself cannot be written.
 
-    versions: how many are kept; 0 keeps none, and leaves those that are there alone. Returns why the version
+    versions: how many are kept; 0 keeps none, and leaves those that are there alone. like: who may read the
+    file where there is none yet. Returns why the version
     could not be kept, None where all went well: what is to be saved is worth more than what was.
     """
     note = None
@@ -67,7 +69,7 @@ def write_project(path: Path, content: bytes, versions: int) -> Told | None:
                 name=path.name,
                 cause=cause,
             )
-    write_atomically(path, content)
+    write_atomically(path, content, like)
     return note
 
 

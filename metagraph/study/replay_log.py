@@ -10,7 +10,7 @@ from typing import Any
 
 from metagraph.formats.data import from_data, to_data
 from metagraph.formats.fields import Data, DataError
-from metagraph.formats.recovery import Replay
+from metagraph.formats.replay import Replay
 from metagraph.graph.model import Project
 from metagraph.study.study_plan import Study
 from metagraph.study.task_projects import make

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from metagraph.errors import FileError
 from metagraph.formats.imports import import_files
-from metagraph.formats.recovery import left_journals, recover
+from metagraph.formats.recovery import left_journals, recover, retire
 from metagraph.formats.store import Opened, load_motions, read_project, relative, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
@@ -83,5 +83,5 @@ def reopen(path: Path, progress: Progress | None = None) -> tuple[Opened, int]:
         project = read_project(path)
     if used is not None:  # whoever opens it begins a new journal, and may be killed just then
         save_project(project, path)
-        used.unlink(missing_ok=True)
+        retire(used)
     return load_motions(project, path.parent, progress), count

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from metagraph.formats.data import from_data, to_data
 from metagraph.formats.history import history, with_motion
 from metagraph.formats.journal import Journal
+from metagraph.formats.journal_records import framed
 from metagraph.formats.recovery import Left, read_journal
 from metagraph.graph import edits
 from metagraph.graph.model import Project
@@ -144,14 +145,12 @@ def test_motion_comes_back_to_clips_that_were_removed_or_renamed_on_the_way(tmp_
 
 @pytest.mark.parametrize("garbage", [{"how": "undone"}, {"how": 7, "step": ["x"]}, {"step": None}])
 def test_words_that_are_none_do_no_harm(tmp_path: Path, garbage: dict[str, object]) -> None:
-    import json
-
     a, b = numbered(2)
     journal = begun(tmp_path, a)
     journal.edit(a, b, "rename")
     journal.close()
-    with (tmp_path / "j").open("a") as file:
-        file.write(json.dumps({"name": "other", **garbage}) + "\n")
+    with (tmp_path / "j").open("ab") as file:
+        file.write(framed({"name": "other", **garbage}, 3))
     found = read_journal(tmp_path / "j", None)
     assert found is not None and found.project.name == "other"
     assert history(found)[-1].after == found.project

@@ -16,7 +16,7 @@ from metagraph.formats.data import from_data, to_data
 from metagraph.formats.gltf import write_glb
 from metagraph.formats.imports import bring_over, import_files, strangers_of
 from metagraph.formats.journal import changes
-from metagraph.formats.recovery import apply
+from metagraph.formats.replay import apply
 from metagraph.formats.store import open_project, relocate, save_project
 from metagraph.graph.check import check
 from metagraph.graph.model import Project

@@ -9,7 +9,7 @@ from metagraph.formats import manual_table as t
 from metagraph.formats.data import from_data, to_data
 from metagraph.formats.fields import DataError
 from metagraph.formats.journal import changes
-from metagraph.formats.recovery import apply
+from metagraph.formats.replay import apply
 from metagraph.graph import manual_edits as m
 from metagraph.graph import manual_groups as g
 from metagraph.graph.manual import ANY, links_expanded

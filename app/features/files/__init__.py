@@ -109,9 +109,9 @@ def contribute(shell: Shell) -> Contribution:
                 "recover",
                 menu,
                 "project",
-                tr("Recover &unsaved work…"),
-                files.recover_untitled,
-                tip=tr("Projects that were never saved, of windows that were not closed properly"),
+                tr("Reco&ver…"),
+                files.recover,
+                tip=tr("All work that is in no file, of windows that were not closed properly"),
             ),
             Command(
                 "network",

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import json
+import shutil
 
 import pytest
 
+from app.project.autosave import shelter, state_folder
 from app.project.document import Document
 from app.project.writing import project_name
 from metagraph.errors import FileError
-from metagraph.formats.recovery import recover
+from metagraph.formats.journal_records import read_records
+from metagraph.formats.recovery import read_journal, recover
 from metagraph.formats.store import read_project, save_project
 from metagraph.graph import edits
 from metagraph.graph.edits import EditError
@@ -209,28 +212,39 @@ def test_recovered_edits_are_unsaved_and_survive_a_second_crash(qapp, toy, tmp_p
     assert not document.dirty
 
 
-def test_a_journal_that_cannot_be_written_is_told_and_the_edit_stands(document, toy, tmp_path):
+@pytest.mark.parametrize("shelter_too", [False, True])
+def test_a_journal_that_cannot_be_written_is_told_and_the_edit_stands(document, toy, tmp_path, shelter_too):
     path, beat, told = tmp_path / "mine.metagraph.yaml", toy.id(document.project, "rest beat lf"), []
     document.save(path)
-    document.failed.connect(told.append)
-    document.journal_place.mkdir()
+    (document.failed if shelter_too else document.warned).connect(told.append)
+    place = document.journal_place
+    place.mkdir()
+    if shelter_too:
+        shutil.rmtree(shelter(state_folder()), ignore_errors=True)
+        shelter(state_folder()).write_text("in the way")
     seen = []
     document.changed.connect(lambda a, b: seen.append(b))
     likely(document, beat, 2.0)
     assert document.project.action(beat).likelihood == 2.0
     assert seen == [document.project], "the views follow all the same"
     assert len(told) == 1
-    assert "autosaved" in told[0]
-    document.journal_place.rmdir()
+    if shelter_too:
+        assert "autosaved" in told[0]
+        shelter(state_folder()).unlink()
+    else:
+        assert "Metagraph's own folder" in told[0]
+        found = read_journal(document.journal_place, path)
+        assert found is not None and found.project.action(beat).likelihood == 2.0
+    place.rmdir()
 
 
 def test_a_drag_writes_small_records(document, toy):
     beat = toy.id(document.project, "rest beat lf")
     for value in range(1, 50):
         likely(document, beat, 1 + value / 100, merge="likelihood")
-    lines = document.journal_place.read_text().splitlines()[1:]
-    assert max(map(len, lines)) < 600
-    assert all(json.loads(line) for line in lines)
+    records = read_records(document.journal_place.read_bytes()).whole[2:]
+    assert len(records) == 49
+    assert max(len(json.dumps(record.data)) for record in records) < 600
 
 
 def test_a_document_that_opened_nothing_is_autosaved_from_the_first_edit_on(qapp, toy):

@@ -12,12 +12,14 @@ import pytest
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from app.project import questions
-from app.project.document import Document, state_folder
+from app.project.autosave import state_folder
+from app.project.document import Document
 from app.project.files import Files
 from app.project.importing import Importing
 from app.project.jobs import Jobs
 from app.project.leftovers import untitled_journals
 from metagraph.formats.bvh import write_bvh
+from metagraph.formats.journal_records import read_records
 from metagraph.formats.locking import lock_path, new_owner
 from metagraph.formats.recovery import read_journal
 from metagraph.formats.store import open_project, read_project, save_project
@@ -225,9 +227,9 @@ def crash(desk) -> None:
     """Forget the document without closing it, as a killed program does."""
     document = desk.document
     place = document.journal_place
-    document._journal.close()
+    document.autosave.journal.close()
     kill_sittings(place.parent)
-    document._journal = document.lock = None
+    document.autosave.journal = document.lock = None
     document.owner = new_owner()
     document.undo_stack.setClean()
 
@@ -338,10 +340,8 @@ def test_a_journal_of_before_journals_held_what_they_build_on_is_worked_into_the
     change_seed(desk, 7)
     place = desk.document.journal_place
     crash(desk)
-    head, _, rest = place.read_bytes().partition(b"\n")
-    place.write_bytes(
-        json.dumps({k: v for k, v in json.loads(head).items() if k != "text"}).encode() + b"\n" + rest
-    )
+    head, _, *rest = read_records(place.read_bytes()).whole
+    place.write_text("".join(f"{json.dumps(record.data)}\n" for record in (head, *rest)))
     save_project(edits.rename_project(read_project(saved), "renamed"), saved)
     person.next = [("recover",)]
     desk.document.load(Project(), None)

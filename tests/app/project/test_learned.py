@@ -10,7 +10,8 @@ import pytest
 from PySide6.QtCore import QLockFile
 
 from app.project import learned as module
-from app.project.document import Document, state_folder
+from app.project.autosave import state_folder
+from app.project.document import Document
 from app.project.jobs import Jobs
 from app.project.learned import CLIPS, WORDS, Learned
 from metagraph.formats.store import open_project, save_project

@@ -38,9 +38,9 @@ def gate(monkeypatch):
     gate, write = threading.Event(), writing.write_project
     gate.count = 0
 
-    def late(path, content, versions):
+    def late(*args):
         assert gate.wait(20)
-        write(path, content, versions)
+        write(*args)
         gate.count += 1
 
     monkeypatch.setattr(writing, "write_project", late)

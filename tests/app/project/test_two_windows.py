@@ -263,7 +263,7 @@ def test_what_was_recovered_is_there_still_after_a_second_crash_without_an_edit(
     crashed(saved, 10, 3)
     person.next = [("recover",)]
     one = opened(qtbot, windows(), saved)
-    one.document._journal.close()
+    one.document.autosave.journal.close()
     kill_sittings(saved.parent)
     person.next = [("recover",)]
     two = opened(qtbot, windows(), saved)
@@ -281,8 +281,8 @@ def test_a_read_only_windows_edits_survive_its_crash_though_the_file_went_on(win
     one.save()
     qtbot.waitUntil(lambda: not one.document.dirty)
     one.document.close_journal()
-    two.document._journal.close()
-    two.document._journal = None
+    two.document.autosave.journal.close()
+    two.document.autosave.journal = None
     kill_sittings(saved.parent)
     person.next = [("recover",)]
     three = opened(qtbot, windows(), saved)
@@ -304,8 +304,8 @@ def test_a_project_never_saved_in_each_of_two_windows_is_kept_apart(windows, per
     three.recover_untitled()
     assert not person.asked, "both live"
     for files in (one, two):
-        files.document._journal.close()
-        files.document._journal = None
+        files.document.autosave.journal.close()
+        files.document.autosave.journal = None
     kill_sittings(one.document.journal_place.parent)
     person.next = [("recover", "later")]
     three.recover_untitled()

@@ -10,7 +10,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
-from app.project.document import state_folder
+from app.project.autosave import state_folder
 from app.project.kept_maps import keep_map, kept_maps
 from metagraph.motion.joint_map import JointMap, JointPair, fingerprint
 

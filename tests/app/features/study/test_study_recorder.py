@@ -275,7 +275,7 @@ def test_an_import_tells_how_long_it_took(recorded, monkeypatch):
 
 def test_edits_steps_back_and_looks_say_enough_to_be_seen_again(recorded):
     from metagraph.formats.data import to_data
-    from metagraph.formats.recovery import Replay
+    from metagraph.formats.replay import Replay
 
     d = recorded
     begun = to_data(d.document.project)

@@ -1,0 +1,176 @@
+"""The journal of a document: beside its file, and in the user's own folder where it cannot be there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QStandardPaths
+
+from app.translation import tr, tr_told
+from metagraph.errors import FileError
+from metagraph.formats.journal import Done, How, Journal, journal_path
+from metagraph.formats.journal_register import JournalRegister
+from metagraph.formats.new_file import PRIVATE
+from metagraph.graph.model import Project
+
+if TYPE_CHECKING:
+    from app.project.document import Document
+
+
+class Autosave:
+    """Writes what a document's edits are. Whatever the user has to know of it, the document says.
+
+    folder: the user's own, where journals of projects that were never saved lie, and those whose own place is
+    gone; it lists all of them, too.
+    """
+
+    def __init__(self, document: Document, folder: Path) -> None:
+        self.document, self.folder = document, folder
+        self.register = JournalRegister(shelter(folder))
+        self.journal: Journal | None = None
+        self._abandoned: list[Journal] = []  # whose place was gone; once all is saved they go, where they can
+
+    @property
+    def place(self) -> Path:
+        """Where this sitting keeps its edits, while nothing stops it."""
+        document = self.document
+        if document.path is None:
+            return journal_path(self.folder / "untitled", document.owner.sitting)
+        return journal_path(document.path.resolve(), document.owner.sitting)
+
+    def begin(self, base: Project | None, unsaved: int = 0, done: Sequence[Done] = ()) -> None:
+        """Begin anew. base: what the journal has to hold itself, since no file does; unsaved: how many edits
+        that has which no file has; done: edits after it.
+        """
+        document = self.document
+        old, self.journal = self.journal, None
+        if old is not None:
+            old.close()
+        journal = self._made(self.place)
+        if base is not None:
+            try:
+                journal.begin(base, unsaved, done)
+            except FileError as error:  # what was in the old one stays there
+                journal = self._sheltered(base, unsaved, done, error) or journal  # which tries again
+                if not journal.begun:
+                    self.journal = journal
+                    document.failed.emit(tr("Autosave is off: {error}", error=error))
+                    return
+        if base is not None or not document.read_only:
+            self.journal = journal  # else it begins with the first edit, and with the project before that
+        if old is not None and (base is None or old.path != journal.path):
+            old.remove()
+        self._forget_abandoned(journal.path)
+
+    def _made(self, place: Path) -> Journal:
+        document = self.document
+        like = document.access if document.path is not None and place.parent != self.folder else PRIVATE
+        return Journal(place, document.path, document.owner, document.digest, like, self.register)
+
+    def write(self, before: Project, after: Project, text: str, how: How) -> None:
+        """Write an edit; where its place is gone, all that is in no file into the user's own folder."""
+        if self.journal is None:
+            return
+        try:
+            self.journal.edit(before, after, text, how)
+        except FileError as error:
+            if not self._take_shelter(before, error):
+                self.document.failed.emit(tr("This edit was not autosaved: {error}", error=error))
+                return
+            with suppress(FileError):
+                self.journal.edit(before, after, text, how)
+        self.tell()
+
+    def _take_shelter(self, now: Project, error: FileError) -> bool:
+        base, unsaved, done = self.document.unsaved(now)
+        journal = self._sheltered(base, unsaved, done, error)
+        if journal is None:
+            return False
+        if self.journal is not None:
+            self.journal.close()
+            self._abandoned.append(self.journal)
+        self.journal = journal
+        return True
+
+    def _sheltered(
+        self, base: Project, unsaved: int, done: Sequence[Done], error: FileError
+    ) -> Journal | None:
+        """Return a journal in the user's own folder that holds all that is in no file; None where there can
+        be none.
+        """
+        document = self.document
+        folder = shelter(self.folder)
+        if document.path is None or (self.journal is not None and self.journal.path.parent == folder):
+            return None
+        place = journal_path(folder / document.path.name, document.owner.sitting)
+        journal = Journal(place, document.path, document.owner, document.digest, PRIVATE, self.register)
+        try:
+            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+            journal.begin(base, unsaved, done)
+        except (FileError, OSError):
+            return None
+        self._warn(
+            tr(
+                "Your edits cannot be kept beside {name} any more: {error} They are kept in Metagraph's own "
+                "folder now, and offered when you open the project again. Save it elsewhere to be safe.",
+                name=document.path.name,
+                error=error,
+            )
+        )
+        return journal
+
+    def look_after(self) -> None:
+        """Say what has become of the journal, and go to the user's own folder where its place is gone."""
+        self.tell()
+        if self.journal is not None and self.journal.error is not None:
+            error, self.journal.error = self.journal.error, None
+            self._take_shelter(self.document.project, error)
+
+    def tell(self) -> None:
+        notes = self.journal.notes if self.journal is not None else []
+        while notes:
+            self._warn(tr_told(notes.pop(0)))
+
+    def _warn(self, words: str) -> None:
+        self.document.failed.emit(words)
+        self.document.warned.emit(words)
+
+    def secure(self) -> bool:
+        """Return whether the journal is safely on the disk with every edit that is in no file."""
+        if self.journal is None:
+            return False
+        safe = self.journal.secure()
+        if not safe:
+            self.look_after()
+            safe = self.journal.secure()
+        self.tell()
+        return safe
+
+    def forget(self) -> None:
+        """Remove the journal: all was saved, or is not wanted."""
+        if self.journal is not None:
+            self.journal.remove()
+            self.journal = None
+        self._forget_abandoned(None)
+
+    def _forget_abandoned(self, kept: Path | None) -> None:
+        for journal in self._abandoned:
+            if journal.path != kept:
+                journal.remove()
+        self._abandoned.clear()
+
+
+def shelter(folder: Path) -> Path:
+    """Return where journals are listed, and lie that can lie nowhere else."""
+    return folder / "journals"
+
+
+def state_folder() -> Path:
+    """Return where recent projects and the journal of unsaved work are kept; made if need be."""
+    folder = Path(QStandardPaths.writableLocation(QStandardPaths.StandardLocation.AppDataLocation))
+    with suppress(OSError):  # whoever writes there says so
+        folder.mkdir(parents=True, exist_ok=True)
+    return folder
