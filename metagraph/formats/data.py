@@ -69,7 +69,7 @@ from metagraph.motion.contact_hold import Contact
 from metagraph.motion.joint_map import JointMap
 from metagraph.motion.retime import LONGEST, MOST, SPEEDS, Hold, Retime
 from metagraph.motion.skeleton import Skeleton
-from metagraph.network_paths import closed
+from metagraph.network_paths import closed, original
 
 FORMAT = 2  # of the project file; older ones are upgraded when read
 
@@ -88,6 +88,7 @@ _CONTACT = ("upper", "lower", "hand", "to", "first", "last")
 
 def clip_data(entry: ClipEntry) -> Data:
     out = sparse(entry, ("motion", "source", "digest", "retime"))
+    out["path"] = original(entry.path)
     if entry.retime.speed != 1.0:
         out["speed"] = plain(entry.retime.speed)
     if entry.retime.contacts:

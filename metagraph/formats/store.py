@@ -472,7 +472,7 @@ def _load(
             absolute_path = folder is None or Path(name).is_absolute()
             path = place.resolve().as_posix() if absolute_path or folder is None else relative(place, folder)
         if name in found:
-            notes.append(f"'{name}' has moved to '{path}'")
+            notes.append(f"'{original(name)}' has moved to '{path}'")
         if is_closed(name) and name not in found:
             continue  # said once, for all of them
         if not is_file(place):

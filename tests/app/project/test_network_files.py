@@ -25,10 +25,12 @@ def not_allowed() -> Iterator[None]:
 @pytest.fixture
 def project(toy, tmp_path: Path) -> Path:
     """A project whose clip is called as on another computer; on this system two slashes lead here."""
-    write_bvh(toy.clip("walk"), tmp_path / "walk.bvh")
-    path = tmp_path / "far.metagraph.yaml"
+    for folder in ("far", "here"):
+        (tmp_path / folder).mkdir()
+    write_bvh(toy.clip("walk"), tmp_path / "far" / "walk.bvh")
+    path = tmp_path / "here" / "far.metagraph.yaml"
     path.write_text(
-        f"metagraph: 1\nname: far\nclips:\n- {{id: c1, name: walk, path: '/{tmp_path}/walk.bvh'}}\n"
+        f"metagraph: 1\nname: far\nclips:\n- {{id: c1, name: walk, path: '/{tmp_path}/far/walk.bvh'}}\n"
     )
     return path
 
@@ -45,8 +47,12 @@ class Answer:
     def _look(self) -> None:
         for box in QApplication.topLevelWidgets():
             if isinstance(box, QMessageBox) and box.isVisible():
-                self.asked.append(box.informativeText())
-                next(b for b in box.buttons() if b.text().replace("&", "") == self.button).click()
+                for button in box.buttons():
+                    if button.text().replace("&", "") == self.button:
+                        self.asked.append(box.informativeText())
+                        self.timer.stop()
+                        button.click()
+                        self.timer.start()
 
 
 def _opened(drive, path: Path) -> None:
