@@ -13,7 +13,7 @@ from metagraph.budgets import TEXT_FILE
 from metagraph.errors import FileError
 from metagraph.files import read_file
 from metagraph.formats.atomic import sync_folder, unfinished, write_all, write_atomically
-from metagraph.formats.new_file import Access
+from metagraph.formats.new_file import Access, access_of, open_new
 from metagraph.records import dataclass
 from metagraph.wording import Told, told
 
@@ -104,15 +104,13 @@ def _copied(path: Path, content: bytes) -> Path:
     """Return an unfinished copy of a file beside it, on the disk, with its rights and its time."""
     state = path.stat()
     copy = path.with_name(unfinished())
-    # Nobody may read it before it has the rights of the file.
-    handle = os.open(copy, os.O_CREAT | os.O_EXCL | os.O_WRONLY | getattr(os, "O_BINARY", 0), 0o600)
+    handle = open_new(copy, access_of(path))
     try:
         try:
             write_all(handle, content)
             os.fsync(handle)
         finally:
             os.close(handle)
-        copy.chmod(state.st_mode & 0o777)
         with suppress(OSError):
             os.utime(copy, ns=(state.st_atime_ns, state.st_mtime_ns))
     except BaseException:
