@@ -57,7 +57,7 @@ def _merged(options: Namespace, output: ProjectOutput) -> int:
             options.theirs,
             told("does not go together with ours: {error}", error=error),
             told("the project"),
-            told("Open one of the two and import the other into it (File > Import)."),
+            told("Open one of the two and import the other into it (File > Import project)."),
         ) from None
     output.save(found.project)
     for line in found.kept:

@@ -42,10 +42,10 @@ OTHERS = sorted(set(translation.NAMES) - {translation.ENGLISH})
 
 
 def templates() -> Iterator[tuple[str, str, set[str]]]:
-    """Yield where, what, and the names of values, for each template of the domain's and the
-    preview's (`metagraph.wording`).
-    """
-    for path in sorted((*DOMAIN.rglob("*.py"), *(DOMAIN.parent / "preview").rglob("*.py"))):
+    """Yield where, what, and the names of values, for each template of `metagraph.wording`."""
+    for path in sorted(
+        p for folder in (DOMAIN, DOMAIN.parent / "preview", APP) for p in folder.rglob("*.py")
+    ):
         source = path.read_text(encoding="utf-8")
         if not re.search(r"^from metagraph\.wording import .*\btold\b", source, re.MULTILINE):
             continue

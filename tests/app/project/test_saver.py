@@ -173,7 +173,7 @@ def test_a_file_that_already_holds_what_is_saved_is_no_conflict(saver, qtbot):
 
 
 def test_a_file_that_cannot_be_read_any_more_says_why(saver, qtbot):
-    saver.document.path.write_text("a: [\n<<<<<<< ours\n")
+    saver.document.path.write_text("a: [\n")
     seed(saver, 7)
     saver.save()
     qtbot.waitUntil(lambda: bool(saver.told))
