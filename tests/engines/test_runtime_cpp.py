@@ -209,6 +209,13 @@ def test_what_the_glb_lacks_is_told_and_the_rest_plays(probe: Path, tmp_path: Pa
     assert "has no animation 'lost'" in done.stdout
 
 
+def test_a_glb_of_another_export_is_told(probe: Path, tmp_path: Path) -> None:
+    done = ran(probe, "load", altered(tmp_path, glb=lambda b: b + bytes(4)))
+    assert done.returncode == 0
+    assert "'stick.glb' is not the GLB that this JSON was written with" in done.stdout
+    assert ran(probe, "load", altered(tmp_path)).stdout == ""
+
+
 # --- live
 
 

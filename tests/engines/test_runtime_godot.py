@@ -227,6 +227,19 @@ for path in words():
 
 
 @needs_godot
+def test_a_glb_of_another_export_is_told(game: Path, tmp_path: Path) -> None:
+    data = json.loads(PERFORM.read_bytes())
+    glb = PERFORM.with_suffix(".glb").read_bytes()
+    said = []
+    for length in (len(glb), len(glb) + 4):
+        (tmp_path / f"{length}.json").write_text(json.dumps({**data, "glb_bytes": length}))
+        (tmp_path / f"{length}.glb").write_bytes(glb)
+        said.append(run(game, "out.append(read(words()[0]).problems)", str(tmp_path / f"{length}.json"))[0])
+    assert said[0] == [] and len(said[1]) == 1
+    assert "is not the GLB that this JSON was written with" in said[1][0]
+
+
+@needs_godot
 def test_a_clip_that_the_glb_lacks_is_told_and_its_actions_show_their_stance(
     game: Path, tmp_path: Path
 ) -> None:
@@ -252,8 +265,8 @@ out.append([graph.error, graph.problems])
 """
     *sizes, (error, problems) = run(game, body, str(tmp_path / "lacking.json"))
     assert error == ""
-    assert len(problems) == 1
-    assert gone in problems[0]
+    other, lost = problems
+    assert "is not the GLB that this JSON was written with" in other and gone in lost
     assert set(sizes) == {18}
 
 

@@ -181,6 +181,16 @@ def test_unknown_fields_of_an_export_are_passed_over() -> None:
     assert run(script) == []
 
 
+def test_a_glb_of_another_export_is_told_and_plays_all_the_same() -> None:
+    script = """
+        const longer = new Uint8Array(glb.byteLength + 4);
+        longer.set(new Uint8Array(glb.buffer ?? glb, glb.byteOffset ?? 0, glb.byteLength));
+        say([load(text, longer).problems, load(text, glb).problems]);
+        """
+    (told,), none = run(script)
+    assert "is not the GLB that this JSON was written with" in told and none == []
+
+
 def test_a_clip_that_the_glb_lacks_is_listed_and_shows_its_stance(tmp_path: Path) -> None:
     copy = changed(STICK, tmp_path, lambda document: document["animations"].pop(3))
     found = run(

@@ -331,6 +331,12 @@ def test_a_foreign_glb_is_refused(probe: Probe, tmp_path: Path) -> None:
     )
 
 
+def test_a_glb_of_another_export_is_told(probe: Probe, tmp_path: Path) -> None:
+    code, told = probe("load", altered(tmp_path, glb=lambda b: b + bytes(4)))
+    assert code == 0 and "'stick.glb' is not the GLB that this JSON was written with" in told
+    assert probe("load", altered(tmp_path))[1] == ""
+
+
 def test_actions_of_a_clip_that_is_missing_show_their_stance(probe: Probe, tmp_path: Path) -> None:
     project = read_export(STICK / "stick.json")
     plan = hear(project, Plan(3, 0.0), 0.0, [], 60.0)
