@@ -11,7 +11,8 @@ from metagraph.motion import rotation
 
 Array = NDArray[Any]
 
-STRAIGHT = 0.02  # of the upper bone: a joint less than this beside the line of its limb bends to its pole
+STRAIGHT = 0.02  # of the upper bone: a joint less than this beside the line of its limb that has to bend
+# further bends to its pole
 
 
 def bent(
@@ -32,9 +33,13 @@ def bent(
     aside = rotation.rotate(rotation.conjugate(rotation.between(start, way)), aside)
     aside = rotation.rotate(rotation.between(start, ahead), aside)
     pole = pole - ahead * np.einsum("fi,fi->f", pole, ahead)[:, None]
-    aside = unit(aside + np.maximum(0, STRAIGHT - np.linalg.norm(aside, axis=-1, keepdims=True)) * pole)
     along = (one**2 + far**2 - two**2) / (2 * far)
-    return ahead * along + aside * np.sqrt(np.maximum(0, one**2 - along**2)), goal
+    out = np.sqrt(np.maximum(0, one**2 - along**2))
+    # Where it bends more than the source, a hardly bent source's side is no guide.
+    size = np.linalg.norm(aside, axis=-1, keepdims=True)
+    more = np.clip((out / one - size) / STRAIGHT, 0, 1)
+    aside = unit(aside + np.maximum(0, STRAIGHT - size) * more * pole)
+    return ahead * along + aside * out, goal
 
 
 def unit(v: Array) -> Array:
