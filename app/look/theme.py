@@ -130,10 +130,15 @@ MARKS = (Path(__file__).parent / "marks").as_posix()  # pictures a style sheet n
 
 
 def style_sheet(look: Theme) -> str:
-    """Return the style of the whole window; 8 px grid, 6 px radius, no gradients."""
+    """Return the style of the whole window; 8 px grid, 6 px radius, no gradients.
+
+    Labels, message boxes and tooltips show text as it is: a name from a stranger's file may look like HTML,
+    which Qt would show as such, and open the pictures it names. A label for rich text sets its format itself.
+    """
     t, marks = look, MARKS
     return f"""
     * {{ font-size: 13px; }}
+    QLabel[textFormat="AutoText"], QToolTip {{ qproperty-textFormat: PlainText; }}
     QMainWindow, QMainWindow::separator {{ background: {t.ground}; }}
     QMainWindow::separator {{ width: 6px; height: 6px; }}
     QMainWindow::separator:hover {{ background: {t.line}; }}

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING
 
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeySequence
 from PySide6.QtWidgets import QMessageBox
 
@@ -88,7 +89,11 @@ def contribute(shell: Shell) -> Contribution:
             version=__version__,
             kinds=kinds,
         )
-        QMessageBox.about(shell.widget, tr("About Metagraph"), text)
+        box = QMessageBox(QMessageBox.Icon.NoIcon, tr("About Metagraph"), text, parent=shell.widget)
+        box.setTextFormat(Qt.TextFormat.RichText)
+        box.setIconPixmap(box.windowIcon().pixmap(64))
+        box.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        box.open()
 
     return Contribution(
         commands=(

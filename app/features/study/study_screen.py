@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from PySide6.QtCore import QEvent, QObject, Qt, QTimer
-from PySide6.QtGui import QFont, QTextBlockFormat, QTextCursor, QTextDocument
+from PySide6.QtGui import QFont, QTextBlockFormat, QTextCharFormat, QTextCursor, QTextDocument
 from PySide6.QtWidgets import (
     QApplication,
     QCheckBox,
@@ -28,6 +28,9 @@ from metagraph.study.questionnaires import Questionnaire
 
 WIDE = 720  # pixels of a column that reads well
 Run = Callable[[], object]
+WITHOUT_HTML = (
+    QTextDocument.MarkdownFeature.MarkdownDialectGitHub | QTextDocument.MarkdownFeature.MarkdownNoHTML
+)
 
 
 class Page(QWidget):
@@ -248,12 +251,19 @@ class Screen(QWidget):
 
 
 def rich(markdown: str, size: int) -> str:
-    """Return Markdown as a label shows it, with air between paragraphs. size: of the letters, pixels."""
+    """Return Markdown as a label shows it, with air between paragraphs. size: of the letters, pixels.
+
+    HTML is shown as it is written and a picture as its words: whoever wrote the study opens no file here.
+    """
     document = QTextDocument()
     font = QFont(QApplication.font())
     font.setPixelSize(size)
     document.setDefaultFont(font)
-    document.setMarkdown(markdown)
+    document.setMarkdown(markdown, WITHOUT_HTML)
+    cursor = QTextCursor(document)
+    while not (cursor := document.find("\ufffc", cursor)).isNull():  # what stands for a picture
+        shown = cursor.charFormat()
+        cursor.insertText(str(shown.property(shown.Property.ImageAltText) or ""), QTextCharFormat())
     cursor = QTextCursor(document)
     block = document.begin()
     while block.isValid():
