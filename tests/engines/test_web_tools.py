@@ -14,6 +14,7 @@ from metagraph import programs
 from metagraph.engines.runtimes import __path__ as RUNTIMES  # noqa: N812
 from metagraph.engines.targets import registry, web, web_tools
 from metagraph.graph.model import Project
+from tests.browsing import Browser
 from tests.engines.web_tools_kept import kept_web_tools
 
 ELEMENT = Path(RUNTIMES[0]) / "javascript" / "element.js"
@@ -64,6 +65,18 @@ def test_without_them_the_page_says_so_and_the_browser_compares_digests(
         assert f'href="{web_tools.NET}{name}" integrity="sha384-{web_tools.NEEDED[name]}"' in page
     assert page.count(web_tools.NET) == 2 * len(scripts) + 2  # none without a digest but where the folder is
     assert "./metagraph/element.js" in (tmp_path / "out" / web.CHARACTER).read_text()
+
+
+def test_a_page_that_gets_no_three_js_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, sample: Project, without_npm: None, browse: Browser
+) -> None:
+    monkeypatch.setattr(web_tools, "kept", lambda: tmp_path / "kept")
+    registry.write(sample, "web", tmp_path / "out")
+    page = tmp_path / "out" / "index.html"
+    page.write_text(page.read_text().replace(web_tools.NET, "/nowhere/"))
+    failed = {"url": "", "until": "document.querySelector('#net[role=alert]')"}
+    (words,), _ = browse(tmp_path / "out", failed, {"run": "document.getElementById('net').textContent"})
+    assert words.startswith(f"The character cannot be shown: three.js {web_tools.THREE} could not be loaded")
 
 
 def test_what_is_kept_is_used_as_one_file(tmp_path: Path, sample: Project) -> None:

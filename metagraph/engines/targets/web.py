@@ -10,10 +10,20 @@ from metagraph.wording import told
 
 CHARACTER = "metagraph-character.js"  # the element, and with it all that it needs
 _WHOSE = f"/*! Metagraph's player with three.js {THREE}, MIT, threejs.org */\n".encode()
-_FROM_THE_NET = (
-    f'<p id="net">This page loads three.js {THREE} from {NET.split("/")[2]}; '
-    "the browser checks its digest.</p>"
-)
+_HOST = NET.split("/")[2]
+_FROM_THE_NET = f"""<p id="net">
+        This page loads three.js {THREE} from {_HOST}; the browser checks its digest.
+      </p>
+      <script>
+        addEventListener("error", ({{ target }}) => {{
+          if (target.tagName !== "SCRIPT") return;
+          const said = document.getElementById("net");
+          said.setAttribute("role", "alert");
+          said.textContent = "The character cannot be shown: three.js {THREE} could not be loaded " +
+            "from {_HOST}, or what came is not that version. Connect to the net and load the page again; " +
+            "exported with npm installed, it has three.js with it.";
+        }}, true);
+      </script>"""
 _MODULES = f'export * from "./metagraph/element.js"; // which imports three.js {THREE}\n'.encode()
 
 
