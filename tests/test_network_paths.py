@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -21,7 +22,7 @@ from metagraph.formats.store import (
     reopened,
     save_project,
 )
-from metagraph.network_paths import closed, is_closed, original, reason
+from metagraph.network_paths import closed, is_closed, leads_away, original, reason
 from metagraph.study.study_plan import from_text
 
 STUDY = Path(__file__).parents[1] / "sample_clips" / "study" / "study.yaml"
@@ -117,6 +118,18 @@ def test_a_file_that_is_there_is_opened_only_when_that_is_allowed(tmp_path: Path
     assert open_project(path).project.clips["c1"].motion is not None
 
 
+def _gltf(uri: str) -> bytes:
+    """Return a glTF file whose numbers are in another one."""
+    document = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"name": "a"}],
+        "buffers": [{"uri": uri, "byteLength": 8}], "bufferViews": [{"buffer": 0, "byteLength": 8}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 2, "type": "SCALAR"}],
+        "animations": [{"samplers": [{"input": 0, "output": 0}],
+                        "channels": [{"sampler": 0, "target": {"node": 0, "path": "rotation"}}]}],
+    }  # fmt: skip
+    return msgspec.json.encode(document)
+
+
 @pytest.mark.parametrize(
     "uri",
     [r"\\server\x.bin", "%5C%5Cserver%5Cx.bin", "//server/x.bin", "%2F/server/x.bin", "file://server/x.bin"],
@@ -125,15 +138,8 @@ def test_a_gltf_file_never_names_another_computer(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, uri: str
 ) -> None:
     network_paths.allow(True)  # not even then: its files lie beside it
-    document = {
-        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"name": "a"}],
-        "buffers": [{"uri": uri, "byteLength": 8}], "bufferViews": [{"buffer": 0, "byteLength": 8}],
-        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 2, "type": "SCALAR"}],
-        "animations": [{"samplers": [{"input": 0, "output": 0}],
-                        "channels": [{"sampler": 0, "target": {"node": 0, "path": "rotation"}}]}],
-    }  # fmt: skip
     path = tmp_path / "a.gltf"
-    path.write_bytes(msgspec.json.encode(document))
+    path.write_bytes(_gltf(uri))
     looked: list[str] = []
     resolve = Path.resolve
     monkeypatch.setattr(Path, "resolve", lambda p, strict=False: looked.append(str(p)) or resolve(p, strict))
@@ -149,3 +155,72 @@ def test_a_study_names_none_unless_that_is_allowed(name: str) -> None:
         from_text(text)
     network_paths.allow(True)
     from_text(text)
+
+
+def _climbing(folder: Path) -> list[str]:
+    """Names that lead from a folder to where systems reach other computers, and links there."""
+    folder.mkdir(parents=True, exist_ok=True)
+    up = "../" * (len(folder.resolve().parts) - 1)
+    for name, target in (
+        ("far", "/net/server/share"),
+        ("root", up + "."),
+        ("twice", "far"),
+        ("x.bvh", "/afs/cell/x.bvh"),
+    ):
+        (folder / name).symlink_to(target)
+    return [
+        f"{up}net/server/x.bvh", f"{up}../../net/server/x.bvh", f"a/../{up}/net//server/x.bvh",
+        up.replace("/", "\\") + r"misc\server\x.bvh", f"./{up}./afs/cell/x.bvh", f"{up}Network/server/x.bvh",
+        "far/x.bvh", "root/net/server/x.bvh", "twice/x.bvh", "x.bvh", str(folder / "far" / "x.bvh"),
+    ]  # fmt: skip
+
+
+@pytest.mark.skipif(os.name == "nt", reason="such places and links are of other systems")
+def test_what_climbs_to_another_computer_is_closed_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    touched: list[str] = []
+    handle, read_link = files._handle, os.readlink
+    monkeypatch.setattr(files, "_handle", lambda p: touched.append(str(p)) or handle(p))
+    names = _climbing(tmp_path / "a")
+    monkeypatch.setattr(os, "readlink", lambda p: touched.append(str(p)) or read_link(p))
+    for name in names:
+        path = _project(tmp_path / "a", name)
+        found = open_project(path)
+        assert closed_paths(found.project) == (name,)
+        assert any("it is on another computer" in note for note in found.notes)
+        save_project(found.project, path)
+        text = path.read_text()
+        assert network_paths.FOLDER not in text
+        assert reopened(read_project(path)).clips["c1"].path == name
+    outside = re.compile(r"/(net|misc|afs|Network)/")
+    assert not any(outside.match(os.path.normpath(t)) for t in touched)
+    network_paths.allow(True)
+    assert not closed_paths(open_project(path).project)
+
+
+def test_folders_of_such_names_elsewhere_are_ordinary(tmp_path: Path) -> None:
+    for name in ("net/server/x.bvh", "../misc/x.bvh", "../net/a/x.bvh", "loop/x.bvh", "a\0b", "../../x"):
+        assert reason(name, tmp_path / "a") is None
+    if os.name != "nt":
+        (tmp_path / "loop").symlink_to("loop")
+        assert reason("loop/x.bvh", tmp_path) is None
+
+
+@pytest.mark.skipif(os.name == "nt", reason="such places are of other systems")
+def test_a_project_that_lies_on_another_computer_reaches_its_own_files() -> None:
+    away = leads_away(Path("/net/server/share/project"))
+    assert not away("clips/x.bvh") and not away("../x.bvh") and not away("/net/server/x.bvh")
+    assert away("../../../other/x.bvh") and away("/net/other/x.bvh") and away("/afs/server/x.bvh")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="such places and links are of other systems")
+def test_other_files_that_climb_there_are_refused(tmp_path: Path) -> None:
+    names = _climbing(tmp_path)
+    name = names[0]
+    text = re.sub(r"(?m)^  clips:\n(  - .*\n)+", lambda _: f"  clips: '{name}'\n", STUDY.read_text(), count=1)
+    with pytest.raises(FileError, match="is not opened: it is on another computer"):
+        from_text(text, tmp_path / "study.yaml")
+    (tmp_path / "a.gltf").write_bytes(_gltf(name))
+    with pytest.raises(FileError, match="it is on another computer"):
+        read_gltf_clips(tmp_path / "a.gltf")

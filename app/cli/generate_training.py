@@ -349,6 +349,7 @@ def _train_one(options: Namespace, rig: Any, tracks: int, job: Job) -> None:
         folder_of,
         plan_of,
         read_plan,
+        write_plan,
         write_training,
     )
     from metagraph.generation.train_process import TrainingProcess
@@ -373,7 +374,9 @@ def _train_one(options: Namespace, rig: Any, tracks: int, job: Job) -> None:
         same = read_plan(folder).fingerprint() == plan.fingerprint()
     except FileError:
         same = False
-    if not same:
+    if same:
+        write_plan(folder, plan)  # whatever file the one that was there names
+    else:
         write_training(folder, plan, job.learned, job.held)
     process = TrainingProcess(job.out, _telling(options, f"{job.out.stem}: "))
     try:

@@ -37,7 +37,15 @@ from metagraph.graph.requests import Line
 from metagraph.motion.adopt import SkeletonMismatchError, adopt
 from metagraph.motion.clip import Clip, ClipError
 from metagraph.motion.joint_map import RetargetError
-from metagraph.network_paths import is_closed, original, reason
+from metagraph.network_paths import (
+    ANOTHER,
+    is_allowed,
+    is_closed,
+    leads_away,
+    nowhere,
+    original,
+    reason,
+)
 from metagraph.records import dataclass
 from metagraph.wording import told
 
@@ -90,7 +98,7 @@ def from_text(text: str, path: Path, notes: list[str] | None = None) -> Project:
             told("Undo the last change made by hand, or restore a backup."),
         ) from None
     try:
-        return from_data(_upgraded(data, path), notes)
+        return _closed_below(from_data(_upgraded(data, path), notes), path.parent)
     except DataError as error:
         cause = f"{error.where} {error}".strip()
         raise FileError(
@@ -228,6 +236,23 @@ def moved(project: Project, old: Path | None, new: Path) -> Project:
 def _with_paths(project: Project, make: Callable[[str], str]) -> Project:
     """Return the project with every path to a file beside it made anew; those that are closed stay so."""
     return _each_path(project, lambda name: name if is_closed(name) else make(name))
+
+
+def _closed_below(project: Project, folder: Path) -> Project:
+    """Return the project with each path closed that leads from its folder to other computers."""
+    if is_allowed():
+        return project
+    away, found = leads_away(folder), False
+
+    def close(name: str) -> str:
+        nonlocal found
+        if is_closed(name) or not away(name):
+            return name
+        found = True
+        return nowhere(name)
+
+    made = _each_path(project, close)
+    return made if found else project
 
 
 def _each_path(project: Project, renew: Callable[[str], str]) -> Project:
@@ -391,7 +416,7 @@ def closed_words(names: Sequence[str]) -> str:
         "project comes from, give the command --network; in the window choose File, Files on other computers",
         count=len(names),
         name=shown(names[0])[:200],
-        why=reason(names[0]) or "",
+        why=reason(names[0]) or ANOTHER,
     )
 
 
@@ -403,6 +428,8 @@ def load_motions(
     """
     if folder is not None and folder.parent == folder:
         folder = None  # the root of all files is nobody's project: nothing is searched there
+    if folder is not None:
+        project = _closed_below(project, folder)  # a journal's, for one, was read without a folder
     return _load(
         project, folder, _find(_lost(project, folder), folder) if folder is not None else {}, progress
     )

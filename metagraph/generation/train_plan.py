@@ -22,6 +22,7 @@ from metagraph.generation.networks import Kind, Size, Sizes, sizes_of
 from metagraph.generation.poses import PoseRig
 from metagraph.generation.stored import SkeletonCard, TakeCard, skeleton_card
 from metagraph.generation.takes import Marks, Source, Take, check_split
+from metagraph.network_paths import refused
 
 Loss = Literal["paper", "whitened", "finished", "matching", "evidence"]
 PLAN, TAKES, STOP = "plan.json", "takes.npz", "stop"
@@ -176,13 +177,16 @@ def read_plan(folder: Path) -> TrainingPlan:
     """Read a training's plan. Raises FileError."""
     path = folder / PLAN
     try:
-        return msgspec.json.decode(path.read_bytes(), type=TrainingPlan)
+        plan = msgspec.json.decode(path.read_bytes(), type=TrainingPlan)
     except FileNotFoundError:
         raise FileError(
             path, "there is no training to go on with", remedy="Begin one: leave 'resume' out."
         ) from None
     except (OSError, msgspec.DecodeError, ValueError) as error:
         raise FileError(path, f"is no training's plan ({error})", remedy=_REMEDY) from None
+    if (why := refused(plan.out, folder)) is not None:
+        raise FileError(path, f"its model's file is not written: {why}", plan.out[:200], _REMEDY)
+    return plan
 
 
 def read_takes(folder: Path, plan: TrainingPlan) -> tuple[tuple[Take, ...], tuple[Take, ...]]:

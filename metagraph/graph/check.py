@@ -16,7 +16,7 @@ from metagraph.graph.expand import reachable
 from metagraph.graph.manual_check import check_manual
 from metagraph.graph.model import KINDS, LAYERS, Action, ClipEntry, MetaGraph, Project
 from metagraph.graph.problem import Problem, Severity
-from metagraph.network_paths import original, reason
+from metagraph.network_paths import ANOTHER, original, reason
 from metagraph.uncollected import uncollected
 from metagraph.wording import told
 
@@ -61,7 +61,7 @@ def _why_missing(entry: ClipEntry) -> tuple[str, str]:
     if path != entry.path:
         return (
             told("the file of clip '{name}' is not opened: {why} ({path})",
-                 name=entry.name, why=reason(path) or "", path=path),
+                 name=entry.name, why=reason(path) or ANOTHER, path=path),
             told("If you trust the project, choose 'Files on other computers' or give --network."),
         )  # fmt: skip
     return (

@@ -319,7 +319,7 @@ def plan_from(
         raise failure(
             plain_words(message), ".".join(filter(None, (where, unknown[1] if unknown else "")))
         ) from None
-    for where, cause in (*_strange_files(data), *faults_of(plan)):
+    for where, cause in (*_strange_files(data, path.parent), *faults_of(plan)):
         raise failure(cause, where)
     return plan
 
@@ -327,15 +327,17 @@ def plan_from(
 FILES = ("clips", "reference", "project", "motion", "video", "audio")  # fields that name files
 
 
-def _strange_files(data: Any, where: str = "", named: bool = False) -> Iterator[tuple[str, str]]:
+def _strange_files(
+    data: Any, folder: Path, where: str = "", named: bool = False
+) -> Iterator[tuple[str, str]]:
     """Yield the files of a plan that are on other computers or devices, and are not to be opened."""
     if isinstance(data, Mapping):
         for key, value in data.items():
-            yield from _strange_files(value, f"{where}.{key}".lstrip("."), key in FILES)
+            yield from _strange_files(value, folder, f"{where}.{key}".lstrip("."), key in FILES)
     elif isinstance(data, list):
         for n, value in enumerate(data):
-            yield from _strange_files(value, f"{where}[{n}]", named)
-    elif named and isinstance(data, str) and (why := refused(data)) is not None:
+            yield from _strange_files(value, folder, f"{where}[{n}]", named)
+    elif named and isinstance(data, str) and (why := refused(data, folder)) is not None:
         yield where, f"'{shown(data)[:200]}' is not opened: {why}; give the command --network if you trust it"
 
 

@@ -22,6 +22,7 @@ from metagraph.generation.train_plan import (
     read_plan,
     read_takes,
     settings_for,
+    write_plan,
     write_training,
 )
 from tests.generation.makers import babble, conversation, moving, rig
@@ -95,3 +96,20 @@ def test_by_the_papers_loss_nothing_is_done_that_the_paper_does_not() -> None:
     assert (own.loss, own.voices, own.head, own.noise, own.known) == ("paper", 0, 0, 0, 1)
     assert own.past_dropped == 0.4, "the paper's own"
     assert settings_for(None).voices > 0
+
+
+def test_a_plan_names_no_file_on_another_computer(takes: Any, tmp_path: Path) -> None:
+    folder = folder_of(tmp_path / "a.mgmodel")
+    write_training(folder, plan(takes, tmp_path / "a.mgmodel"), takes[:1], takes[1:])
+    up = "../" * (len(folder.resolve().parts) - 1)
+    for name in (
+        "//server/share/a.mgmodel",
+        r"\\server\a.mgmodel",
+        "/net/server/a",
+        f"{up}net/server/a",
+        "nul",
+    ):
+        write_plan(folder, msgspec.structs.replace(read_plan(folder), out=name))
+        with pytest.raises(FileError, match="its model's file is not written: it is"):
+            read_plan(folder)
+        write_plan(folder, plan(takes, tmp_path / "a.mgmodel"))

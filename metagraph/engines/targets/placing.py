@@ -113,7 +113,7 @@ def place(
         known = {**(before.replaced or {}), **before.files}
         for name in sorted(known.keys() - digests.keys()):
             old = folder / name
-            if reason(name) is not None or not is_inside(old, folder):
+            if reason(name, folder) is not None or not is_inside(old, folder):
                 continue  # no name that an export would have written
             if is_file(old) and before.knows(name, digest(old)):
                 gone.append(name)
