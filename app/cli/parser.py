@@ -31,6 +31,7 @@ examples:
   metagraph my.metagraph.yaml                 open a project in the window
   metagraph import my.metagraph.yaml clips/   add all clips of a folder (the project is made if need be)
   metagraph check my.metagraph.yaml           list what is wrong, and what to do about it
+  metagraph verify my.metagraph.yaml          compare all files with their digests; game/ for an export
   metagraph plan my.metagraph.yaml -s 20      print a performance of 20 seconds
   metagraph render my.metagraph.yaml -o show.mp4 -s 20
   metagraph annotate my.metagraph.yaml talk.eaf --learn
@@ -52,6 +53,7 @@ COMMANDS: dict[str, tuple[str, bool, str]] = {
     "import": ("import_command", True, "add clips to a project, made if it is not there"),
     "label": ("label_command", False, "label the clips of a folder by their names and motion, and say why"),
     "check": ("check_command", True, "list the problems of a project"),
+    "verify": ("verify_command", False, "tell whether a project or an export is whole, and what is not"),
     "merge": (
         "merge_command",
         False,

@@ -171,14 +171,22 @@ def sweep(folder: Path) -> list[Path]:
     when it was not touched for a day.
     """
     swept: list[Path] = []
-    with suppress(OSError), os.scandir(folder) as found:
-        for entry in found:
+    for path in forsaken(folder):
+        with suppress(OSError):
+            path.unlink()
+            swept.append(path)
+    return swept
+
+
+def forsaken(folder: Path) -> list[Path]:
+    """Return what writers that are gone have left half-written in a folder."""
+    found: list[Path] = []
+    with suppress(OSError), os.scandir(folder) as entries:
+        for entry in entries:
             match = _UNFINISHED.fullmatch(entry.name)
             if match and entry.is_file(follow_symlinks=False) and _is_forsaken(match["mark"], entry):
-                with suppress(OSError):
-                    Path(entry.path).unlink()
-                    swept.append(Path(entry.path))
-    return swept
+                found.append(Path(entry.path))
+    return found
 
 
 def _is_forsaken(mark: str | None, entry: os.DirEntry[str]) -> bool:

@@ -37,6 +37,25 @@ def journals_for(saved: Path, register: JournalRegister) -> list[Path]:
     return in_order(found)
 
 
+def journals_beside(saved: Path) -> list[Path]:
+    """Return all journals in a project file's folder that belong to it, by name or by what they hold, the
+    latest last: also those that somebody writes to, and those kept as damaged. Nothing is written for that.
+    """
+    real = saved.resolve()
+    own = re.compile(rf"{re.escape(f'.{real.name}')}(\.[0-9a-f]+)?\.(journal|old)({re.escape(DAMAGED)})?")
+    digest: str | None = None
+    with suppress(FileError):
+        digest = file_digest(real)
+    beside: list[Path] = []
+    with suppress(OSError):
+        beside = [p for p in real.parent.iterdir() if re.fullmatch(f"{ANY}({re.escape(DAMAGED)})?", p.name)]
+    return in_order(
+        path
+        for path in beside
+        if is_file(path) and (own.fullmatch(path.name) or _belongs(path, None, real, digest))
+    )
+
+
 def _belongs(journal: Path, known: KnownJournal | None, saved: Path, digest: str | None) -> bool:
     named = known.project if known is not None else head_of(journal).get("file")
     if not isinstance(named, str) or not named:

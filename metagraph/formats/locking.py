@@ -129,9 +129,9 @@ def is_here(owner: Owner) -> bool:
     return (owner.host, owner.machine) == (platform.node(), _machine())
 
 
-def is_gone(owner: Owner | None, file: Path) -> bool:
+def is_gone(owner: Owner | None, file: Path, look_only: bool = False) -> bool:
     """Return whether nobody writes to a lock or journal any more. owner: as the file says; None where it says
-    nothing.
+    nothing. look_only: make no file to ask the drive for its time; this computer's clock counts.
 
     On this computer that is certain; for another one it means that the file was not touched for long.
     """
@@ -141,7 +141,7 @@ def is_gone(owner: Owner | None, file: Path) -> bool:
         except ProcessLookupError:
             return True
         return bool(started and owner.started) and started != owner.started
-    return _untouched(file) > STALE
+    return _untouched(file, look_only) > STALE
 
 
 def process_mark() -> str:
@@ -174,15 +174,17 @@ def mark_is_gone(mark: str) -> bool | None:
     return bool(started and now) and started != now
 
 
-def _untouched(file: Path) -> float:
+def _untouched(file: Path, look_only: bool = False) -> float:
     """Return for how many seconds a file was not touched, by the clock of the drive where one may write
-    there.
+    there, unless one only looks.
     """
     try:
         touched = file.stat().st_mtime
     except OSError:
         return 0.0
     now = time.time()
+    if look_only:
+        return now - touched
     with contextlib.suppress(OSError):
         handle, name = tempfile.mkstemp(prefix=".clock-", dir=file.parent)
         now = os.fstat(handle).st_mtime
@@ -211,8 +213,8 @@ def lock_path(saved: Path) -> Path:
     return saved.with_name(f".{saved.name}.lock")
 
 
-def holder(path: Path) -> Holder | None:
-    """Return who has the lock file at `path`, None if nobody."""
+def holder(path: Path, look_only: bool = False) -> Holder | None:
+    """Return who has the lock file at `path`, None if nobody. look_only: see `is_gone`."""
     try:
         content = path.read_bytes()
     except FileNotFoundError:
@@ -223,7 +225,7 @@ def holder(path: Path) -> Holder | None:
         owner = msgspec.json.decode(content, type=Owner)
     except (msgspec.MsgspecError, UnicodeDecodeError):
         owner = None
-    return Holder(owner, is_gone(owner, path), content)
+    return Holder(owner, is_gone(owner, path, look_only), content)
 
 
 class Lock:

@@ -383,7 +383,7 @@ def open_project(path: str | Path, progress: Callable[[int, int], None] | None =
     path = Path(path)
     notes: list[str] = []
     project, found = read_with_digest(path, notes)
-    opened = load_motions(project, path.parent, progress)
+    opened = load_motions(project, path.resolve().parent, progress)  # a link names files from where it leads
     if names := closed_paths(opened.project):
         notes.append(closed_words(names))
     return replace(opened, notes=(*notes, *opened.notes), digest=found)
@@ -431,7 +431,10 @@ def load_motions(
     if folder is not None:
         project = _closed_below(project, folder)  # a journal's, for one, was read without a folder
     return _load(
-        project, folder, _find(_lost(project, folder), folder) if folder is not None else {}, progress
+        project,
+        folder,
+        where_moved(missing_clips(project, folder), folder) if folder is not None else {},
+        progress,
     )
 
 
@@ -443,7 +446,9 @@ def relocate(
     They are found by content, or by name where the content has changed; those that are at their places again
     are read there.
     """
-    return _load(project, folder, _find(_lost(project, folder), where, by_name=True), progress).project
+    return _load(
+        project, folder, where_moved(missing_clips(project, folder), where, by_name=True), progress
+    ).project
 
 
 def load_returned(
@@ -455,7 +460,7 @@ def load_returned(
     return _load(project, folder, {}, progress)
 
 
-def _place(entry: ClipEntry, folder: Path | None) -> Path:
+def clip_place(entry: ClipEntry, folder: Path | None) -> Path:
     """Return where a clip's file should be. Paths written on Windows by hand are understood, too."""
     place = (folder or Path()) / entry.path
     return (
@@ -465,11 +470,11 @@ def _place(entry: ClipEntry, folder: Path | None) -> Path:
     )
 
 
-def _lost(project: Project, folder: Path | None) -> dict[str, list[ClipEntry]]:
+def missing_clips(project: Project, folder: Path | None) -> dict[str, list[ClipEntry]]:
     """Return the clips whose file is not where it should be, by path."""
     out: dict[str, list[ClipEntry]] = {}
     for entry in project.clips.values():
-        if entry.motion is None and not is_file(_place(entry, folder)):
+        if entry.motion is None and not is_file(clip_place(entry, folder)):
             out.setdefault(entry.path, []).append(entry)
     return out
 
@@ -493,7 +498,7 @@ def _load(
     for n, (name, entries) in enumerate(by_path.items()):
         if progress is not None:
             progress(n, len(by_path))
-        place = found.get(name) or _place(entries[0], folder)
+        place = found.get(name) or clip_place(entries[0], folder)
         path = name
         if name in found or "\\" in name:
             absolute_path = folder is None or Path(name).is_absolute()
@@ -567,7 +572,9 @@ def _brought(project: Project, strangers: Iterable[str], notes: list[str]) -> Pr
     return replace(project, clips=clips)
 
 
-def _find(lost: Mapping[str, Iterable[ClipEntry]], folder: Path, by_name: bool = False) -> dict[str, Path]:
+def where_moved(
+    lost: Mapping[str, Iterable[ClipEntry]], folder: Path, by_name: bool = False
+) -> dict[str, Path]:
     """Look below a folder for files with the content of lost ones, those of the same name first.
 
     by_name: take a file of the same name where none has the content; of several the one whose folders agree

@@ -343,6 +343,13 @@ def home(tmp_path: Path) -> Path:
     return folder
 
 
+def test_a_linked_project_finds_its_clips_from_where_it_lies(home: Path, tmp_path: Path) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "elsewhere" / PATH.name).symlink_to(home / PATH)
+    opened = open_project(tmp_path / "elsewhere" / PATH.name)
+    assert not opened.notes and all(entry.motion is not None for entry in opened.project.clips.values())
+
+
 def paths(project: Project) -> list[str]:
     return [e.path for e in project.clips.values()]
 

@@ -218,7 +218,15 @@ def sweep_staging(folder: Path) -> list[Path]:
     """Remove the staging folders of exports that were killed; return them. Those of other computers, which
     cannot be asked, go after a day.
     """
-    swept: list[Path] = []
+    swept = forsaken_staging(folder)
+    for path in swept:
+        shutil.rmtree(path, ignore_errors=True)
+    return swept
+
+
+def forsaken_staging(folder: Path) -> list[Path]:
+    """Return the staging folders that killed exports have left in a folder."""
+    found: list[Path] = []
     with suppress(OSError, ValueError):
         for path in folder.glob(f"{STAGED}*"):
             mark = path.name.removeprefix(STAGED).rpartition("-")[0]
@@ -226,6 +234,5 @@ def sweep_staging(folder: Path) -> list[Path]:
             if gone is None:
                 gone = time.time() - path.stat().st_mtime > FORSAKEN
             if gone and path.is_dir() and not path.is_symlink():
-                shutil.rmtree(path, ignore_errors=True)
-                swept.append(path)
-    return swept
+                found.append(path)
+    return found

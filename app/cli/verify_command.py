@@ -1,0 +1,67 @@
+"""`metagraph verify`: whether a project or an export is whole, and what is not."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+from collections.abc import Sequence
+from pathlib import Path
+
+from app.cli.command_output import say
+from metagraph.engines.verifying_exports import verify
+from metagraph.formats.verified import Verified, counted
+
+INDENT = 2
+
+
+def arguments(parser: ArgumentParser) -> None:
+    """Add the options."""
+    parser.add_argument(
+        "path", type=Path, help="a project, an export's JSON or GLB, or a folder of projects and exports"
+    )
+
+
+def run(options: Namespace) -> int:
+    found = verify(options.path)
+    faults = [fault for one in found for fault in one.faults]
+    data = {
+        "whole": not faults,
+        "checked": [
+            {
+                "path": one.file,
+                "kind": one.kind,
+                "whole": not one.faults,
+                "parts": [
+                    {
+                        "name": part.name,
+                        "words": part.words,
+                        "problems": [
+                            {"place": f.place, "message": f.words, "remedy": f.remedy} for f in part.faults
+                        ],
+                    }
+                    for part in one.parts
+                ],
+            }
+            for one in found
+        ],
+    }
+    say(options, "\n".join([*page(found), last_line(len(faults))]), data)
+    return 3 if faults else 0
+
+
+def page(found: Sequence[Verified]) -> list[str]:
+    """Return what is said of each project and export: a heading, and a line for each part."""
+    lines = []
+    for one in found:
+        lines.append(f"{one.file} ({one.kind})")
+        width = max(len(part.name) for part in one.parts)
+        for part in one.parts:
+            lines.append(f"{'':{INDENT}}{part.name:{width}}  {part.words}")
+            for fault in part.faults:
+                lines.append(f"{'':{INDENT * 2}}{fault.place}: {fault.words}")
+                lines.append(f"{'':{INDENT * 3}}{fault.remedy}")
+    return lines
+
+
+def last_line(count: int) -> str:
+    """Return what is said of all of it."""
+    return f"{counted(count, 'thing is', 'things are')} not whole." if count else "Everything is whole."
