@@ -82,7 +82,7 @@ def state(folder: Path) -> dict[str, tuple[int, bytes]]:
 
 def edited(path: Path, names: list[str]) -> Journal:
     owner, project = new_owner(), read_project(path)
-    journal = Journal(journal_path(path, owner), path, owner)
+    journal = Journal(journal_path(path, owner.sitting), path, owner)
     for name in names:
         after = edits.rename_project(project, name)
         journal.edit(project, after, f"Rename to {name}")
