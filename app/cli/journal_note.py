@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from contextlib import suppress
+from collections.abc import Sized
 from pathlib import Path
 
 from metagraph.errors import FileError
@@ -13,12 +13,23 @@ from metagraph.formats.recovery import left_journals, read_journal
 def warn_of_journals(path: Path) -> None:
     """Say on standard error which journals a crash has left beside a project file."""
     for journal in left_journals(path.resolve()):
-        with suppress(FileError):
+        try:
             left = read_journal(journal, path)
-            if left is not None:
-                edits = "1 edit" if left.edits == 1 else f"{left.edits:,} edits"
-                print(
-                    f"note: {journal.name} holds {edits} that a crash kept from being saved: open "
-                    f"{path.name} in the window to recover them",
-                    file=sys.stderr,
-                )
+        except FileError as error:
+            print(f"note: {error}", file=sys.stderr)
+            continue
+        if left is not None:
+            lost = f" ({_edits(len(left.lost))} in it {_are(left.lost)} damaged)" if left.lost else ""
+            print(
+                f"note: {journal.name} holds {_edits(left.edits)} that a crash kept from being saved{lost}: "
+                f"open {path.name} in the window to recover them",
+                file=sys.stderr,
+            )
+
+
+def _edits(count: int) -> str:
+    return "1 edit" if count == 1 else f"{count:,} edits"
+
+
+def _are(things: Sized) -> str:
+    return "is" if len(things) == 1 else "are"

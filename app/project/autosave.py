@@ -63,7 +63,7 @@ class Autosave:
             self.journal = journal  # else it begins with the first edit, and with the project before that
         if old is not None and (base is None or old.path != journal.path):
             old.remove()
-        self._forget_abandoned(journal.path)
+        self._forget_abandoned(journal.path if journal.begun else None)
 
     def _made(self, place: Path) -> Journal:
         document = self.document

@@ -10,7 +10,7 @@ action's id leads to; `check` reports that.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 from metagraph.formats.fields import Data
 
@@ -38,6 +38,21 @@ def _with_identity(action: Data, clips: Mapping[str, Data]) -> Data:
     if sha256:
         known["clip_sha256"] = sha256[:DIGITS]
     return {"id": action["id"], "clip": action["clip"], **known, **action}
+
+
+class _Clip(NamedTuple):
+    name: str
+    digest: str
+
+
+def without_clip_identities(data: Data) -> Data:
+    """Return the data of a project file as it was before `with_clip_identity`."""
+    clips = {clip["id"]: _Clip(clip["name"], clip.get("sha256", "")) for clip in data["clips"]}
+    layers = {
+        layer: {**graph, "actions": [without_clip_identity(action, clips) for action in graph["actions"]]}
+        for layer, graph in data["layers"].items()
+    }
+    return {**data, "layers": layers}
 
 
 def without_clip_identity(action: Data, clips: Mapping[str, Any]) -> Data:

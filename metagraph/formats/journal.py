@@ -79,6 +79,8 @@ def _differing(before: Project, after: Project) -> Data:
             out[key] = to_data(_bare(after))[key]
     if before.hidden != after.hidden:
         out["hidden"] = list(after.hidden)
+    if before.language != after.language:
+        out["language"] = after.language
     for key in STRUCTS:
         if getattr(before, key) is not getattr(after, key) and getattr(before, key) != getattr(after, key):
             out[key] = struct_data(getattr(after, key))

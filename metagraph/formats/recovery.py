@@ -12,10 +12,13 @@ from pathlib import Path
 
 import msgspec
 
+from metagraph.budgets import TEXT_FILE
 from metagraph.errors import FileError
 from metagraph.files import is_file, read_file
 from metagraph.formats.appended_file import Identity
-from metagraph.formats.data import from_data, to_data
+from metagraph.formats.canonical_text import canonical
+from metagraph.formats.clip_identity import without_clip_identities
+from metagraph.formats.data import FORMAT, from_data, to_data
 from metagraph.formats.fields import Data, DataError
 from metagraph.formats.journal_records import LostEdit, Record, Records, read_records
 from metagraph.formats.locking import Owner, is_gone
@@ -23,6 +26,7 @@ from metagraph.formats.replay import Replay
 from metagraph.formats.store import content_digest, file_digest, from_text, read_project
 from metagraph.graph.model import Project
 from metagraph.records import dataclass
+from metagraph.uncollected import uncollected
 
 JOURNAL = 1 << 33  # bytes of a journal that are read: as many as a person can fill
 DAMAGED = (
@@ -81,6 +85,7 @@ def recover(journal: Path, saved: Path | None) -> tuple[Project, int] | None:
     return (found.project, found.edits) if found is not None else None
 
 
+@uncollected()
 def read_journal(journal: Path, saved: Path | None) -> Left | None:
     """Return what a journal holds, None if that is no edit. A damaged record costs no other.
 
@@ -129,7 +134,7 @@ def read_journal(journal: Path, saved: Path | None) -> Left | None:
     ):
         lost = [LostEdit()] * head["unsaved"] + lost
     if not isinstance(base, dict):
-        base = to_data(read_project(saved, []) if saved is not None and saved.is_file() else Project())
+        base = _saved_data(saved, as_opened=not changed)
     project, good, unfit = _worked_in(base, edits)
     if not good and not before:
         raise FileError(journal, _ANOTHER if changed and not behind else "is damaged", "line 2", _KEPT)
@@ -224,6 +229,22 @@ def _of_text(text: object, journal: Path) -> Data | None:
     with suppress(FileError):
         return to_data(from_text(text, journal, [])) if isinstance(text, str) else None
     return None
+
+
+def _saved_data(saved: Path | None, as_opened: bool) -> Data:
+    """Return what the project file holds. as_opened: it is as somebody opened or saved it, so no project need
+    be made of it to know that it is one. Raises FileError.
+    """
+    if saved is None or not saved.is_file():
+        return to_data(Project())
+    if as_opened:
+        with suppress(UnicodeDecodeError, KeyError, TypeError, AttributeError):
+            data = canonical(read_file(saved, TEXT_FILE).decode("utf-8-sig"))
+            if data is not None and data["metagraph"] == FORMAT:
+                data = without_clip_identities(data)
+                Replay(data)  # has all that changes are worked into, though a hand may have written it
+                return data
+    return to_data(read_project(saved, []))
 
 
 def _settled(entries: Sequence[Record | LostEdit], digest: str | None) -> int:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from metagraph.formats.fields import Data
 from metagraph.formats.journal import ABOUT, KEYED
+from metagraph.graph.conversation import AUTO
 from metagraph.graph.model import LAYERS
 
 
@@ -36,6 +37,8 @@ class Replay:
         out = {**_closed(self.top), "layers": {layer: _closed(part) for layer, part in self.layers.items()}}
         if not out.get("hidden", True):
             del out["hidden"]  # as a project without any is written
+        if out.get("language") == AUTO:
+            del out["language"]
         return (
             {**out, "manual": {layer: _closed(part) for layer, part in self.manual.items()}}
             if self.manual

@@ -29,7 +29,7 @@ from metagraph.formats.replay import apply
 from metagraph.formats.store import SUFFIX, content_digest, encoded, file_digest, save_project
 from metagraph.graph import conversation_edits, edits
 from metagraph.graph.conversation import Conversation, Rates, Segment, Side, Word
-from metagraph.graph.model import Project
+from metagraph.graph.model import Action, Project
 from tests.processes import started
 from tests.projects import clip, histories
 from tests.sittings import kill_sittings
@@ -44,7 +44,13 @@ def large(count: int) -> Project:
         Project("large"), [(f"clips/{n}.glb", 0, "ab" * 32, clip(f"clip {n}")) for n in range(20)]
     )
     project = edits.add_stance(project, "arms", "rest", ["c1"])
-    return edits.place(project, [f"c{1 + n % 20}" for n in range(count)], "arms", "gesture", "s21")
+    made = {  # numbered as edits would, which take seconds to count so many
+        f"a{n}": Action(f"a{n}", f"c{1 + n % 20}", "gesture", "arms", "s21", f"clip {n % 20}")
+        for n in range(23, 23 + count)
+    }
+    graph = project.graphs["arms"]
+    graph = replace(graph, actions={**graph.actions, **made})
+    return replace(project, graphs={**project.graphs, "arms": graph})
 
 
 # --- changes

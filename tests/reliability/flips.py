@@ -25,6 +25,7 @@ from metagraph.formats.store import SUFFIX, content_digest, encoded, save_projec
 from metagraph.graph import conversation_edits, edits
 from metagraph.graph.conversation import Conversation, Segment, Side, Word
 from metagraph.graph.model import Project
+from sample_clips.make.numbered_ids import numbered_ids
 from tests.projects import clip
 
 Edit = Callable[[Project], Project]
@@ -82,9 +83,10 @@ def journals(folder: Path) -> Iterable[tuple[str, Path, Path | None, int]]:
         place = folder / str(number)
         place.mkdir()
         saved = None if kind == "untitled" else place / f"show{SUFFIX}"
-        states = [first()]
-        for edit in made:
-            states.append(edit(states[-1]))
+        with numbered_ids():
+            states = [first()]
+            for edit in made:
+                states.append(edit(states[-1]))
         if saved is not None:
             save_project(states[0], saved)
         journal = Journal(place / ".show.journal", saved, new_owner())

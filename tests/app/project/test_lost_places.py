@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+from pathlib import Path
 
 import pytest
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
@@ -209,7 +210,8 @@ def test_saving_to_a_renamed_folder_asks_and_goes_there(desk, saved, qtbot, monk
     assert read_project(folder / saved.name).settings.seed == 8
     assert lock_path(folder / saved.name).exists()
     desk.document.close_journal()
-    assert {path.name for path in folder.iterdir()} == {saved.name}, "no lock and no journal stays"
+    kept = {saved.name, f"{saved.name}.1"}
+    assert {path.name for path in folder.iterdir()} == kept, "no lock and no journal stays"
 
 
 def test_without_an_edit_a_renamed_folder_is_noticed_too(desk, saved, qtbot, monkeypatch):
@@ -246,6 +248,26 @@ def test_edits_of_a_folder_that_is_gone_are_kept_and_offered(desk, saved, qtbot,
     assert recovered(desk, qtbot, lambda: desk.open(saved)) == 8
     desk.document.save(elsewhere)
     assert read_project(elsewhere).settings.seed == 8
+
+
+@pytest.mark.skipif(not Path("/proc/self/fd").is_dir(), reason="this system lists no open files")
+def test_a_folder_that_goes_and_comes_back_leaves_no_open_files_and_no_journals(desk, saved, qtbot, tmp_path):
+    opened(desk, saved, qtbot)
+    away = tmp_path / "away"
+    handles, listed = [], []
+    for n in range(4):
+        seed(desk, 2 * n + 1)
+        shutil.copytree(saved.parent, away)
+        shutil.rmtree(saved.parent)
+        seed(desk, 2 * n + 2)
+        assert desk.document.secured() and desk.document.journal_place.is_relative_to(state_folder())
+        away.rename(saved.parent)
+        desk.document.save()
+        assert read_project(saved).settings.seed == 2 * n + 2
+        assert not list(saved.parent.glob(".*.journal")), "what it held is saved"
+        handles.append(len(list(Path("/proc/self/fd").iterdir())))
+        listed.append(list((state_folder() / "journals").glob("*")))
+    assert len(set(handles)) == 1 and not any(listed)
 
 
 def test_looking_after_it_moves_edits_out_of_a_folder_that_is_gone(desk, saved, qtbot):
