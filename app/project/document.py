@@ -32,6 +32,7 @@ from metagraph.graph.listing_edits import listed_otherwise
 from metagraph.graph.model import Project
 
 Edit = Callable[[Project], Project]
+UNDO_STEPS = 300  # most that can be undone: where each changes all of 10,000 actions they hold 0.8 GB
 
 
 class _Change(QUndoCommand):
@@ -101,6 +102,7 @@ class Document(QObject):
         self.project = Project()
         self.path: Path | None = None
         self.undo_stack = QUndoStack(self)
+        self.undo_stack.setUndoLimit(UNDO_STEPS)
         self.undo_stack.cleanChanged.connect(self.state_changed)
         self.undo_stack.indexChanged.connect(self.state_changed)
         self.owner = new_owner()

@@ -159,9 +159,8 @@ class Reviewing(QObject):
         if step is not None:
             self.pace.decided(self._clock.elapsed() / 1000)
         self._steps.append(step)
-        at = self.document.undo_stack.index()
         self.document.edit(words, lambda p: taken.project if p is project else review.take(p, clips).project)
-        if self.document.undo_stack.index() == at:
+        if self.document.project is project:
             self._steps.pop()  # it was placed just so already
         self._learn(clips)
         if step is None:

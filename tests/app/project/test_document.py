@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import json
 import shutil
+from itertools import pairwise
 
 import pytest
 
 from app.project.autosave import shelter, state_folder
-from app.project.document import Document
+from app.project.document import UNDO_STEPS, Document
 from app.project.writing import project_name
 from metagraph.errors import FileError
+from metagraph.formats.history import Step
 from metagraph.formats.journal_records import read_records
 from metagraph.formats.recovery import read_journal, recover
-from metagraph.formats.store import read_project, save_project
+from metagraph.formats.store import SUFFIX, read_project, save_project
 from metagraph.graph import edits
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
@@ -254,3 +256,30 @@ def test_a_document_that_opened_nothing_is_autosaved_from_the_first_edit_on(qapp
     found, count = recover(document.journal_place, None)
     assert ([e.name for e in found.clips.values()], count) == (["a"], 1)
     document.close_journal()
+
+
+def test_the_last_steps_can_be_undone_and_no_more_are_held(document, toy, monkeypatch, tmp_path):
+    beat = toy.id(document.project, "rest beat lf")
+    document.save(tmp_path / f"mine{SUFFIX}")
+    for n in range(UNDO_STEPS + 5):
+        likely(document, beat, 2.0 + n)
+    assert document.undo_stack.count() == UNDO_STEPS
+    while document.undo_stack.canUndo():
+        document.undo()
+    assert document.project.action(beat).likelihood == 2.0 + 4
+    assert document.dirty, "what was saved is further back"
+    left = read_journal(document.journal_place, document.path)
+    assert left.project.action(beat).likelihood == 2.0 + 4
+
+
+def test_steps_that_a_crash_left_are_undone_as_far_as_any(document, toy):
+    states = [document.project]
+    beat = toy.id(document.project, "rest beat lf")
+    for n in range(UNDO_STEPS + 3):
+        states.append(edits.update_actions(states[-1], (beat,), likelihood=2.0 + n))
+    steps = tuple(Step(f"Step {n}", *two) for n, two in enumerate(pairwise(states)))
+    document.load(states[-1], None, steps=steps)
+    assert document.undo_stack.count() == UNDO_STEPS and document.project == states[-1]
+    while document.undo_stack.canUndo():
+        document.undo()
+    assert document.project == states[3]
