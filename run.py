@@ -69,9 +69,9 @@ def main(arguments):
         return trouble
     if testing:
         return prepare_and_test(arguments[1:])
+    # In the folder it was called from, which paths are relative to; no module is taken from there (-P).
     return environment(0) or subprocess.call(
-        [str(PYTHON), "-m", "app.cli", *(arguments or (["window", "--sample"] if screen else ["demo"]))],
-        cwd=ROOT,
+        [str(PYTHON), "-P", "-m", "app.cli", *(arguments or (["window", "--sample"] if screen else ["demo"]))]
     )
 
 

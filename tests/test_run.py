@@ -333,7 +333,7 @@ def test_it_starts_the_window_or_the_same_job_without_one(
     calls = Started(5)
     monkeypatch.setattr(run.subprocess, "call", calls)
     assert run.main(arguments) == 5
-    assert calls[0][1:] == ["-m", "app.cli", *started]
+    assert calls[0][1:] == ["-P", "-m", "app.cli", *started]
 
 
 def test_the_tests_are_lint_types_imports_and_pytest_and_one_failure_is_a_failure(

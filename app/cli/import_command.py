@@ -102,6 +102,8 @@ def _imported(options: Namespace, output: ProjectOutput) -> int:
     if not options.json:
         for note in counted(result.notes):
             print(f"note: {note}", file=sys.stderr)
+    before = {(entry.path, entry.take) for entry in project.clips.values()}
+    again = sum((file, take) in before for file, take, *_ in result.loaded)
     if result.loaded:
         project = result.into(project)
     at = {(entry.path, entry.take): entry.id for entry in project.clips.values()}
@@ -114,6 +116,7 @@ def _imported(options: Namespace, output: ProjectOutput) -> int:
     data = {
         "project": str(path),
         "imported": len(result.loaded),
+        "new": len(result.loaded) - again,
         "retargeted": result.retargeted,
         **({"labelled": placed, "not_labelled": list(left)} if options.labels is not None else {}),
         **({"taken": taken} if taken else {}),
@@ -121,7 +124,10 @@ def _imported(options: Namespace, output: ProjectOutput) -> int:
         "notes": list(result.notes),
         "remedies": [remedy.command for remedy in remedies(result)],
     }
-    found = [*taken, *([said(result, window=False)] if files or not taken else [])]
+    imported = said(result, window=False)
+    if again:
+        imported += f" ({len(result.loaded) - again} new, {again} here already and read again)"
+    found = [*taken, *([imported] if files or not taken else [])]
     words = f"{path}: {'. '.join(found)}"
     say(options, words if options.labels is None else f"{words}. Labelled {placed} of {len(rows)}", data)
     if not result.loaded and result.failures:

@@ -8,6 +8,7 @@ from typing import Any
 
 from app.cli.command_output import opened, say
 from app.cli.journal_note import warn_of_journals
+from metagraph.errors import FileError
 from metagraph.formats.clips import SUFFIXES, read_clips
 from metagraph.graph.expand import size
 from metagraph.graph.model import KINDS, LAYERS
@@ -20,6 +21,13 @@ def arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     path: Path = options.path
+    if path.is_dir():
+        raise FileError(
+            path,
+            "is a folder",
+            "the path",
+            "Name a project, an exported JSON or a clip file in it; 'metagraph verify' takes a folder.",
+        )
     if path.suffix.lower() in SUFFIXES:
         clips = read_clips(path)
         from metagraph.motion.roles import find_roles

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
@@ -11,16 +12,21 @@ from app.cli.outputs import ProjectOutput
 from metagraph.errors import FileError
 from metagraph.formats.merging import MergeError, merge
 from metagraph.formats.outputs import claim, wrote
-from metagraph.formats.store import read_project
+from metagraph.formats.store import SUFFIX, read_project
 from metagraph.graph.model import Project
 from metagraph.wording import told
 
 
 def arguments(parser: ArgumentParser) -> None:
     """Add the options."""
-    parser.add_argument("base", type=Path, help="the project as it was before either changed it")
-    parser.add_argument("ours", type=Path, help="the project with our changes; the result is written here")
-    parser.add_argument("theirs", type=Path, help="the project with their changes")
+    parser.add_argument("base", nargs="?", type=Path, help="the project as it was before either changed it")
+    parser.add_argument(
+        "ours", nargs="?", type=Path, help="the project with our changes; the result is written here"
+    )
+    parser.add_argument("theirs", nargs="?", type=Path, help="the project with their changes")
+    parser.add_argument(
+        "--setup", action="store_true", help="print what sets this program up as Git's merge driver"
+    )
     parser.add_argument("-o", "--output", type=Path, help="write the result here instead of over OURS")
     parser.add_argument(
         "--prefer",
@@ -31,7 +37,33 @@ def arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--name", help="what to call the project in reports (Git passes %%P)")
 
 
+SETUP = """\
+Run this in each clone of the repository:
+  git config merge.metagraph.driver '{driver} merge %O %A %B --name %P'
+Put this into its .gitattributes, once for everybody:
+  *{suffix} merge=metagraph
+and this into its .gitignore:
+  *{suffix}.[0-9]*
+  .*{suffix}.*
+  *.labels*.html"""
+
+
 def run(options: Namespace) -> int:
+    if options.setup:
+        driver = f'"{program()}"'
+        say(options, SETUP.format(driver=driver, suffix=SUFFIX), {"driver": driver})
+        return 0
+    if options.theirs is None:
+        print("metagraph merge: it takes three projects: BASE OURS THEIRS", file=sys.stderr)
+        return 2
+    for given in (options.base, options.ours, options.theirs):
+        if not given.exists():
+            raise FileError(
+                given,
+                told("is not there"),
+                told("the project"),
+                told("Name three projects: BASE OURS THEIRS."),
+            )
     path = options.output or options.ours
     if not (path.exists() and path.samefile(options.ours)):
         claim(path)
@@ -41,6 +73,11 @@ def run(options: Namespace) -> int:
     if not path.samefile(options.ours):
         wrote(path)
     return code
+
+
+def program() -> Path:
+    """Return where the `metagraph` command is that belongs to this Python."""
+    return Path(sys.executable).with_name("metagraph.exe" if os.name == "nt" else "metagraph")
 
 
 def _merged(options: Namespace, output: ProjectOutput) -> int:

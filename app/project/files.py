@@ -34,6 +34,7 @@ from metagraph.formats.locking import Lock
 from metagraph.formats.new_file import PRIVATE
 from metagraph.formats.recovery import Left
 from metagraph.formats.store import SUFFIX, Opened, absolute, read_project
+from metagraph.formats.versions import is_version
 from metagraph.graph.model import Project
 from metagraph.network_paths import allow
 
@@ -112,7 +113,7 @@ class Files(QObject):
         if not self.may_leave():
             return
         left = self.document.project
-        if template:
+        if template or is_version(path):  # a version is history: what comes of it is saved elsewhere
             self._open(path, left, template=True, name=name)
             return
         self._look(path, left, None)

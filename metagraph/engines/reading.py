@@ -74,10 +74,11 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         raise DataError("$.glb", "should be the name of a file beside this one")
     skeleton = _skeleton(document.joints)
     takes: list[Clip] = []
+    glb = glb_beside(path, document)
     if motions:
         from metagraph.formats.gltf import read_gltf_clips
 
-        takes = read_gltf_clips(glb_beside(path, document))
+        takes = read_gltf_clips(glb)
     # Clips of one frame are read behind the longer ones.
     longer = sorted(x.animation for x in document.clips if x.frames > 1) or [
         x.animation for x in document.clips

@@ -14,6 +14,7 @@ from metagraph.errors import FileError
 from metagraph.files import read_file
 from metagraph.formats.atomic import sync_folder, unfinished, write_all, write_atomically
 from metagraph.formats.new_file import Access, access_of, open_new
+from metagraph.formats.store import SUFFIX
 from metagraph.records import dataclass
 from metagraph.wording import Told, told
 
@@ -34,6 +35,12 @@ def version_path(path: Path, number: int) -> Path:
     """Return where an earlier version of a project file lies: beside the file itself, not beside a link."""
     path = path.resolve()
     return path.with_name(f"{path.name}.{number}")
+
+
+def is_version(path: Path) -> bool:
+    """Return whether a file is called like an earlier version of a project."""
+    stem, _, number = path.name.rpartition(".")
+    return stem.endswith(SUFFIX) and number.isascii() and number.isdigit() and not number.startswith("0")
 
 
 def earlier_versions(path: Path) -> tuple[Version, ...]:

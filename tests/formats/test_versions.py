@@ -12,7 +12,8 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.formats import versions as v
-from metagraph.formats.versions import earlier_versions, version_path, write_project
+from metagraph.formats.store import SUFFIX
+from metagraph.formats.versions import earlier_versions, is_version, version_path, write_project
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -154,3 +155,19 @@ def test_a_kill_at_any_step_leaves_the_newest_in_its_place(path: Path, step: int
     assert done.returncode in (0, -9)
     assert write_project(path, b"after", 3) is None and path.read_text() == "after"
     assert len(texts(path)) == 3 and texts(path)[0] in ("4", "new")
+
+
+@pytest.mark.parametrize(
+    ("name", "is_one"),
+    [
+        (f"a{SUFFIX}.1", True),
+        (f"a{SUFFIX}.12", True),
+        (f"a{SUFFIX}", False),
+        (f"a{SUFFIX}.01", False),
+        (f"a{SUFFIX}.x", False),
+        ("a.1", False),
+        (f"a{SUFFIX}.²", False),
+    ],
+)
+def test_a_version_is_known_by_its_name(name: str, is_one: bool) -> None:
+    assert is_version(Path(name)) == is_one

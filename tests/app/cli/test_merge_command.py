@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -92,6 +93,26 @@ def test_where_both_added_the_project_there_is_no_base(tmp_path: Path) -> None:
     assert gestures(read_project(paths[1])) == {"wave": "wave", "nod": "nod"}
 
 
+def test_what_is_not_there_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    paths = three(tmp_path, beginning(), beginning(), beginning())
+    assert main(["merge", paths[0], str(tmp_path / "gone.yaml"), paths[2]]) == 1
+    assert "gone.yaml, the project: is not there" in capsys.readouterr().err
+    assert main(["merge", paths[0]]) == 2 and "BASE OURS THEIRS" in capsys.readouterr().err
+
+
+def test_the_setup_names_this_installation_and_git_can_run_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["merge", "--setup"]) == 0
+    lines = [line.strip() for line in capsys.readouterr().out.splitlines()]
+    (driver,) = (line for line in lines if line.startswith("git config"))
+    assert str(Path(sys.executable).with_name("metagraph")) in driver
+    assert f"*{SUFFIX} merge=metagraph" in lines and f"*{SUFFIX}.[0-9]*" in lines
+    git(tmp_path, "init", "-q")
+    git(tmp_path, *shlex.split(driver)[1:])
+    assert git(tmp_path, "config", "merge.metagraph.driver").strip().endswith("merge %O %A %B --name %P")
+
+
 def test_a_file_that_is_no_project_is_refused_and_ours_stays(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -178,4 +199,4 @@ def test_a_file_with_gits_conflict_marks_says_so(tmp_path: Path, capsys: pytest.
     (tmp_path / NAME).write_text(text)
     assert main(["check", str(tmp_path / NAME)]) == 1
     said = capsys.readouterr().err
-    assert "line 2" in said and "Git" in said and "metagraph merge" in said
+    assert "line 2" in said and "Git" in said and "together.md" in said

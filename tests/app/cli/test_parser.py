@@ -465,3 +465,24 @@ def test_sums_are_not_shared_among_threads_since_numpy_is_loaded_after_that_is_s
         timeout=300,
     )
     assert kept.stdout.split()[-1] == "3"
+
+
+def test_an_import_says_what_is_new_and_what_was_here(
+    small: Path, clips: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_glb(clips / "shrug.glb", [clip("shrug")])
+    assert main(["import", str(small), str(clips)]) == 0
+    assert "(1 new, 3 here already and read again)" in capsys.readouterr().out
+
+
+def test_info_on_a_folder_and_on_a_foreign_glb_says_so(
+    small: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["info", str(tmp_path)]) == 1
+    assert "is a folder" in capsys.readouterr().err
+    assert main(["export", str(small), "-o", str(tmp_path / "game")]) == 0
+    (glb,) = (tmp_path / "game").glob("*.glb")
+    glb.write_bytes(glb.read_bytes() + bytes(4))
+    capsys.readouterr()
+    assert main(["info", str(glb.with_suffix(".json"))]) == 1
+    assert "is not the GLB that small.json was written with" in capsys.readouterr().err

@@ -113,3 +113,13 @@ def test_a_save_whose_version_cannot_be_kept_is_whole_and_tells_so(drive, path: 
 
 def test_the_command_waits_for_a_file(drive) -> None:
     assert not drive.shell.actions["versions"].isEnabled()
+
+
+def test_a_version_that_is_opened_as_a_file_is_a_copy(drive, path: Path) -> None:
+    drive.files.open(version_path(path, 1))
+    drive.wait(lambda: drive.document.path is None and bool(drive.document.project.clips))
+    before = version_path(path, 1).read_bytes()
+    drive.document.edit("Rename", lambda p: edits.rename_project(p, "changed"))
+    assert (
+        version_path(path, 1).read_bytes() == before and not version_path(version_path(path, 1), 1).exists()
+    )
