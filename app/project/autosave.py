@@ -21,17 +21,23 @@ if TYPE_CHECKING:
 
 
 class Autosave:
-    """Writes what a document's edits are. Whatever the user has to know of it, the document says.
+    """Writes what a document's edits are. Whatever the user has to know of it, the document says."""
 
-    folder: the user's own, where journals of projects that were never saved lie, and those whose own place is
-    gone; it lists all of them, too.
-    """
-
-    def __init__(self, document: Document, folder: Path) -> None:
-        self.document, self.folder = document, folder
-        self.register = JournalRegister(shelter(folder))
+    def __init__(self, document: Document) -> None:
+        self.document = document
         self.journal: Journal | None = None
         self._abandoned: list[Journal] = []  # whose place was gone; once all is saved they go, where they can
+
+    @property
+    def folder(self) -> Path:
+        """The user's own, where journals of projects that were never saved lie, and those whose own place is
+        gone; it lists all of them, too.
+        """
+        return state_folder()
+
+    @property
+    def register(self) -> JournalRegister:
+        return JournalRegister(shelter(self.folder))
 
     @property
     def place(self) -> Path:

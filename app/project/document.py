@@ -14,7 +14,8 @@ from pathlib import Path
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
-from app.project.autosave import Autosave, state_folder
+from app.project.autosave import Autosave
+from app.project.autosave import state_folder as state_folder  # where others look for it
 from app.project.opening import with_motion_of
 from app.project.version_count import version_count
 from app.project.writing import Writing, project_name
@@ -112,7 +113,7 @@ class Document(QObject):
         self.digest: str | None = None
         self.access: Access | None = None
         self._home: Identity | None = None  # of the folder that the file is in, whatever its name
-        self.autosave = Autosave(self, state_folder())
+        self.autosave = Autosave(self)
         self._returned = False  # motion came back that earlier steps do not have
         self._restoring = False  # steps of before a crash
 

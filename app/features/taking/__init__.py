@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from PySide6.QtWidgets import QApplication, QFileDialog
 
@@ -12,8 +13,10 @@ from app.project.jobs import Job
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
 from app.translation import tr
-from metagraph.formats.project_pieces import Piece, is_piece, piece_text, read_other_project, read_piece
 from metagraph.formats.store import SUFFIX
+
+if TYPE_CHECKING:
+    from metagraph.formats.project_pieces import Piece
 
 
 def contribute(shell: Shell) -> Contribution:
@@ -38,6 +41,8 @@ def contribute(shell: Shell) -> Contribution:
             read(Path(chosen))
 
     def read(path: Path) -> None:
+        from metagraph.formats.project_pieces import read_other_project
+
         into = document.path
 
         def work(job: Job) -> Piece:
@@ -55,6 +60,8 @@ def contribute(shell: Shell) -> Contribution:
         return () if session.selection.actions or stance is None else (stance,)
 
     def copy() -> None:
+        from metagraph.formats.project_pieces import piece_text
+
         actions, stances = session.selection.actions, chosen_stances()
         text = piece_text(document.project, document.folder, actions, stances)
         QApplication.clipboard().setText(text)
@@ -66,6 +73,8 @@ def contribute(shell: Shell) -> Contribution:
         shell.actions.refresh()
 
     def paste() -> None:
+        from metagraph.formats.project_pieces import is_piece, read_piece
+
         if files.refuse():
             return
         text, into = QApplication.clipboard().text(), document.path

@@ -67,7 +67,8 @@ struct Timing {
 /// way they keep to the stance. tags: free words, "positive" and "negative" among them. likelihood: relative, > 0.
 /// cooldown: seconds after it has ended in which it is not drawn again. spacing: how many other actions of its kind and
 /// stance are drawn before it may be drawn again; None as the settings' never_twice says. contacts: where its hands
-/// stay on the body.
+/// stay on the body. clip_name, clip_sha256: which clip it was made of, where that is not the one it has; "" otherwise
+/// (see `formats.clip_identity`).
 struct Action {
     std::string id;
     std::string clip;
@@ -85,6 +86,8 @@ struct Action {
     std::optional<int> spacing;
     List<Ref<ContactSpan>> contacts;
     List<std::tuple<std::string, double>> joint_weights;
+    std::string clip_name;
+    std::string clip_sha256;
 
     Action(
         std::string id_,
@@ -102,7 +105,9 @@ struct Action {
         double cooldown_ = 0.0,
         std::optional<int> spacing_ = std::nullopt,
         List<Ref<ContactSpan>> contacts_ = List<Ref<ContactSpan>>{},
-        List<std::tuple<std::string, double>> joint_weights_ = List<std::tuple<std::string, double>>{}
+        List<std::tuple<std::string, double>> joint_weights_ = List<std::tuple<std::string, double>>{},
+        std::string clip_name_ = "",
+        std::string clip_sha256_ = ""
     )
         : id(std::move(id_)),
             clip(std::move(clip_)),
@@ -119,7 +124,9 @@ struct Action {
             cooldown(cooldown_),
             spacing(spacing_),
             contacts(std::move(contacts_)),
-            joint_weights(std::move(joint_weights_)) {}
+            joint_weights(std::move(joint_weights_)),
+            clip_name(std::move(clip_name_)),
+            clip_sha256(std::move(clip_sha256_)) {}
 };
 
 struct Stance {

@@ -107,6 +107,7 @@ def test_the_menu_of_an_action_offers_them(toys):
         "paste",
         "replace_clip",
         "twins",
+        "copy_over",
         "note",
         "list_earlier",
         "list_later",
