@@ -54,9 +54,10 @@ def run(options: Namespace) -> int:
         say(options, "\n".join(lines), data)
         return 0
     if path.suffix == ".json":
-        from metagraph.engines.reading import read_export
+        from metagraph.engines.reading import glb_of, read_export
 
         project = read_export(path, motions=False)
+        glb_of(path)  # raises where it is another's
     else:
         project = opened(path)
         warn_of_journals(path)

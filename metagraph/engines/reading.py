@@ -53,17 +53,26 @@ def read_export(path: str | Path, motions: bool = True, resolved: bool = False) 
     Raises FileError naming the field that is wrong as a path into the JSON.
     """
     path = Path(path)
+    document = _decoded(path)
     try:
-        document = msgspec.json.decode(read_file(path, TEXT_FILE), type=c.Export)
+        return _project(path, document, motions, resolved)
+    except DataError as error:
+        raise FileError(path, str(error), error.where, "Export it again.") from None
+
+
+def glb_of(path: Path) -> Path:
+    """Return the GLB of an export's JSON. Raises FileError as `read_export` and `glb_beside`."""
+    return glb_beside(path, _decoded(path))
+
+
+def _decoded(path: Path) -> c.Export:
+    try:
+        return msgspec.json.decode(read_file(path, TEXT_FILE), type=c.Export)
     except (msgspec.MsgspecError, RecursionError, UnicodeDecodeError) as error:
         cause, _, where = str(error).partition(" - at ")
         where = where.strip("`") or "$"
         remedy = "Update Metagraph, or export it again." if where == "$.metagraph" else "Export it again."
         raise FileError(path, cause[:1].lower() + cause[1:], where, remedy) from None
-    try:
-        return _project(path, document, motions, resolved)
-    except DataError as error:
-        raise FileError(path, str(error), error.where, "Export it again.") from None
 
 
 def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> Project:
@@ -74,11 +83,10 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         raise DataError("$.glb", "should be the name of a file beside this one")
     skeleton = _skeleton(document.joints)
     takes: list[Clip] = []
-    glb = glb_beside(path, document)
     if motions:
         from metagraph.formats.gltf import read_gltf_clips
 
-        takes = read_gltf_clips(glb)
+        takes = read_gltf_clips(glb_beside(path, document))
     # Clips of one frame are read behind the longer ones.
     longer = sorted(x.animation for x in document.clips if x.frames > 1) or [
         x.animation for x in document.clips
