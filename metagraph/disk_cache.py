@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
-import sys
 import time
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
+
+from metagraph.user_folders import user_folder
 
 LEFT = 0.8  # of what a cache may hold, after a clearing
 SEEN = 3600.0  # seconds after which the use of a file is written down again
@@ -17,17 +18,8 @@ def cache_folder(name: str) -> Path | None:
     """Return the folder below the system's for caches in which such things are kept, which may not be there
     yet; None where nobody's home is known.
     """
-    try:
-        home = Path.home()
-    except RuntimeError:
-        return None
-    if sys.platform == "win32":
-        caches = Path(os.environ.get("LOCALAPPDATA", home / "AppData" / "Local"))
-    elif sys.platform == "darwin":
-        caches = home / "Library" / "Caches"
-    else:
-        caches = Path(os.environ.get("XDG_CACHE_HOME") or home / ".cache")
-    return caches / "metagraph" / name
+    caches = user_folder("caches")
+    return caches / "metagraph" / name if caches is not None else None
 
 
 class DiskCache:

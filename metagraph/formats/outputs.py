@@ -12,7 +12,6 @@ from __future__ import annotations
 import hashlib
 import os
 import stat
-import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -24,6 +23,7 @@ from metagraph.budgets import TEXT_FILE
 from metagraph.errors import FileError
 from metagraph.files import read_file
 from metagraph.formats.locking import holder, lock_path
+from metagraph.user_folders import user_folder
 
 STAGED = ".exporting-"  # how folders begin in which an export is staged
 MOST = 4000  # notes that are kept; beyond them the oldest go
@@ -43,17 +43,8 @@ def data_folder() -> Path | None:
     """
     if "METAGRAPH_DATA" in os.environ:
         return Path(os.environ["METAGRAPH_DATA"])
-    try:
-        home = Path.home()
-    except RuntimeError:
-        return None
-    if sys.platform == "win32":
-        base = Path(os.environ.get("APPDATA", home / "AppData" / "Roaming"))
-    elif sys.platform == "darwin":
-        base = home / "Library" / "Application Support"
-    else:
-        base = Path(os.environ.get("XDG_DATA_HOME") or home / ".local" / "share")
-    return base / "Metagraph" / "Metagraph"
+    base = user_folder("data")
+    return base / "Metagraph" / "Metagraph" if base is not None else None
 
 
 class Outputs:

@@ -147,8 +147,6 @@ def take(
     if project.skeleton is None:
         base = replace(other.base, clip=clips.given.get(other.base.clip or ""))
         after = replace(after, base=base, roles=other.roles, parts=other.parts, character=other.character)
-    elif project.base.clip is None and not project.clips:
-        after = replace(after, base=replace(other.base, clip=clips.given.get(other.base.clip or "")))
     return Taking(after, (*things, *clips.things))
 
 
