@@ -44,17 +44,22 @@ def arguments(parser: ArgumentParser) -> None:
     )
 
 
-def _taken(project: Project, path: Path, other: Path, options: Namespace) -> tuple[Project, str]:
-    """Return the project with what another one holds, and what that was in words."""
+def _taken(project: Project, path: Path, other: Path, options: Namespace) -> tuple[Project, str, bool]:
+    """Return the project with what another one holds, what that was in words, and whether something was left
+    out.
+    """
     piece = read_other_project(other, path)
     for note in piece.notes:
         print(f"note: {other.name}: {note}", file=sys.stderr)
     taking = piece.into(project, options.retarget)
-    for thing in taking.things:
-        if thing.becomes == "left out":
-            print(f"left out: {thing.kind} '{thing.name}': {thing.words}", file=sys.stderr)
-    name = other.name.removesuffix(SUFFIX)
-    return taking.project, f"{name}: {words_of_taking(taking)}"
+    left = [thing for thing in taking.things if thing.becomes == "left out"]
+    clips = [thing for thing in left if thing.kind == "clip"]
+    for thing in clips or left:
+        print(f"left out: {thing.kind} '{thing.name}': {thing.words}", file=sys.stderr)
+    words = f"{other.name.removesuffix(SUFFIX)}: {words_of_taking(taking)}"
+    if clips and not options.retarget:
+        words += ". --retarget brings clips of another skeleton over"
+    return taking.project, words, bool(left)
 
 
 def run(options: Namespace) -> int:
@@ -73,9 +78,11 @@ def _imported(options: Namespace, output: ProjectOutput) -> int:
     others = [other for other in options.paths if other.name.endswith(SUFFIX)]
     files = [file for file in options.paths if file not in others]
     taken: list[str] = []
+    lacking = False
     for other in others:
-        project, words = _taken(project, path, other, options)
+        project, words, left_out = _taken(project, path, other, options)
         taken.append(words)
+        lacking = lacking or left_out
     show = sys.stderr.isatty() and not options.json
 
     def progress(done: int, total: int, file: Path) -> None:
@@ -132,4 +139,4 @@ def _imported(options: Namespace, output: ProjectOutput) -> int:
     say(options, words if options.labels is None else f"{words}. Labelled {placed} of {len(rows)}", data)
     if not result.loaded and result.failures:
         return 1
-    return 3 if result.failures or left else 0
+    return 3 if result.failures or left or lacking else 0

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Literal
 
 from metagraph.graph import ids
 from metagraph.graph.clip_source import source_of, with_source
 from metagraph.graph.edits import free_name
 from metagraph.graph.face_takes import is_face_take
-from metagraph.graph.model import LAYERS, Action, ClipEntry, Kind, Layer, Project, Stance
+from metagraph.graph.model import LAYERS, Action, ClipEntry, Kind, Layer, MetaGraph, Project, Stance
 from metagraph.graph.project_retargeting import Bringing
 from metagraph.motion.adopt import SkeletonMismatchError, adopt
 from metagraph.motion.clip import Clip, ClipError
@@ -104,36 +105,7 @@ def take(
     """
     clips = _Clips(project, other, retarget)
     things: list[Taken] = []
-    graphs = dict(project.graphs)
-    for layer in LAYERS:
-        source, graph = other.graphs[layer], graphs[layer]
-        known = {stance.name: i for i, stance in graph.stances.items()}
-        places: dict[str, str] = {}  # stances of the other project -> of this one
-        stances = dict(graph.stances)
-        new: set[str] = set()
-        for ident, stance in source.stances.items():
-            if stance.name in known:
-                places[ident] = known[stance.name]
-                words = told("joins the stance of that name")
-                things.append(Taken("stance", layer, stance.name, "joined", words))
-                continue
-            made = ids.new_id(project, "s", layer, stance.name, more=stances)
-            stances[made], places[ident] = Stance(made, layer, stance.name), made
-            known[stance.name] = made
-            new.add(ident)
-            things.append(Taken("stance", layer, stance.name, "new", told("a new stance")))
-        added: dict[str, Action | None] = {}
-        there = {_same(a): a for a in graph.actions.values()}
-        for action in source.actions.values():
-            if actions is not None and action.id not in actions and action.stance not in new:
-                continue  # a loop that only comes along with a stance that is new
-            thing, made_action = _action(project, action, places, clips, there, added)
-            things.append(replace(thing, layer=layer))
-            if made_action is not None:
-                added[made_action.id] = made_action
-                there[_same(made_action)] = made_action
-        graph = graph.but(stances=stances, start=graph.start or next(iter(stances), None))
-        graphs[layer] = graph.with_actions(added) if added else graph
+    graphs = {layer: _take_layer(project, other, layer, actions, clips, things) for layer in LAYERS}
     if actions is None:
         for ident in other.clips:
             clips.of(ident)
@@ -148,6 +120,61 @@ def take(
         base = replace(other.base, clip=clips.given.get(other.base.clip or ""))
         after = replace(after, base=base, roles=other.roles, parts=other.parts, character=other.character)
     return Taking(after, (*things, *clips.things))
+
+
+def _take_layer(
+    project: Project,
+    other: Project,
+    layer: Layer,
+    actions: Collection[str] | None,
+    clips: _Clips,
+    things: list[Taken],
+) -> MetaGraph:
+    """Return a layer's graph with what the other project has in that layer; say in `things` what became of
+    it.
+    """
+    source, graph = other.graphs[layer], project.graphs[layer]
+    known = {stance.name: i for i, stance in graph.stances.items()}
+    places: dict[str, str] = {}  # stances of the other project -> of this one
+    new: dict[str, Stance] = {}  # by their ids in the other project
+    for ident, stance in source.stances.items():
+        if stance.name not in known:
+            made = ids.new_id(project, "s", layer, stance.name, more=known.values())
+            new[ident] = Stance(made, layer, stance.name)
+            known[stance.name] = made
+        places[ident] = known[stance.name]
+    added: dict[str, Action | None] = {}
+    there = {_same(a): a for a in graph.actions.values()}
+    taken: list[Taken] = []
+    for action in source.actions.values():
+        if actions is not None and action.id not in actions and action.stance not in new:
+            continue  # a loop that only comes along with a stance that is new
+        thing, here = _action(project, action, places, clips, there, added)
+        taken.append(replace(thing, layer=layer))
+        if here is not None:
+            added[here.id] = here
+            there[_same(here)] = here
+    needed = {i for a in added.values() if a is not None for i in (a.stance, a.end_stance)}
+    empty = {i for i in new if not any(a.stance == i for a in source.actions.values())}
+    stances = dict(graph.stances)
+    for ident, stance in source.stances.items():
+        if ident not in new:
+            things.append(
+                Taken("stance", layer, stance.name, "joined", told("joins the stance of that name"))
+            )
+        elif places[ident] in needed or ident in empty:
+            stances[places[ident]] = new[ident]
+            things.append(Taken("stance", layer, stance.name, "new", told("a new stance")))
+        else:
+            words = told("none of its actions can be taken")
+            things.append(Taken("stance", layer, stance.name, "left out", words))
+    things += taken
+    if not graph.stances:
+        graph = graph.but(weights=source.weights)
+    begin = places.get(source.start or "")
+    start = graph.start or (begin if begin in stances else next(iter(stances), None))
+    graph = graph.but(stances=stances, start=start)
+    return graph.with_actions(added) if added else graph
 
 
 def _same(action: Action) -> tuple[object, ...]:
@@ -174,12 +201,14 @@ def _action(
     stance, end = places.get(action.stance), places.get(action.end_stance or "")
     if stance is None or (action.kind == "transition" and end is None):
         return thing("left out", told("its stance is not in the other project")), None
-    made = replace(action, clip=clip, stance=stance, end_stance=end)
+    made, words = clips.fitted_action(replace(action, clip=clip, stance=stance, end_stance=end))
+    if made is None:
+        return thing("left out", words), None
     same = there.get(_same(made))
     if same is not None:
         return thing("there", told("is here already, as '{name}'", name=same.name)), None
     ident = ids.new_id(project, "a", action.layer, action.kind, stance, end or "", clip, more=added)
-    return thing("new", _NEW[action.kind]), replace(made, id=ident)
+    return thing("new", words or _NEW[action.kind]), replace(made, id=ident)
 
 
 @dataclass
@@ -199,6 +228,30 @@ class _Clips:
         self.known = {_content(e): e.id for e in self.entries.values()}
         self.names = {e.name for e in self.entries.values()}
         self.bringing = Bringing(self.project)
+
+    @cached_property
+    def joints(self) -> Mapping[str, str] | None:
+        """Joints of the other project -> those here; None where both call them alike."""
+        skeleton, own = self.other.skeleton, self.project.skeleton
+        if skeleton is None or own is None or set(skeleton.names) <= set(own.names):
+            return None
+        return {pair.source: pair.target for pair in self.bringing.propose(skeleton).pairs}
+
+    def fitted_action(self, action: Action) -> tuple[Action | None, str]:
+        """Return an action with the joints of this project, None where it moves none of them; and what was
+        changed, in words.
+        """
+        joints = self.joints
+        if joints is None:
+            return action, ""
+        named = tuple(joints[name] for name in action.joints if name in joints)
+        weights = tuple((joints[name], weight) for name, weight in action.joint_weights if name in joints)
+        if action.joints and not named:
+            return None, told("none of the joints that it moves is here")
+        words = ""
+        if action.contacts:
+            words = told("{what}; its contacts are left out: find them anew", what=_NEW[action.kind])
+        return replace(action, joints=named, joint_weights=weights, contacts=()), words
 
     def why(self, ident: str) -> str:
         return self.lost.get(ident, told("its clip is not in the other project"))
@@ -280,8 +333,13 @@ def words_of_taking(taking: Taking) -> str:
             taken=words,
             there=_count(there, told("action is"), told("actions are")),
         )
-    if left := taking.count("action", ["left out"]) + taking.count("clip", ["left out"]):
-        words = told("{taken}; {left} left out", taken=words, left=left)
+    if left := taking.count("action", ["left out"]):
+        words = told(
+            "{taken}; {left} left out", taken=words, left=_count(left, told("action"), told("actions"))
+        )
+    elif left := taking.count("clip", ["left out"]):
+        count = _count(left, told("clip"), told("clips"))
+        words = told("{taken}; {left} left out", taken=words, left=count)
     return words
 
 

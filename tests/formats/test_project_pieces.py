@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from metagraph.errors import FileError
@@ -14,6 +15,7 @@ from metagraph.formats.project_pieces import is_piece, piece_text, read_other_pr
 from metagraph.formats.store import SUFFIX, open_project, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
+from metagraph.motion.clip import Clip
 from tests.projects import clip
 
 
@@ -119,3 +121,23 @@ def test_the_command_line_takes_a_project_file(two: tuple[Path, Path], capsys: A
     said = capsys.readouterr().out
     assert "theirs: 2 new actions, 2 new clips" in said
     assert names(open_project(ours).project) == {"idle", "wave", "pose", "point"}
+
+
+def test_the_command_line_says_what_is_left_out_and_how_to_take_it(
+    two: tuple[Path, Path], capsys: Any
+) -> None:
+    from app.cli.parser import main
+    from sample_clips.make.mannequin_skeleton import mannequin_skeleton
+
+    ours, theirs = two
+    skeleton = mannequin_skeleton()
+    still = np.tile(skeleton.rest_rotations, (31, 1, 1))
+    pose = Clip("pose", skeleton, 30, still, np.tile(skeleton.rest_translations[:1], (31, 1, 1)))
+    write_glb(theirs.parent / "clips" / "pose.glb", [pose])
+    project = edits.add_clips(Project("theirs"), [("clips/pose.glb", 0, "", pose)])
+    save_project(edits.add_stance(project, "arms", "other", list(project.clips)), theirs)
+    before = open_project(ours).project
+    assert main(["import", str(ours), str(theirs)]) == 3
+    said = capsys.readouterr()
+    assert "left out: clip 'pose'" in said.err and "--retarget" in said.out
+    assert len(open_project(ours).project.graphs["arms"].stances) == len(before.graphs["arms"].stances)

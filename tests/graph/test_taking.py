@@ -13,6 +13,8 @@ from metagraph.graph.check import check
 from metagraph.graph.model import Project
 from metagraph.graph.taking import piece_of, take, words_of_taking
 from metagraph.motion.clip import Clip
+from metagraph.motion.contact_spans import ContactKey, ContactSpan
+from metagraph.motion.skeleton import Skeleton
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 
 
@@ -121,19 +123,87 @@ def test_unused_clips_come_with_a_whole_project_alone(other: Project, toy: Any) 
     assert "unused" not in {e.name for e in take(Project(), more, actions=[]).project.clips.values()}
 
 
-def test_clips_of_another_skeleton_are_retargeted_or_left_out(other: Project) -> None:
+def strange() -> Project:
+    """A project of another skeleton: a stance with a loop, a gesture of a masked arm that touches the head."""
     skeleton = mannequin_skeleton()
     still = np.tile(skeleton.rest_rotations, (31, 1, 1))
-    clip = Clip("theirs", skeleton, 30, still, np.tile(skeleton.rest_translations[:1], (31, 1, 1)))
-    theirs = edits.add_clips(Project(), [("theirs.glb", 0, "cd" * 32, clip)])
-    theirs = edits.add_stance(theirs, "arms", "other rest", list(theirs.clips))
-    taking = take(other, theirs)
-    (entry,) = (e for e in taking.project.clips.values() if e.name == "theirs")
-    assert entry.motion is not None and entry.motion.skeleton == other.skeleton and entry.brought_from
-    assert entry.brought_from in taking.project.joint_maps
-    left = take(other, theirs, retarget=False)
-    assert became(left, "clip") == {"theirs": "left out"} and became(left, "action") == {"theirs": "left out"}
-    assert all(x.words for x in left.things)
+    moves = np.tile(skeleton.rest_translations[:1], (31, 1, 1))
+    clips = [Clip(name, skeleton, 30, still, moves) for name in ("their pose", "their touch")]
+    theirs = edits.add_clips(
+        Project(), [(f"{c.name}.glb", 0, f"{n:064x}", c) for n, c in enumerate(clips, 100)]
+    )
+    pose, touch = theirs.clips
+    theirs = edits.add_stance(theirs, "arms", "other rest", [pose])
+    theirs = edits.place(theirs, [touch], "arms", "gesture", next(iter(theirs.graphs["arms"].stances)))
+    key = ContactKey(0.5, (0.0, 0.1, 0.1), (0.0, 0.0, 0.0, 1.0))
+    return edits.update_actions(
+        theirs,
+        [[*theirs.actions()][-1].id],
+        joints=("LeftUpperArm", "LeftIndexProximal"),
+        joint_weights=(("LeftUpperArm", 0.5),),
+        contacts=(ContactSpan("left", "palm", "Head", 0.2, 0.8, (key,)),),
+    )
+
+
+def renamed(project: Project) -> Project:
+    """The project with joints of other names, so that nothing but their places tells what they are."""
+    skeleton = project.skeleton
+    assert skeleton is not None
+    names = {name: f"x_{name}" for name in skeleton.names}
+    other = Skeleton(
+        tuple(names.values()), skeleton.parents, skeleton.rest_rotations, skeleton.rest_translations
+    )
+    clips = {
+        i: replace(e, motion=replace(e.motion, skeleton=other)) for i, e in project.clips.items() if e.motion
+    }
+    return replace(project, skeleton=other, clips=clips)
+
+
+def test_clips_of_another_skeleton_are_retargeted_with_the_joints_that_actions_name(other: Project) -> None:
+    mine = renamed(other)
+    taking = take(mine, strange())
+    entries = {e.name: e for e in taking.project.clips.values()}
+    for name in ("their pose", "their touch"):
+        entry = entries[name]
+        assert entry.motion is not None and entry.motion.skeleton == mine.skeleton
+        assert entry.brought_from in taking.project.joint_maps
+    (touch,) = (a for a in taking.project.actions() if a.name == "their touch")
+    assert touch.joints == ("x_LeftUpperArm",) and touch.joint_weights == (("x_LeftUpperArm", 0.5),)
+    assert touch.contacts == (), "they are places on another body"
+    (words,) = (x.words for x in taking.things if x.kind == "action" and x.name == "their touch")
+    assert words == "a new gesture; its contacts are left out: find them anew"
+    assert not [p for p in check(taking.project) if p.code == "mask"]
+
+
+def test_an_action_that_moves_no_joint_of_this_project_is_left_out(other: Project) -> None:
+    theirs = strange()
+    touch = [*theirs.actions()][-1].id
+    taking = take(renamed(other), edits.update_actions(theirs, [touch], joints=("LeftIndexProximal",)))
+    assert became(taking, "action") == {"their pose": "new", "their touch": "left out"}
+    assert "1 action left out" in words_of_taking(taking)
+
+
+def test_without_retargeting_clips_are_left_out_and_so_are_stances_that_would_be_empty(
+    other: Project,
+) -> None:
+    mine = renamed(other)
+    left = take(mine, strange(), retarget=False)
+    assert set(became(left, "clip").values()) == set(became(left, "action").values()) == {"left out"}
+    assert became(left, "stance") == {"other rest": "left out"}
+    assert left.project == mine and all(x.words for x in left.things)
+    assert words_of_taking(left) == "Nothing new; 2 actions left out"
+
+
+def test_a_stance_that_has_nothing_in_the_other_project_comes_as_it_is(other: Project) -> None:
+    bare = edits.add_stance(Project(), "arms", "to be filled")
+    assert became(take(other, bare), "stance") == {"to be filled": "new"}
+
+
+def test_an_empty_project_begins_where_the_other_does_with_its_weights(other: Project, toy: Any) -> None:
+    far = edits.set_weight(edits.set_start(other, toy.id(other, "far")), "arms", "legs", 0.5)
+    after = take(Project(), far).project
+    graph = after.graphs["arms"]
+    assert graph.stances[graph.start or ""].name == "far" and graph.weights == {"legs": 0.5}
 
 
 def test_ids_of_this_project_stay_and_no_id_is_given_twice(other: Project) -> None:
