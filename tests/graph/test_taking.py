@@ -124,7 +124,7 @@ def test_unused_clips_come_with_a_whole_project_alone(other: Project, toy: Any) 
 
 
 def strange() -> Project:
-    """A project of another skeleton: a stance with a loop, a gesture of a masked arm that touches the head."""
+    """A project of another skeleton: a stance, and a gesture of a masked arm that touches the head."""
     skeleton = mannequin_skeleton()
     still = np.tile(skeleton.rest_rotations, (31, 1, 1))
     moves = np.tile(skeleton.rest_translations[:1], (31, 1, 1))
