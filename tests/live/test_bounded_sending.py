@@ -148,10 +148,12 @@ def test_datagrams_that_the_system_does_not_take_are_lost() -> None:
 def test_lines_are_read_no_further_while_their_answers_are_not_read(sample: Project, kind: str) -> None:
     """A client asks for long answers through a pipe, and reads none."""
     (source, asking), (answers, target) = os.pipe(), os.pipe()
-    heard: list[bytes | None] = []
+    ended = threading.Event()
 
     def take(data: bytes | None) -> None:
-        heard.append(data)
+        if data is None:
+            ended.set()
+            return
         line.send([(b"x" * 20_000, False)])
         line.answered(1)
 
@@ -164,15 +166,14 @@ def test_lines_are_read_no_further_while_their_answers_are_not_read(sample: Proj
         else StdioLine(call, take, source, target)
     )
     line.start()
-    asked = json.dumps({"jsonrpc": "2.0", "id": 1, "method": "tools/list"}).encode() + b"\n"
-    written = [0]
+    asked = json.dumps({"jsonrpc": "2.0", "id": 1, "method": "tools/list"}).encode().ljust(4000) + b"\n"
+    enough = threading.Event()
 
     def ask() -> None:
-        try:
-            while written[0] < 3 * BACKLOG:
-                written[0] += os.write(asking, asked)
-        except OSError:
-            pass
+        written = 0
+        while written < 3 * BACKLOG and not enough.is_set():
+            written += os.write(asking, asked)
+        os.close(asking)
 
     asker = threading.Thread(target=ask, daemon=True)
     asker.start()
@@ -183,10 +184,11 @@ def test_lines_are_read_no_further_while_their_answers_are_not_read(sample: Proj
         if most > BACKLOG and most == before:
             break
     assert BACKLOG < most < 4 * BACKLOG
+    enough.set()
+    os.close(answers)  # who waits to write is let go
     line.close(0, "")
-    os.close(answers)  # who waits to write, or to read, is let go
-    os.close(source)
-    asker.join(5)
-    os.close(asking)
+    asker.join(20)
+    assert ended.wait(20), "its reader reads to the end, and answers nothing in later tests"
     line.finish(5.0)
+    os.close(source)
     os.close(target)
