@@ -9,21 +9,14 @@ from types import ModuleType
 
 
 class _BeforeQt:
-    """Lets `app.guard` stand before the first class of ours is made of one of Qt's, and Shiboken be imported
-    without delay. Costs nothing where Qt is never imported.
+    """Has `app.guard` stand before the first class of ours is made of one of Qt's. Costs nothing where Qt is
+    never imported.
     """
 
     def find_spec(
         self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        if name == "PySide6":
-            from app.quick_imports import shiboken_compiles_later
-
-            shiboken_compiles_later(True)
-        elif name == "PySide6.QtCore":
-            from app.quick_imports import shiboken_compiles_later
-
-            shiboken_compiles_later(False)
+        if name == "PySide6.QtCore":
             sys.meta_path.remove(self)
             _guard()
         return None

@@ -19,14 +19,13 @@ import time
 import traceback
 from collections import deque
 from collections.abc import Callable, Iterable
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
 
 from metagraph import __version__
 from metagraph.errors import FileError
 from metagraph.formats.locking import mark_is_gone, process_mark
-from metagraph.records import dataclass
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = "METAGRAPH_FAULTS"  # the variable that tells processes we start where their errors go

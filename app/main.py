@@ -13,13 +13,7 @@ from PySide6.QtCore import QCoreApplication, QLibraryInfo, QSettings, Qt, QTimer
 from PySide6.QtGui import QSurfaceFormat
 from PySide6.QtWidgets import QApplication
 
-from app.quick_imports import without_array_help, without_search, without_typing_extensions
 from metagraph.programs import settle
-from metagraph.uncollected import uncollected
-
-without_search()
-without_typing_extensions()
-without_array_help()
 
 if TYPE_CHECKING:
     from app.shell.window import Window
@@ -33,7 +27,6 @@ def prepare() -> QApplication:
     return found if isinstance(found, QApplication) else _application()
 
 
-@uncollected(lasting=True)
 def _application() -> QApplication:
     from app import translation
     from app.memory import frugal
@@ -64,7 +57,6 @@ def _application() -> QApplication:
     return app
 
 
-@uncollected()
 def make_window() -> Window:
     """Return a window with all features, not shown yet."""
     from app.features import FEATURES
@@ -75,11 +67,10 @@ def make_window() -> Window:
 
 def open_window(path: Path | None, sample: bool = False, clip: str | None = None) -> Window:
     """Show a window on a project, the sample project, or nothing. clip: name or id of one to select then."""
-    with uncollected(lasting=True):
-        from app.project.files import SAMPLE
+    from app.project.files import SAMPLE
 
-        window = make_window()
-        window.show()
+    window = make_window()
+    window.show()
     files = window.shell.files
     if clip is not None:
         files.opened.connect(lambda: _select(window, clip), Qt.ConnectionType.SingleShotConnection)

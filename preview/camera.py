@@ -8,14 +8,12 @@ float64.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-
-from metagraph.records import dataclass
 
 Array = NDArray[Any]
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.records import dataclass
 from preview.camera import Camera
 from preview.mesh import Mesh
 from preview.scene import Actor, Scene, Theme

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any
 
@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from metagraph.budgets import PICTURE_PIXELS
 from metagraph.pictures import picture_size
-from metagraph.records import dataclass
 from preview.mesh import VERTEX, Batch, Mesh, arranged
 from preview.occlusion import Rods
 from preview.paint import painted

@@ -10,6 +10,7 @@ import hashlib
 import io
 import os
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.disk_cache import DiskCache, cache_folder
-from metagraph.records import dataclass
 from preview.mesh import Mesh
 from preview.simplify import Fewer, simplified
 

@@ -8,6 +8,7 @@ ball, less towards the horizon.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,6 @@ from numpy.typing import NDArray
 
 from metagraph.motion.roles import find_roles, is_humanoid
 from metagraph.motion.skeleton import Skeleton
-from metagraph.records import dataclass
 
 Array = NDArray[Any]
 

@@ -11,12 +11,12 @@ neighbours are collapsed at once, since Python would take seconds one by one.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.records import dataclass
 from preview.mesh import Batch, Mesh
 
 Array = NDArray[Any]

@@ -35,7 +35,6 @@ ROOT = Path(__file__).resolve().parents[1]
 
 WORKER = os.environ.get("PYTEST_XDIST_WORKER", "")
 os.environ["NUMBA_CACHE_DIR"] = str(kernels.provide(WORKER or "alone"))
-os.environ["METAGRAPH_LOOP_CACHE"] = ""  # loops are numba's own but where a test says otherwise
 os.environ["METAGRAPH_MOTION_CACHE"] = str(ROOT / ".pytest_cache" / "motion")
 os.environ["METAGRAPH_MESH_CACHE"] = str(ROOT / ".pytest_cache" / "meshes")
 
@@ -383,20 +382,6 @@ def sample_clips_read_once() -> None:
         return [copy.copy(clip) for clip in known[key]]  # each reader has clips of its own to lose
 
     gltf.read_gltf_clips = read_once
-
-
-@pytest.fixture(scope="module")
-def compiled_loops() -> Iterator[None]:
-    """Poses are worked out by compiled loops where numba is, as in a window: for what looks at minutes of it.
-    Without them NumPy gives the same (`tests/playback/test_loops.py`), and so do most tests.
-    """
-    from metagraph.playback import loops
-
-    before = [known.now for known in loops.LOOPS]
-    loops.load()
-    yield
-    for known, now in zip(loops.LOOPS, before, strict=True):
-        known.now = now
 
 
 @pytest.fixture(scope="session")

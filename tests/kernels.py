@@ -7,6 +7,7 @@ made once, kept under the state of what is compiled, and each process is given a
 from __future__ import annotations
 
 import contextlib
+import gc
 import hashlib
 import os
 import shutil
@@ -16,15 +17,9 @@ import tempfile
 from importlib import metadata
 from pathlib import Path
 
-from metagraph.uncollected import uncollected
-
 ROOT = Path(__file__).resolve().parents[1]
 HOME = ROOT / ".pytest_cache" / "numba"
-PATTERNS = (
-    *("kernels.py", "*_kernels.py", "wander.py", "*solve.py", "plain_vectors.py"),
-    *("laying.py", "compiling.py", "object_*.py"),
-)
-LOOPS = "loops"  # a folder within: object code
+PATTERNS = ("kernels.py", "*_kernels.py", "compiling.py")
 
 
 def kept() -> Path:
@@ -46,7 +41,7 @@ def make() -> Path:
         subprocess.run(
             [sys.executable, "-m", "tests.kernels", "here"],
             cwd=ROOT,
-            env={**os.environ, "NUMBA_CACHE_DIR": scratch, "METAGRAPH_LOOP_CACHE": f"{scratch}/{LOOPS}"},
+            env={**os.environ, "NUMBA_CACHE_DIR": scratch},
             check=True,
             timeout=900,
         )
@@ -69,30 +64,13 @@ def provide(name: str) -> Path:
 def compile_all() -> None:
     """Call everything that is compiled."""
     from app.features.motion_graph.synthesis_jobs import Wish, synthesise, takes_of, usable
-    from metagraph import keep_loops, object_code
-    from metagraph.formats import bvh, bvh_kernels
     from metagraph.formats.store import open_project
-    from metagraph.playback import loops
-    from metagraph.playback.crowd import Crowd
-    from metagraph.playback.planner import make_plan
     from metagraph.synthesis.constraints import heard
     from metagraph.synthesis.extending import PathExtender, driver_graph
     from metagraph.synthesis.graph import build
     from metagraph.synthesis.states import states_of
 
-    for known in keep_loops.ALL:
-        assert known.keep(by_numba=True) or not object_code.usable()
     project = open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project
-    with tempfile.TemporaryDirectory() as folder:
-        bvh.COMPILED.now = bvh_kernels  # else only large files need it
-        bvh.write_bvh(
-            next(clip.motion for clip in project.clips.values() if clip.motion), Path(folder) / "a.bvh"
-        )
-        bvh.read_bvh(Path(folder) / "a.bvh")
-    loops.load()
-    crowd = Crowd(project, [make_plan(project, 5.0)])
-    crowd.poses(1.0)
-    crowd.globals(1.0)
     takes = takes_of(project, [i for i in usable(project) if project.clips[i].name.endswith("__stance")])
     graph = build(states_of(takes.clips))
     synthesise(graph, takes, Wish(4.0, ()), "new")
@@ -115,5 +93,5 @@ def compile_searches() -> None:
 
 
 if __name__ == "__main__":
-    with uncollected():  # a fifth of the time was looking for circles in what LLVM is told
-        compile_all() if sys.argv[1:] == ["here"] else make()
+    gc.disable()  # a fifth of the time is looking for circles in what LLVM is told
+    compile_all() if sys.argv[1:] == ["here"] else make()

@@ -10,7 +10,6 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from metagraph.errors import FileError
-from metagraph.uncollected import uncollected
 
 
 def arguments(parser: ArgumentParser) -> None:
@@ -50,7 +49,6 @@ def run(options: Namespace) -> int:
                 project=options.project,
             )
         )
-    with uncollected(lasting=True):
-        from app.main import run_window
+    from app.main import run_window
 
     return run_window(options.project, options.sample, options.clip)

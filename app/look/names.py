@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
 from app.look.plural import parts, short, words_of
 from metagraph.graph.model import KINDS, Action, Kind, Layer, Limb, MetaGraph, Project
-from metagraph.records import dataclass
 
 MANY = 1 << 14  # names that are remembered, with what is made of them: after each edit all are asked for
 _TAKE = re.compile(r"[\s.#(-]*\d+\)?$")  # the number of a take, at a name's end

@@ -5,6 +5,7 @@ yellow.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 from PySide6.QtGui import QColor, QFont, QPalette
@@ -12,7 +13,6 @@ from PySide6.QtWidgets import QApplication, QPushButton
 
 from app.look.domain_words import KIND_TITLES as KIND_TITLES
 from metagraph.graph.model import Kind
-from metagraph.records import dataclass
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ found.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
@@ -26,7 +26,6 @@ from metagraph.formats.repairs import repairs_of
 from metagraph.formats.store import Opened, load_returned
 from metagraph.formats.takes import NAME
 from metagraph.graph.model import Project
-from metagraph.records import dataclass
 
 CLIPS = tr("Clips (*.bvh *.glb *.gltf *.vrm *.vrma *.fbx *.csv);;All files (*)")
 Retarget = Callable[[Sequence[Strangers], Callable[[Imported], None]], None]

@@ -5,6 +5,7 @@ with the clips that lie beside them.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,7 +20,6 @@ from app.translation import tr
 from metagraph.formats.clips import SUFFIXES
 from metagraph.formats.imports import Imported
 from metagraph.graph.model import Project
-from metagraph.records import dataclass
 
 if TYPE_CHECKING:
     from metagraph.formats.action_labels import LabelRow

@@ -7,7 +7,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from app.project.autosave import shelter, state_folder
@@ -22,7 +22,6 @@ from metagraph.formats.recovery import DAMAGED, Left, in_order, journals_in, rea
 from metagraph.formats.store import SUFFIX, load_returned, save_project
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
-from metagraph.records import dataclass
 
 # The second as they were called at first, `.old` as those were that could not be read.
 UNTITLED = r"\.untitled\.[0-9a-f]+\.(journal|old)|untitled(-\d+)?\.(journal|old)"

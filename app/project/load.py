@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from importlib.util import find_spec
 
 from app.translation import tr
-from metagraph.records import dataclass
 
 ANNOTATIONS = ".eaf"
 

@@ -12,12 +12,10 @@ from metagraph.formats.recovery import Left
 from metagraph.formats.store import Opened, load_motions, open_project
 from metagraph.graph.face import with_morphs
 from metagraph.graph.model import Project
-from metagraph.uncollected import uncollected
 
 Progress = Callable[[int, int], None]
 
 
-@uncollected()
 def open_whole(path: Path, progress: Progress | None = None) -> Opened:
     """Read a project file with its clips and voices. Raises FileError; what is missing beside it is in the
     notes.
@@ -25,7 +23,6 @@ def open_whole(path: Path, progress: Progress | None = None) -> Opened:
     return _voiced(open_project(path, progress), path.resolve().parent)
 
 
-@uncollected()
 def load_whole(project: Project, folder: Path, progress: Progress | None = None) -> Opened:
     """Read the clips and voices of a project that is there already."""
     return _voiced(load_motions(project, folder, progress), folder)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from metagraph.errors import FileError
@@ -14,7 +14,6 @@ from metagraph.formats.new_file import Access
 from metagraph.formats.store import SUFFIX, content_digest, encoded, file_digest, moved, read_with_digest
 from metagraph.formats.versions import write_project
 from metagraph.graph.model import Project
-from metagraph.records import dataclass
 from metagraph.wording import told
 
 

@@ -5,6 +5,7 @@ shortcuts.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from itertools import groupby
 from typing import Literal
 
@@ -16,7 +17,6 @@ from app import faults
 from app.shell.mnemonics import distinct
 from app.translation import tr, tr_noop
 from app.widgets.soon import Soon
-from metagraph.records import dataclass
 
 Standard = QKeySequence.StandardKey
 Words = str | Callable[[], str]

@@ -5,10 +5,8 @@ returns a `Contribution`.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
-
-from metagraph.records import dataclass
 
 if TYPE_CHECKING:
     from PySide6.QtCore import QSettings

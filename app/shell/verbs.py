@@ -5,9 +5,8 @@ offer what they do.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Literal
-
-from metagraph.records import dataclass
 
 Verb = Literal["remove", "rename", "copy", "paste", "select_all"]
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 
 from PySide6.QtCore import QByteArray, QObject, QSettings, Signal
 from PySide6.QtWidgets import QApplication, QWidget
@@ -10,7 +11,6 @@ from PySide6.QtWidgets import QApplication, QWidget
 from app.shell.places import ARRANGED, Places
 from app.shell.workspaces import ALL, FIRST, WORKSPACES, Workspace
 from app.translation import tr
-from metagraph.records import dataclass
 
 GROUP = (
     f"workspaces {ARRANGED}"  # what was kept when docks were made otherwise lies elsewhere, and is not read

@@ -7,9 +7,9 @@ declare it themselves, see `Panel.where` and `Panel.opens`.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from app.translation import tr
-from metagraph.records import dataclass
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ made when asked for.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QObject, QTimer, Signal
@@ -20,7 +21,6 @@ from app.translation import tr
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Action, Layer, Project
 from metagraph.graph.problem import Problem
-from metagraph.records import dataclass
 
 if TYPE_CHECKING:  # their imports wait for the first job
     from metagraph.suggest.compatibility import Matrix, Times

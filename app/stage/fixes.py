@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
 from app.translation import tr
 from metagraph.graph import edits
 from metagraph.graph.model import Action, Project
 from metagraph.graph.problem import Problem
-from metagraph.records import dataclass
 
 BRIDGE = tr("Bridge by blending")
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from PySide6.QtCore import QObject, Signal
 
 from metagraph.graph.model import Action
-from metagraph.records import dataclass
 
 MOST = 5  # ghosts; each is drawn in every frame
 

@@ -11,6 +11,7 @@ import queue
 import sys
 import threading
 from collections import Counter
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -18,7 +19,6 @@ import numpy as np
 
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
-from metagraph.records import dataclass
 
 SIZE, SCALE = 112, 2
 MOVING_SIZE, MOVING_RATE, MOVING_MOST = (

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,7 +19,6 @@ from metagraph.graph.model import Action, Layer, Project
 from metagraph.graph.requests import AnyRequest
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.playback import loops
 from metagraph.playback.faces import faces_at
 from metagraph.playback.life.evaluate import enliven
 from metagraph.playback.manual_playback import (
@@ -34,7 +33,6 @@ from metagraph.playback.manual_playback import (
 from metagraph.playback.plan import MetaRequest, Plan
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import morphs_at, pose_at
-from metagraph.records import dataclass
 
 if TYPE_CHECKING:
     from metagraph.playback.overlay import Overlay
@@ -45,10 +43,7 @@ if TYPE_CHECKING:
 ASIDE = (
     -0.35
 )  # radians the camera goes round those who talk, to see them from the side and not one of them from behind
-BEGUN, WATCHED = 20, 300  # poses that were asked for when compiled loops pay: kept ones, those to be made
 LEAD = 0.8  # seconds of stance before and after a clip shown in context
-
-_watched = [0]  # poses that were asked for
 
 
 @dataclass(frozen=True)
@@ -139,11 +134,6 @@ class Shown:
             from metagraph.playback.overlay import overlaid
 
             return overlaid(self.moving, self.project, seconds, laid)
-        _watched[0] += 1
-        if _watched[0] == BEGUN:
-            loops.load_kept()
-        elif _watched[0] == WATCHED:
-            loops.load_soon()
         return pose_at(self.moving, self.project, seconds)
 
     def _moved(self, seconds: Any) -> Pose | None:

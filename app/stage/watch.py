@@ -5,13 +5,12 @@ It is the person's, not the project's, and kept in the settings.
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, fields, replace
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
 from PySide6.QtCore import QObject, QSettings, Signal
 
 from app.translation import tr
-from metagraph.records import dataclass
 from preview.scene import THEMES, Theme
 
 KEY = "watch"

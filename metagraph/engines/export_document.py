@@ -17,7 +17,6 @@ from metagraph.playback.cue_shapes import HURRY
 from metagraph.playback.layer_planning import WINDOW
 from metagraph.playback.phase_times import LEAST_BLEND
 from metagraph.playback.sampling import LOOP_FADE
-from metagraph.uncollected import uncollected
 
 _SCALES: tuple[Literal["neither", "smaller", "both"], ...] = ("neither", "smaller", "both")
 
@@ -28,7 +27,6 @@ def used_clips(project: Project) -> list[ClipEntry]:
     return [e for e in project.clips.values() if e.id in placed]
 
 
-@uncollected()
 def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bool = False) -> c.Export:
     """Return the JSON's content, to be written. names: of the used clips' animations in the GLB. expanded:
     list the state machine, too, as text (`ListedExport`).

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
-from threading import Lock
 from typing import Any, NoReturn
 
 import numpy as np
@@ -24,7 +22,6 @@ from metagraph.budgets import (
     OUT_OF_PROPORTION,
     Allowance,
 )
-from metagraph.compiling import CompilerError, Loops, there
 from metagraph.errors import FileError
 from metagraph.files import read_file
 from metagraph.formats.atomic import write_atomically
@@ -39,14 +36,6 @@ from metagraph.wording import told
 
 Array = NDArray[Any]
 
-# Where compiling pays: numba takes 0.6 s to import, NumPy reads 80 MB/s, the compiled loops 330 MB/s. Many
-# small files count as one large one. Installing numba takes as long as reading some gigabytes without it.
-# What is kept of its loops is loaded in milliseconds.
-_KEPT_FROM, _COMPILED_FROM, _INSTALLED_FROM = 1 << 20, 64 << 20, 2 << 30
-_read_so_far = [0]  # bytes of motion this process has read
-COMPILED = Loops("metagraph.formats.bvh_kernels")
-_failed: list[CompilerError] = []  # why they cannot be had
-_importing = Lock()
 _LONGEST_HEADER = 16 * MIB
 _DAMAGED = told("The file is damaged: export it again.")
 
@@ -322,38 +311,14 @@ def _fps(text: str, step: float) -> float:
     return 1 / step
 
 
-def _kernels() -> Any:
-    """Return the module of compiled loops where it pays and is there; None otherwise, and while another
-    thread imports it.
-    """
-    if COMPILED.now is None and not _failed and _importing.acquire(blocking=False):
-        try:
-            if _read_so_far[0] >= (_COMPILED_FROM if there() else _INSTALLED_FROM):
-                COMPILED.load()
-            elif _read_so_far[0] >= _KEPT_FROM:
-                COMPILED.load_kept()
-        except CompilerError as error:
-            _failed.append(error)
-        finally:
-            _importing.release()
-    return COMPILED.now
-
-
 def _numbers(path: Path, data: bytes, start: int, channels: int) -> Array:
     """Return every number after `start` as float64."""
-    _read_so_far[0] += len(data) - start
-    kernels = _kernels()
-    if kernels is not None:
-        numbers, stopped = _compiled_numbers(kernels.parse, data, start, channels)
-        sensible = stopped == len(data)
-    else:
-        try:
-            numbers, stopped = decimals(data, start), len(data)
-        except ValueError:
-            numbers, stopped = np.zeros(0), start
-        sensible = stopped == len(data) and bool((np.abs(numbers) <= 1e9).all())
-    if sensible:
-        return numbers
+    try:
+        numbers = decimals(data, start)
+        if (np.abs(numbers) <= 1e9).all():
+            return numbers
+    except ValueError:
+        pass
     first = _line(data, start)
     for i, row in enumerate(data[start:].split(b"\n")):
         for word in row.split():
@@ -372,26 +337,9 @@ def _numbers(path: Path, data: bytes, start: int, channels: int) -> Array:
     raise FileError(
         path,
         told("it holds bytes that are not numbers"),
-        told("line {line}", line=_line(data, stopped)),
+        told("line {line}", line=first),
         _DAMAGED,
     )
-
-
-def _compiled_numbers(parse: Any, data: bytes, start: int, channels: int) -> tuple[Array, int]:
-    """Return the numbers and where reading stopped, using two threads on large files."""
-    whole, end = np.frombuffer(data, np.uint8), len(data)
-    out = np.empty((end - start) // 2 + 2)
-    middle = data.find(b"\n", (start + end) // 2) + 1 if end - start > 1 << 20 else 0
-    if middle > start:
-        half = np.count_nonzero(whole[data.find(b"\n", start) + 1 : middle] == 10) * channels
-        with ThreadPoolExecutor(1) as pool:
-            later = pool.submit(parse, whole, middle, end, out[half:])
-            first = parse(whole, start, middle, out[:half])
-            count, stopped = later.result()
-        if first == (half, middle):  # each line is a row
-            return out[: half + count], int(stopped)
-    count, stopped = parse(whole, start, end, out)
-    return out[:count], int(stopped)
 
 
 def _rotations(values: Array, joints: list[_Joint], columns: list[list[int]]) -> Array:
@@ -402,32 +350,12 @@ def _rotations(values: Array, joints: list[_Joint], columns: list[list[int]]) ->
         for joint, own in zip(joints, columns, strict=True)
     ]
     orders = ["".join(name[0] for name in joint.channels if name[1] == "r") for joint in joints]
-    kernels = _kernels()
-    if kernels is None:
-        out = rotation.identity((frames, len(joints)))
-        for order in set(orders) - {""}:
-            same = [i for i, o in enumerate(orders) if o == order]
-            angles = np.radians(values[:, [turns[i] for i in same]])
-            out[:, same] = rotation.from_euler(angles, order)
-        return rotation.continuous(out.astype(np.float32))
-    result = np.empty((frames, len(joints), 4), np.float32)
-    starts = np.cumsum([0] + [len(t) for t in turns])
-    axes = np.array(["xyz".index(a) for order in orders for a in order], np.int64)
-    flat = np.array([c for t in turns for c in t], np.int64)
-    if frames * len(flat) < 1 << 17:
-        kernels.turn(values, 0, frames, starts, axes, flat, result)
-        return result
-    half = frames // 2
-    with ThreadPoolExecutor(2) as pool:
-        list(
-            pool.map(
-                lambda a, b: kernels.turn(values, a, b, starts, axes, flat, result), (0, half), (half, frames)
-            )
-        )
-    other = np.einsum("ji,ji->j", result[half - 1], result[half]) < 0
-    if other.any():
-        result[half:, other] *= -1
-    return result
+    out = rotation.identity((frames, len(joints)))
+    for order in set(orders) - {""}:
+        same = [i for i, o in enumerate(orders) if o == order]
+        angles = np.radians(values[:, [turns[i] for i in same]])
+        out[:, same] = rotation.from_euler(angles, order)
+    return rotation.continuous(out.astype(np.float32))
 
 
 def _clip(

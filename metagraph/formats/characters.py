@@ -5,6 +5,7 @@ what is carried in the hands by the dozen is hidden at first.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +19,6 @@ from metagraph.graph.model import Project
 from metagraph.motion.character_mesh import Character, no_character
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Skeleton
-from metagraph.records import dataclass
 
 SUFFIXES = (".glb", ".gltf", ".vrm")
 SAME = 0.8  # share of a skeleton's joints that a file without motion must name to be taken for its character

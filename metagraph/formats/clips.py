@@ -7,7 +7,7 @@ import os
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from metagraph.budgets import MOTION_FILE, SOUND_FILE
@@ -17,7 +17,6 @@ from metagraph.formats.live_link_face import is_live_link
 from metagraph.formats.stray_poses import is_bind_pose
 from metagraph.formats.takes import NAME, ONE_FRAME, repaired
 from metagraph.motion.clip import Clip, ClipError, Repair
-from metagraph.records import dataclass
 from metagraph.wording import told
 
 SUFFIXES = (".bvh", ".glb", ".gltf", ".vrm", ".vrma", ".fbx", ".csv")

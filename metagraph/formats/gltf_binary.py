@@ -5,7 +5,7 @@ packed (EXT_meshopt_compression) where that is asked for.
 from __future__ import annotations
 
 import struct
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
 import msgspec
@@ -21,7 +21,6 @@ from metagraph.formats.meshopt_encoding import (
     quaternions,
 )
 from metagraph.motion import rotation
-from metagraph.records import dataclass
 
 Array = NDArray[Any]
 

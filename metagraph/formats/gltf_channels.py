@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,6 @@ from numpy.typing import NDArray
 from metagraph.errors import FileError
 from metagraph.formats.gltf_columns import MODES, NO_MODE, SCALE, UNKNOWN, WEIGHTS, ChannelTable
 from metagraph.formats.gltf_file import Gltf
-from metagraph.records import dataclass
 from metagraph.wording import told
 
 Array = NDArray[Any]

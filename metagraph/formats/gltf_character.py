@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Container
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,6 @@ from metagraph.formats.gltf_skeleton import GltfRig
 from metagraph.formats.gltf_values import Primitive
 from metagraph.motion.character_mesh import Character, Material, Surface
 from metagraph.pictures import picture_size
-from metagraph.records import dataclass
 
 Array = NDArray[Any]
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any, NoReturn
 
 import numpy as np
@@ -18,7 +19,6 @@ from metagraph.formats.gltf_skeleton import GltfRig
 from metagraph.formats.gltf_tracks import NotFiniteError, Still, Takes, spend_keys
 from metagraph.formats.takes import frame_rate, noted, take_name, take_repair, without_stray_poses
 from metagraph.motion.clip import Clip
-from metagraph.records import dataclass
 from metagraph.wording import told
 
 Array = NDArray[Any]

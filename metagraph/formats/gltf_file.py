@@ -22,7 +22,6 @@ from metagraph.budgets import MOTION_FILE, OUT_OF_PROPORTION, PATH_LENGTH, Allow
 from metagraph.errors import FileError
 from metagraph.files import read_file
 from metagraph.formats.gltf_columns import WIDTHS, ChannelTable, PlainAccessors, decoded
-from metagraph.formats.gltf_loops import count
 from metagraph.formats.gltf_values import Accessor, Buffer, BufferView, Document, PackedView, Sparse
 from metagraph.formats.meshopt import MeshoptError, unpacked
 from metagraph.network_paths import reason
@@ -313,7 +312,6 @@ def open_gltf(path: str | Path) -> Gltf:
 
 def parse_gltf(path: Path, data: bytes) -> Gltf:
     """Open the bytes of a file; `path` names it in errors and is where its buffers lie. Raises FileError."""
-    count(len(data))
     text: bytes | memoryview = data
     binary = None
     if data[:4] == b"glTF":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Collection, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import msgspec
@@ -18,7 +19,6 @@ from metagraph.formats.takes import UNIT
 from metagraph.motion import rotation
 from metagraph.motion.clip import Repair
 from metagraph.motion.skeleton import Skeleton, unique_names
-from metagraph.records import dataclass
 from metagraph.wording import told
 
 Array = NDArray[Any]

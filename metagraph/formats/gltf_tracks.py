@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.compiling import plain
 from metagraph.formats.gltf_channels import JointChannels
 from metagraph.formats.gltf_columns import LINEAR, MODES, ROTATION, SCALE, TRANSLATION
 from metagraph.formats.gltf_file import Gltf
-from metagraph.formats.gltf_loops import KEYS
 from metagraph.formats.gltf_sampling import Grid, KeyTable, sample, sample_turns
 from metagraph.formats.gltf_skeleton import GltfRig
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
-from metagraph.records import dataclass
 from metagraph.wording import told
 
 Array = NDArray[Any]
@@ -92,9 +90,7 @@ class Takes:
         out = np.empty((int(self.ends[-1]), len(self.rig.nodes), 4), np.float32)
         out[:] = self.rig.still_rotations
         table, others = self._sorted(ROTATION)
-        if table is not None and self._loops is not None:
-            self._loops.turn(table.numbers, *self._of(table), out)
-        elif table is not None:
+        if table is not None:
             sample_turns(table, self.grids, self.begins, out)
         for group in others:
             take, source, mode = self._take(group)
@@ -108,23 +104,15 @@ class Takes:
     def _finished(self, rotations: Array) -> Array:
         """Return rotations normalised, and neighbours of a take on the same side."""
         still = self.still
-        if self._loops is not None:
-            place = self._loops.finish(rotations, self.ends, still.turned, still.turns)
-            if place >= 0:
-                self._not_finite(*divmod(place, rotations.shape[1]))
-            return rotations
         if len(still.turned):
             rotations[:, still.turned] = rotation.multiply(still.turns, rotations[:, still.turned])
         if not np.isfinite(rotations).all():
             frame, joint = (int(place[0]) for place in np.nonzero(~np.isfinite(rotations).all(-1)))
-            self._not_finite(frame, joint)
+            raise NotFiniteError(int(np.searchsorted(self.ends, frame, "right")), joint)
         rotations = rotation.normalize(rotations)
         for begin, end in zip(self.begins, self.ends, strict=True):
             rotations[begin:end] = rotation.continuous(rotations[begin:end])
         return rotations
-
-    def _not_finite(self, frame: int, joint: int) -> None:
-        raise NotFiniteError(int(np.searchsorted(self.ends, frame, "right")), joint)
 
     def moved(self) -> list[dict[int, Array]]:
         """Return of each take where the joints are that are not where the rest pose has them: `[F, 3]`, empty
@@ -153,21 +141,6 @@ class Takes:
 
     def _move(self, table: KeyTable, moved: list[dict[int, Array]]) -> None:
         rig, still = self.rig, self.still
-        if self._loops is not None:
-            loose = self._loose(table, rig.lift, rig.shift, still.rest, np.full(len(rig.nodes), STILL))
-            for take, j in zip(*table.where(~loose), strict=True) if still.apart else ():
-                moved[take].pop(j, None)
-            some = table.only(loose)
-            if some is not None:
-                takes, joints = some.where(slice(None))
-                ends = np.cumsum((self.ends - self.begins)[takes])
-                places = np.empty((int(ends[-1]), 3))
-                self._loops.move(some.numbers, *self._of(some), plain(rig.lift), plain(rig.shift), places)
-                begin = 0
-                for take, j, end in zip(takes, joints, ends.tolist(), strict=True):
-                    moved[take][j] = places[begin:end]
-                    begin = end
-            return
         if not still.apart:
             away = (table.values != table.along(still.values[table.joints])).any(1)
             some = table.only(np.logical_or.reduceat(away, table.begins))
@@ -195,12 +168,8 @@ class Takes:
         scales, scaled = self.rig.still_scales, np.zeros(len(self.grids), int)
         most = 0.01 * np.abs(scales).max(-1)
         if table is not None:
-            if self._loops is not None:
-                as_is = np.broadcast_to(np.eye(3), (len(scales), 3, 3)).copy()
-                away = self._loose(table, as_is, np.zeros_like(scales), scales, most)
-            else:
-                far = table.most(np.abs(table.values - table.along(scales[table.joints])))
-                away = far > most[table.joints]
+            far = table.most(np.abs(table.values - table.along(scales[table.joints])))
+            away = far > most[table.joints]
             scaled += np.bincount(table.takes[table.groups[away]], minlength=len(scaled))
         for group in others:
             take, source, mode = self._take(group)
@@ -209,11 +178,6 @@ class Takes:
             own = values[:, 1::3] if mode == "CUBICSPLINE" else values
             scaled[take] += int((np.abs(own - scales[joints, None]).max((-1, -2)) > most[joints]).sum())
         return [int(count) for count in scaled]
-
-    def _loose(self, table: KeyTable, *told: Array) -> Array:
-        out = np.empty(len(table.joints), bool)
-        self._loops.loose(table.numbers, table.starts, table.joints, table.counts, *map(plain, told), out)
-        return out
 
     def _take(self, group: int) -> tuple[int, int, str]:
         """Return which of the takes a group is of, its key times' accessor, and its mode."""
@@ -250,24 +214,6 @@ class Takes:
         ).only(fine[groups])
         alike[alike] = fine
         return table, mine[~alike].tolist()
-
-    @cached_property
-    def _loops(self) -> Any:
-        """The compiled loops, where they are there and can read the file's numbers; else None."""
-        if KEYS.now is None:
-            return None
-        return KEYS.now if self.gltf.numbers(self.wheres[0]).flags.aligned else None
-
-    def _of(self, table: KeyTable) -> tuple[Array, ...]:
-        """Return what loops are told of a table's channels, groups and takes."""
-        ends = np.searchsorted(table.groups, np.arange(1, len(table.times) + 1))
-        times = np.concatenate(table.times), np.cumsum([len(own) for own in table.times])
-        return table.starts, table.joints, ends, table.takes, *times, *self._frames
-
-    @cached_property
-    def _frames(self) -> tuple[Array, Array, Array]:
-        at = np.concatenate([grid.times for grid in self.grids])
-        return at, self.ends, np.array([grid.near for grid in self.grids])
 
 
 def spend_keys(gltf: Gltf, size: int, where: str) -> None:

@@ -5,7 +5,7 @@ before and after it, which share what the step left alone.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from metagraph.formats.data import FORMAT, from_data, to_data
@@ -14,7 +14,6 @@ from metagraph.formats.journal import ABOUT, KEYED
 from metagraph.formats.recovery import Left
 from metagraph.formats.replay import Replay
 from metagraph.graph.model import ClipEntry, MetaGraph, Project
-from metagraph.records import dataclass
 
 UNNAMED = "Recovered edit"
 

@@ -6,12 +6,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
 from metagraph.formats.imports import Imported, Strangers
 from metagraph.formats.takes import BIND_POSE, NAME, ONE_FRAME, UNIT, UP
-from metagraph.records import dataclass
 from metagraph.wording import joined, told
 
 _RIGHT = {

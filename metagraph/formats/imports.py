@@ -5,7 +5,7 @@ alone.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -22,7 +22,6 @@ from metagraph.motion.adopt import SkeletonMismatchError, adopt, bone_difference
 from metagraph.motion.clip import Clip, ClipError
 from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint
 from metagraph.motion.skeleton import Skeleton
-from metagraph.records import dataclass
 from metagraph.wording import told
 
 if TYPE_CHECKING:

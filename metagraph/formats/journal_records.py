@@ -11,13 +11,13 @@ from __future__ import annotations
 import json
 import re
 from contextlib import suppress
+from dataclasses import dataclass
 from typing import Any, Literal
 from zlib import crc32
 
 import msgspec
 
 from metagraph.formats.fields import Data
-from metagraph.records import dataclass
 
 HEAD, FOUNDATION = 0, 1  # the numbers of what a journal begins with: whose it is, what its edits build on
 _FRAMED = re.compile(rb"(\{.*\})\t(\d{1,15})\t([0-9a-f]{8})")

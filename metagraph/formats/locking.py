@@ -17,6 +17,7 @@ import platform
 import tempfile
 import time
 import uuid
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
@@ -24,7 +25,6 @@ import msgspec
 
 from metagraph.formats.new_file import Access, access_of, open_new
 from metagraph.programs import run, system_program
-from metagraph.records import dataclass
 
 REFRESH = 30.0  # seconds
 STALE = 150.0  # seconds; a computer may be busy, and a drive away for a while

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from itertools import count
 from typing import Any
 
@@ -16,7 +16,6 @@ from metagraph.formats.data import from_data, to_data
 from metagraph.formats.fields import Data, DataError
 from metagraph.graph.ids import derived_id
 from metagraph.graph.model import Project, Timing
-from metagraph.records import dataclass
 from metagraph.wording import told
 
 _GONE: Any = object()

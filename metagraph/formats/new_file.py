@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import os
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
-
-from metagraph.records import dataclass
 
 
 @dataclass(frozen=True)

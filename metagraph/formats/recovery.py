@@ -8,6 +8,7 @@ import json
 import re
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 
 import msgspec
@@ -25,8 +26,6 @@ from metagraph.formats.locking import Owner, is_gone
 from metagraph.formats.replay import Replay
 from metagraph.formats.store import content_digest, file_digest, from_text, read_project
 from metagraph.graph.model import Project
-from metagraph.records import dataclass
-from metagraph.uncollected import uncollected
 
 JOURNAL = 1 << 33  # bytes of a journal that are read: as many as a person can fill
 DAMAGED = (
@@ -85,7 +84,6 @@ def recover(journal: Path, saved: Path | None) -> tuple[Project, int] | None:
     return (found.project, found.edits) if found is not None else None
 
 
-@uncollected()
 def read_journal(journal: Path, saved: Path | None) -> Left | None:
     """Return what a journal holds, None if that is no edit. A damaged record costs no other.
 

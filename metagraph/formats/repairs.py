@@ -5,7 +5,7 @@ takes them up.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from metagraph.formats.clips import digest, read_clips
@@ -17,7 +17,6 @@ from metagraph.graph.model import ClipEntry, Project
 from metagraph.motion.adopt import SkeletonMismatchError, adopt
 from metagraph.motion.clip import Repair
 from metagraph.motion.skeleton import Skeleton
-from metagraph.records import dataclass
 
 
 @dataclass(frozen=True)

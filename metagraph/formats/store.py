@@ -10,7 +10,7 @@ import hashlib
 import os
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -46,7 +46,6 @@ from metagraph.network_paths import (
     original,
     reason,
 )
-from metagraph.records import dataclass
 from metagraph.wording import told
 
 SUFFIX = ".metagraph.yaml"

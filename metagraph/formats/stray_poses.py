@@ -8,7 +8,7 @@ T- or A-pose) and is left by a step unlike the take's own motion; either alone i
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import Any
@@ -16,12 +16,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.compiling import Loops
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.records import dataclass
 
 Array = NDArray[Any]
 
@@ -44,12 +42,6 @@ BROKEN = 0.75  # how much a step that breaks off counts against one that is only
 SOON = 0.3  # the same for one that only the next three steps fall short of
 STILL = 5e-4  # of the spread: less is noise
 AT_ONCE = 1 << 20  # numbers of rotations of clips that are worked out together
-
-COMPILED = Loops("metagraph.formats.stray_kernels")
-MANY = 500  # frames for which it pays to load the loop, where it is kept
-LONG = 2000  # frames of a clip that two threads share
-
-_measured_so_far = [0]  # frames, without the loop
 
 
 @dataclass(frozen=True)
@@ -170,30 +162,6 @@ def _measured(
     nothing. moved: the joints that are translated.
     """
     frames, rest = sum(clip.frames for clip in clips), skeleton.rest_translations.astype(np.float32)
-    if COMPILED.now is None and _measured_so_far[0] < MANY:
-        _measured_so_far[0] += frames
-        if _measured_so_far[0] >= MANY:
-            COMPILED.load_kept()
-    if COMPILED.now is not None:
-        out = np.empty((frames, len(skeleton), 3), np.float32), *np.empty((3, frames))
-        tree, which = np.array(skeleton.parents, np.int64), np.array(moved)
-
-        def measure(clip: Clip, begin: int, first: int, last: int) -> None:
-            some, own = slice(first, last), slice(begin + first, begin + last)
-            turns, ways = clip.rotations[some], clip.translations[some]
-            COMPILED.now.measure(tree, turns, ways, which, rest, weights, *(a[own] for a in out))
-
-        begin = 0
-        with ThreadPoolExecutor(1) as beside:
-            for clip in clips:
-                half = clip.frames // 2 if clip.frames >= LONG else 0
-                # Each half has the frame they meet in, which the way to the next one is from.
-                later = beside.submit(measure, clip, begin, half, clip.frames) if half else None
-                measure(clip, begin, 0, half + 1 if half else clip.frames)
-                if later is not None:
-                    later.result()
-                begin += clip.frames
-        return out
     locals_ = np.empty((frames, len(skeleton), 3), np.float32)
     locals_[:] = rest
     locals_[:, moved] = np.concatenate([clip.translations for clip in clips])

@@ -7,6 +7,7 @@ from __future__ import annotations
 import errno
 import os
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 
 from metagraph.budgets import TEXT_FILE
@@ -15,7 +16,6 @@ from metagraph.files import read_file
 from metagraph.formats.atomic import sync_folder, unfinished, write_all, write_atomically
 from metagraph.formats.new_file import Access, access_of, open_new
 from metagraph.formats.store import SUFFIX
-from metagraph.records import dataclass
 from metagraph.wording import Told, told
 
 KEPT = 3  # versions, unless the settings say otherwise

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,6 @@ from typing import Any
 from metagraph.graph.arkit import ARKIT
 from metagraph.graph.expression_presets import PRESETS
 from metagraph.graph.face_names import plain
-from metagraph.records import dataclass
 
 TABLE = Path(__file__).with_suffix(".toml")
 _PREFIX = re.compile(

@@ -17,13 +17,11 @@ from metagraph.graph.manual_check import check_manual
 from metagraph.graph.model import KINDS, LAYERS, Action, ClipEntry, MetaGraph, Project
 from metagraph.graph.problem import Problem, Severity
 from metagraph.network_paths import ANOTHER, original, reason
-from metagraph.uncollected import uncollected
 from metagraph.wording import told
 
 Array = NDArray[Any]
 
 
-@uncollected()
 def check(project: Project) -> list[Problem]:
     """Return every problem, errors first, otherwise in the order of the project."""
     found = [*_clips(project), *check_base(project), *_character(project)]

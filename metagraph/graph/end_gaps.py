@@ -4,6 +4,7 @@ that warns of a pop goes by.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Literal
 from weakref import ref
@@ -18,7 +19,6 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.features import pose_distance
 from metagraph.motion.rig_controls import rig_controls
 from metagraph.motion.skeleton import Skeleton
-from metagraph.records import dataclass
 from metagraph.wording import told
 
 Array = NDArray[Any]

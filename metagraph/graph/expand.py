@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from metagraph.graph.model import KINDS, LAYERS, Action, Layer, MetaGraph, Project
-from metagraph.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

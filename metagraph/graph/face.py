@@ -9,7 +9,7 @@ at 1: `upper_lid_left` ... `lower_lid_right` (1 is shut), `blink` (what else mov
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -25,7 +25,6 @@ from metagraph.graph.remembered import Remembered
 from metagraph.motion import rotation
 from metagraph.motion.joint_names import take_apart
 from metagraph.motion.skeleton import Skeleton
-from metagraph.records import dataclass
 
 Array = NDArray[Any]
 

@@ -10,6 +10,7 @@ Alive"); listeners look more than speakers (Argyle and Cook 1976).
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Annotated, Any, get_type_hints
 
@@ -17,7 +18,6 @@ import msgspec
 from msgspec import Meta, Struct
 
 from metagraph.graph.words import MODES, Mode
-from metagraph.records import dataclass
 
 Factor = Annotated[float, Meta(ge=0, le=4)]
 

@@ -10,13 +10,12 @@ names and never change.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import Literal, get_args
 
 from metagraph.graph.words import Layer, Limb
-from metagraph.records import dataclass
 
 When = Literal["finished", "request"]
 WHENS: tuple[When, ...] = get_args(When)

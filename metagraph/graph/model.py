@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any
@@ -25,7 +25,6 @@ from metagraph.motion.contact_spans import ContactSpan
 from metagraph.motion.joint_map import JointMap
 from metagraph.motion.retime import Retime
 from metagraph.motion.skeleton import Skeleton
-from metagraph.records import dataclass
 
 __all__ = [
     "KINDS",

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Literal
 
 from metagraph.graph.words import Layer
-from metagraph.records import dataclass
 
 Severity = Literal["error", "warning", "hint"]
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Collection
+from dataclasses import dataclass
 from typing import Any
 
 import msgspec
@@ -15,7 +16,6 @@ from metagraph.graph import requests as a
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.performance_edits import asked_at, change_performance, move_requests
-from metagraph.records import dataclass
 from metagraph.wording import told
 
 KIND, VERSION = "requests", 1

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from metagraph.graph import anatomy
@@ -9,7 +11,6 @@ from metagraph.graph.end_gaps import motion_of
 from metagraph.graph.face import made_of
 from metagraph.graph.model import Action, Project
 from metagraph.graph.remembered import Remembered
-from metagraph.records import dataclass
 
 # Ours, from the sample's figures: who sits has the hips no higher than this part of how they stand, no lower,
 LOW, LYING = 0.75, 0.3

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Skeleton
-from metagraph.records import dataclass
 
 Array = NDArray[Any]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.records import dataclass
 
 Array = NDArray[Any]
 

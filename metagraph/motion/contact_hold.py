@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.limbs import unit
-from metagraph.records import dataclass
 
 Array = NDArray[Any]
 

@@ -8,7 +8,7 @@ languages.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from math import sqrt
 
 from metagraph.motion.plain_vectors import (
@@ -26,7 +26,6 @@ from metagraph.motion.plain_vectors import (
     unit,
     unit_turn,
 )
-from metagraph.records import dataclass
 
 REACHED = 0.995  # of an arm's length: it does not snap straight
 FOLDED = 0.906  # cosine of the least angle inside an elbow, 25 degrees

@@ -6,10 +6,10 @@ whatever else moves that joint: a breathing spine, a layer below, a body of anot
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import sqrt
 
 from metagraph.motion.plain_vectors import Quaternion, Vector
-from metagraph.records import dataclass
 
 HANDS: tuple[str, ...] = ("left", "right")
 PLACES: tuple[str, ...] = ("palm", "fingertips", "back", "wrist")

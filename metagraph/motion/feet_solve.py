@@ -8,6 +8,7 @@ all languages. All amounts are ours, chosen by eye.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from math import sqrt
 
 from metagraph.motion.contact_solve import ContactPose, bring, spread
@@ -25,7 +26,6 @@ from metagraph.motion.plain_vectors import (
     unit_turn,
 )
 from metagraph.motion.weight_solve import GIVE, WeightRig, hips_sink, stands_by
-from metagraph.records import dataclass
 
 NEAR = 0.0001  # metres that a foot may be away before it is brought
 NEARLY = 0.001  # radians that it may be turned away

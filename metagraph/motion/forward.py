@@ -12,15 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.compiling import Loops, plain
-
 Array = NDArray[Any]
 
-COMPILED = Loops("metagraph.motion.forward_kernels")
 AT_ONCE = 256  # poses: what is worked on stays in a processor's cache
-MANY = 2000  # poses for which it pays to load the loops, where they are kept: they give the same to the bit
-
-_worked = [0]  # poses so far, without loops
 
 # What of a joint's own turn, w x y z, its parent's w, x, y and z are multiplied by, a row each.
 FACTORS = np.array(((0, 1, 2, 3), (1, 0, 3, 2), (2, 3, 0, 1), (3, 2, 1, 0)))
@@ -33,7 +27,6 @@ class Forward:
 
     def __init__(self, parents: Array, levels: tuple[Array, ...]) -> None:
         """parents: `[J]`, -1 for a root. levels: joints by depth, roots first."""
-        self._parents = np.array(parents, np.int64)
         self._order = np.concatenate(levels)  # joints in the order in which they are worked on
         self._place = np.empty_like(self._order)
         self._place[self._order] = np.arange(len(self._order))
@@ -47,15 +40,6 @@ class Forward:
 
     def __call__(self, rotations: Array, translations: Array) -> tuple[Array, Array]:
         """Return model-space rotations `[F, J, 4]` and positions `[F, J, 3]`, typed as the local ones."""
-        if COMPILED.now is None and _worked[0] < MANY:
-            _worked[0] += len(translations)
-            if _worked[0] >= MANY:
-                COMPILED.load_kept()
-        if COMPILED.now is not None and rotations.dtype == translations.dtype == np.float32:
-            whole = plain(rotations), plain(translations)
-            made = np.empty_like(whole[0]), np.empty_like(whole[1])
-            COMPILED.now.globals_of(self._parents, *whole, *made)
-            return made
         if len(translations) <= AT_ONCE:
             return self._some(rotations, translations)
         out = np.empty_like(rotations), np.empty_like(translations)

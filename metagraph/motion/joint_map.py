@@ -7,7 +7,7 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from numpy.typing import NDArray
@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from metagraph.motion.joint_names import kind_of, take_apart
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Skeleton
-from metagraph.records import dataclass
 
 Array = NDArray[Any]
 

@@ -8,6 +8,7 @@ no mesh is needed. A place is told by how far it is along the part's line and by
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,6 @@ from metagraph.motion import rotation
 from metagraph.motion.joint_map import SIDES
 from metagraph.motion.limbs import eased, faded, unit
 from metagraph.motion.standing import Figure
-from metagraph.records import dataclass
 
 Array = NDArray[Any]
 Points = Mapping[str, Array]

@@ -5,7 +5,7 @@ poses in them. The clip itself stays as it was read.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from metagraph.motion.clip import Clip
 from metagraph.motion.contact_hold import MOST as HANDS
 from metagraph.motion.contact_hold import Contact, held
-from metagraph.records import dataclass
 
 Array = NDArray[Any]
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -14,7 +15,6 @@ from numpy.typing import NDArray
 
 from metagraph.motion import rotation
 from metagraph.motion.forward import Forward
-from metagraph.records import dataclass
 
 Array = NDArray[Any]
 

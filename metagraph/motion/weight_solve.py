@@ -11,6 +11,7 @@ Bouisset and Zattara 1987). The other amounts are ours, chosen by eye on the sam
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from math import cos, sin, sqrt
 
 from metagraph.motion.contact_solve import REACHED, ContactPose, ContactRig, bring, spread
@@ -26,7 +27,6 @@ from metagraph.motion.plain_vectors import (
     scaled,
     times,
 )
-from metagraph.records import dataclass
 
 BALANCE = 1.4  # of how far the arms carry the centre of mass away, the hips give way
 HASTE = 0.12  # seconds of the arms' speed that add to that

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from metagraph.playback.plan import MetaAction
-from metagraph.records import dataclass
 
 LOOKED_AT = 6  # how many that follow a meta action are told
 

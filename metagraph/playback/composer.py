@@ -7,6 +7,7 @@ joint's pose is `base * body^w * arms^w * head^w` over the layers whose weight o
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
 from weakref import WeakKeyDictionary, ref
@@ -21,7 +22,6 @@ from metagraph.graph.remembered import Latest
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.records import dataclass
 
 Array = NDArray[Any]
 

@@ -36,7 +36,6 @@ from metagraph.motion.contact_solve import (
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.contact_goals import LEAST, layer_goals
 from metagraph.playback.plan import Plan
-from metagraph.playback.solving import compiled, hold_hands
 
 Array = NDArray[Any]
 
@@ -181,8 +180,6 @@ def touched(pose: Pose, plan: Plan, project: Project, times: Array, shown: Array
 
 def solved(pose: Pose, rig: ContactRig, goals: Sequence[Sequence[HandGoal]]) -> Pose:
     """Return poses `[N, J]` with hands at their goals, and out of the body where the rig's guard is on."""
-    if compiled(pose):
-        return hold_hands(pose, rig, goals) if rig.guard or any(goals) else pose
     busy = np.array([bool(g) for g in goals])
     if rig.guard and not busy.all():
         idle = np.flatnonzero(~busy)

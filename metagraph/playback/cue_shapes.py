@@ -6,11 +6,12 @@ retraction may be cut (Borer et al., section 6.2).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from metagraph.graph.model import Action, Project
 from metagraph.playback.mood import drag
 from metagraph.playback.phases import phases
 from metagraph.playback.plan import MetaRequest
-from metagraph.records import dataclass
 
 FITS = 1e-6  # seconds by which sums of times may be off
 HURRY = 2.0  # a hold is played at most this many times as fast as it was made

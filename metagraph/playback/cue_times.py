@@ -4,11 +4,11 @@ have it for arrays.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import floor
 
 from metagraph.graph.model import Project
 from metagraph.playback.plan import Cue, Rest
-from metagraph.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

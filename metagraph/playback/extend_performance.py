@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from metagraph.graph.model import LAYERS, Layer, Project
@@ -15,7 +15,6 @@ from metagraph.playback.plan import Cue, LayerPlan, Past, Plan, Report
 from metagraph.playback.planner import extend
 from metagraph.playback.remembering import remember
 from metagraph.playback.understand import understand
-from metagraph.records import dataclass
 
 State = Literal["planned", "late", "refused", "done"]
 

@@ -7,12 +7,12 @@ through their places at four fixed times before it: smooth, and a function of pl
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from math import floor
 
 from metagraph.graph.model import Action, Project
 from metagraph.playback.cue_times import cue_seconds, cue_weight, ease, loop_spot
 from metagraph.playback.plan import Cue, LayerPlan, Rest
-from metagraph.records import dataclass
 
 STEP = 0.08  # seconds between the times that are looked at; the answer comes two of them late
 OFFSET = 0.0111  # seconds that they lie beside whole steps, where cues begin and end

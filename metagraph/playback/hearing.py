@@ -6,12 +6,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from collections.abc import Set as AbstractSet
+from dataclasses import dataclass
 
 from metagraph.graph.words import LAYERS, Layer
 from metagraph.playback.life.items import going_on
 from metagraph.playback.life.track import Track
 from metagraph.playback.plan import MetaRequest
-from metagraph.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from metagraph.graph.model import Kind, Layer, Markov, MetaGraph, Project
 from metagraph.playback import markov
@@ -26,7 +26,6 @@ from metagraph.playback.plan import (
 )
 from metagraph.playback.replan import delay, replan
 from metagraph.playback.sampling import Performer, performer_after
-from metagraph.records import dataclass
 
 WINDOW = 1.0  # seconds a request may use when it does not say how long
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from metagraph.graph.model import Kind, Layer, Limb, MetaGraph, Mode, Project
 from metagraph.playback.finding import action_called, stance_called
@@ -17,7 +17,6 @@ from metagraph.playback.life.track import Track
 from metagraph.playback.mood import MoodFrom
 from metagraph.playback.phases import lead, longest_lead
 from metagraph.playback.plan import ASKED, MetaRequest, Report
-from metagraph.records import dataclass
 
 FOREVER = 1e9  # seconds; a look that lasts until the next
 

@@ -14,11 +14,11 @@ and boredom neither (Wallbott 1998); the sad walk slowly, with small movements a
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from math import sqrt
 
 from metagraph.playback.choice import uniform
 from metagraph.playback.hashing import Bits
-from metagraph.records import dataclass
 
 FADE = 1.5  # seconds in which posture and face go from one mood to the next
 LEAST_EXTENT = 0.6

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from metagraph.records import dataclass
+from dataclasses import dataclass
 
 LEAST_BLEND = 0.25  # seconds in which a gesture that skips its preparation comes in
 

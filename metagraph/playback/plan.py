@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from math import isfinite
 from typing import Any, Literal
@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from metagraph.graph.model import LAYERS, Action, Kind, Layer, Limb
 from metagraph.playback.life.schedule import Schedule
 from metagraph.playback.life.track import Track
-from metagraph.records import dataclass
 
 Array = NDArray[Any]
 

@@ -9,14 +9,13 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Collection
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from weakref import ref
 
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.playback.plan import LayerPlan, Past, Plan
 from metagraph.playback.remembering import remember
 from metagraph.playback.strand import joined
-from metagraph.records import dataclass
 
 RECENT = 30.0  # seconds before now that planning on looks at, beside the settings' memory
 KEPT = 8  # plans whose heads are known

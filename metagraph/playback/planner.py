@@ -18,7 +18,6 @@ from metagraph.playback.mood import Moods, mood_at, stirs
 from metagraph.playback.plan import LayerPlan, MetaAction, MetaRequest, Plan, Report
 from metagraph.playback.plan_head import head_of, keep_head, shared
 from metagraph.playback.strand import joined
-from metagraph.uncollected import uncollected
 
 
 def make_plan(
@@ -39,7 +38,6 @@ def make_plan(
     return extend(project, empty, 0.0, requests, end, stances, idle)
 
 
-@uncollected()
 def extend(
     project: Project,
     plan: Plan,

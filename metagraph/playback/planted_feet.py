@@ -8,6 +8,7 @@ step's time, order and height follow from the two poses it leads between.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from math import floor
 
 from metagraph.graph.model import Project
@@ -15,7 +16,6 @@ from metagraph.motion.feet_solve import FootGoal, foot_way
 from metagraph.motion.plain_vectors import dot, minus, plus, scaled, unit_turn
 from metagraph.playback.cue_times import cue_seconds, ease, loop_spot
 from metagraph.playback.plan import Cue, LayerPlan, Rest
-from metagraph.records import dataclass
 
 FOOT_RATE = 10.0  # rows of a track in a second of its clip
 FOOT_UNIT = 1e-5  # what 1 in a row stands for

@@ -19,7 +19,6 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.composer import Ground, Reach, playable, rig
 from metagraph.playback.contacts import touched
-from metagraph.playback.laid_plan import composed
 from metagraph.playback.life.body import body_of
 from metagraph.playback.life.evaluate import Playing, enliven, face_weights
 from metagraph.playback.plan import Cue, LayerPlan, Plan, Rest
@@ -82,9 +81,7 @@ def layered(plan: Plan, project: Project, times: Array) -> Pose:
     """Return what the layers alone compose at `times [N]`: rotations `[N, J, 4]`, translations `[N, J,
     3]`.
     """
-    frame = rig(project)
-    found = composed(plan, project, frame, times)
-    return found if found is not None else frame.compose(layers_at(plan, project, times), len(times))
+    return rig(project).compose(layers_at(plan, project, times), len(times))
 
 
 def layers_at(plan: Plan, project: Project, times: Array) -> dict[Layer, Sample]:

@@ -9,7 +9,7 @@ its square.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import msgspec
@@ -23,7 +23,6 @@ from metagraph.playback.life.near_life import LANES
 from metagraph.playback.life.track import Item, track_of
 from metagraph.playback.plan import Cue, LayerPlan, MetaAction, MetaRequest, Plan, Report, Rest
 from metagraph.playback.plan_head import RECENT
-from metagraph.records import dataclass
 
 AHEAD = 20.0  # seconds of plan
 SLACK = 2.0  # seconds by which a plan may fall behind its horizon before it is extended

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
 from metagraph.graph.model import Action, MetaGraph, Project
 from metagraph.playback.bounds import Bound, begins, bounds
@@ -30,7 +30,6 @@ from metagraph.playback.phases import phases
 from metagraph.playback.plan import Cue, MetaAction, MetaRequest, Outcome, Past, Report, Rest
 from metagraph.playback.remembering import node, remember, rested
 from metagraph.playback.vigour import vigour
-from metagraph.records import dataclass
 
 LOOP_FADE = 0.6  # seconds of crossfade when a long rest changes from one loop of its stance to another
 

@@ -8,6 +8,7 @@ here they meet arrays.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 from weakref import ref
@@ -40,8 +41,6 @@ from metagraph.playback.follow_through import (
     knot_time,
 )
 from metagraph.playback.plan import LayerPlan, Plan
-from metagraph.playback.solving import carry_weight, compiled
-from metagraph.records import dataclass
 
 Array = NDArray[Any]
 Vector = tuple[float, float, float]
@@ -350,9 +349,6 @@ def weighs(project: Project) -> bool:
     return sways(project) or plants(project)
 
 
-_STILL = [0.0] * (2 * NUMBERS)
-
-
 def weighed(pose: Pose, plan: Plan, project: Project, times: Array, shown: Array | None = None) -> Pose:
     """Return composed poses `[N, J]` at `times [N]` in which feet stay planted and the body answers its arms;
     the very same arrays where nothing moves them. shown `[N]`: how much of what the plan does with arms is
@@ -377,10 +373,6 @@ def weighed(pose: Pose, plan: Plan, project: Project, times: Array, shown: Array
     busy = [n for n in range(len(times)) if feet[n] or moves_body(drives[n])]
     if not busy:
         return pose
-    if compiled(pose):
-        dials = [life.follow_through * part for part in parts], [life.shoulder_lift * part for part in parts]
-        whole = [drive or _STILL for drive in drives]
-        return carry_weight(pose, rig, feet, life.planted_feet, whole, *dials)
     joints, hips = list(rig.body.joints), rig.bends[0].place
     rotations, translations = np.array(pose.rotations), np.array(pose.translations)
     locals_, moved = rotations[busy][:, joints].tolist(), translations[busy][:, joints].tolist()

@@ -8,7 +8,7 @@ matters.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +27,6 @@ from metagraph.budgets import (
 from metagraph.errors import FileError
 from metagraph.files import check_file, guarded, is_file, opened
 from metagraph.playback.life.mouth import MouthPiece
-from metagraph.records import dataclass
 from metagraph.speech.quantile import percentile
 from metagraph.wording import told
 

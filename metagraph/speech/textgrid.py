@@ -10,12 +10,12 @@ import codecs
 import math
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 from metagraph.budgets import MARKS, MARKS_FILE
 from metagraph.errors import FileError
 from metagraph.files import guarded, read_file
-from metagraph.records import dataclass
 from metagraph.wording import told
 
 _TOKEN = re.compile(

@@ -10,9 +10,7 @@ command (rule 4). Here a decision about a clip is such a unit, so is a command.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields
-
-from metagraph.records import dataclass
+from dataclasses import dataclass, fields
 
 
 @dataclass(frozen=True)

@@ -21,12 +21,6 @@ heavy = {HEAVY!r}
 
 def first(window):
     assert not window.places.ready
-    import linecache
-    assert len(linecache.cache) < 20, "no source is read of what is imported"
-    from metagraph.records import dataclass
-    ours = (m for n, m in tuple(sys.modules.items()) if n.partition(".")[0] in ("app", "metagraph", "preview"))
-    slow = [m.__name__ for m in ours if getattr(m, "dataclass", dataclass) is not dataclass]
-    assert not slow, f"dataclasses that take ten times as long to make as those of records: {{slow}}"
     print("first:", *(m for m in (*heavy, *{LATER!r}) if m in sys.modules), flush=True)
 
 once_painted = main._once_painted

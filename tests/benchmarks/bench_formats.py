@@ -25,7 +25,6 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from metagraph.formats import bvh, gltf_loops, stray_poses  # noqa: E402
 from metagraph.formats.bvh import read_bvh, write_bvh  # noqa: E402
 from metagraph.formats.clips import import_clips  # noqa: E402
 from metagraph.formats.gltf import read_gltf_clips, write_glb  # noqa: E402
@@ -119,12 +118,6 @@ def assimp() -> Callable[[Path], None] | None:
     return read
 
 
-def load_loops() -> None:
-    """Load the compiled loops before the clock starts, as peers are imported."""
-    for loops in (gltf_loops.TEXT, gltf_loops.KEYS, stray_poses.COMPILED):
-        loops.load()
-
-
 def glb_readers(paths: list[Path]) -> dict[str, Callable[[], Any]]:
     readers: dict[str, Callable[[], Any]] = {
         "read the bytes (limit)": lambda: [p.read_bytes() for p in paths],
@@ -186,9 +179,6 @@ def main() -> None:
         path, what = long_bvh(folder)
         size = path.stat().st_size / 1e6
         print(f"BVH, {FRAMES} frames ({what}), {size:.1f} MB, medians of {ROUNDS}")
-        bvh._COMPILED_FROM = 0
-        read_bvh(path)  # imports the compiled loops before the clock starts, as the peers are
-
         times = race(bvh_readers(path))
         report(
             times,
@@ -196,7 +186,6 @@ def main() -> None:
             lambda s: f"{FRAMES / s:10.0f} frames/s {size / s:6.0f} MB/s",
         )
 
-        load_loops()
         clip = invented(96)
         files = []
         for i in range(20):

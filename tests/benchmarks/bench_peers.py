@@ -1,5 +1,5 @@
 """Every task with a peer in one table, measured in turns: python tests/benchmarks/bench_peers.py [rounds]
-[files] [playing] [synthesis] [exporting] [windows] [drawing]
+[files] [synthesis] [exporting] [windows] [drawing]
 
 Words choose groups of rows. Peers are used where they can be imported: pip install upc-pymotion bvh bvhio
 pygltflib cmeel-assimp orjson; what is not there is said. Each round runs both sides of a row once, one after
@@ -32,17 +32,11 @@ sys.path[:0] = [str(ROOT), str(Path(__file__).parent)]
 import bench_export_size  # noqa: E402
 import bench_formats  # noqa: E402
 import bench_motion_graph  # noqa: E402
-import bench_playback  # noqa: E402
 from bench_preview import crowd as standing  # noqa: E402
 
 from metagraph.engines.export_document import to_document  # noqa: E402
 from metagraph.formats.bvh import read_bvh  # noqa: E402
 from metagraph.formats.gltf import read_character, read_gltf_clips, write_glb  # noqa: E402
-from metagraph.formats.store import open_project  # noqa: E402
-from metagraph.playback import loops  # noqa: E402
-from metagraph.playback.crowd import Crowd  # noqa: E402
-from metagraph.playback.planner import make_plan  # noqa: E402
-from metagraph.playback.player import pose_at  # noqa: E402
 
 Work = Callable[[], object]
 SAMPLE = ROOT / "sample_clips" / "sample.metagraph.yaml"
@@ -104,7 +98,6 @@ def files(folder: Path) -> Iterator[Row]:
     yield Row(
         "the same, a process from start to end", "imports and reading", "upc-pymotion", "the same", own, other
     )
-    bench_formats.load_loops()
     clip, some = bench_formats.invented(96), []
     for i in range(60):
         some.append(folder / f"clip{i}.glb")
@@ -122,48 +115,6 @@ def files(folder: Path) -> Iterator[Row]:
             own_holds = "clips, resampled, checks; no mesh"
             task = f"GLB, {count} clips of {name}, a clip"
             yield Row(task, own_holds, peer, holds, ours[1], reader, count)
-
-
-def playing(count: int) -> Iterator[Row]:
-    project = open_project(SAMPLE).project
-    skeleton = project.skeleton
-    assert skeleton is not None
-    plans = [make_plan(project, 60, seed=seed) for seed in range(count)]
-    many, plain = Crowd(project, plans), bench_playback.Batched(project, plans)
-    moments = np.random.default_rng(2).uniform(0, 60, count)
-    model = many.globals(moments)
-    holds = f"{len(skeleton)} joints, 3 layers, global"
-    yield Row(
-        f"pose of each of {count} characters",
-        holds,
-        "plain NumPy, batched",
-        "the same",
-        lambda: many.globals(moments, model),
-        lambda: skeleton.globals(plain.poses(moments)),
-        count,
-    )
-    alone, one = Crowd(project, plans[:1]), bench_playback.Batched(project, plans[:1])
-    at = iter(np.random.default_rng(3).uniform(0, 60, 10**6).tolist())
-    poses = 200
-
-    def posed() -> None:
-        for _ in range(poses):
-            skeleton.globals(pose_at(plans[0], project, next(at), alive=False))
-
-    def plainly() -> None:
-        for _ in range(poses):
-            skeleton.globals(one.poses(np.array([next(at)])))
-
-    def compiled() -> None:
-        for _ in range(poses):
-            alone.globals(np.array([next(at)]))
-
-    posed()
-    compiled()
-    loops.load()  # as the window does
-    words = ("pose of one character, `pose_at` and globals, compiled loops", holds)
-    yield Row(*words, "plain NumPy", "the same", posed, plainly, poses)
-    yield Row(*words, "`Crowd` of one", "the same", posed, compiled, poses)
 
 
 def synthesis() -> Iterator[Row]:
@@ -287,8 +238,8 @@ def main() -> None:
     rounds = int(sys.argv[1]) if len(sys.argv) > 1 else 5
     wanted = sys.argv[2:]
     with tempfile.TemporaryDirectory() as temporary:
-        groups = (files(Path(temporary)), playing(1000), synthesis(), exporting(), windows(), drawing())
-        names = ("files", "playing", "synthesis", "exporting", "windows", "drawing")
+        groups = (files(Path(temporary)), synthesis(), exporting(), windows(), drawing())
+        names = ("files", "synthesis", "exporting", "windows", "drawing")
         print(
             "| task | ours has | peer | the peer has | ours | peer | ratio |\n|---|---|---|---|---|---|---|"
         )

@@ -34,9 +34,7 @@ ACTIONS, CLIPS, BEAT = 10_000, 1000, 5
 COLD = """
 import sys, time
 started = float(sys.argv[1])
-from metagraph.uncollected import uncollected
-with uncollected(lasting=True):
-    from app.main import open_window, prepare
+from app.main import open_window, prepare
 app = prepare()
 window = open_window(None, sample=True)
 window.resize(1680, 1020)

@@ -27,11 +27,9 @@ from metagraph.graph.edits import place
 from metagraph.graph.expand import connections, size
 from metagraph.graph.model import Project
 
-pytestmark = pytest.mark.usefixtures("compiled_loops")
-
 
 @pytest.fixture(scope="module")
-def talks(compiled_loops: None, sample: Project) -> tuple[Recorded, ...]:
+def talks(sample: Project) -> tuple[Recorded, ...]:
     return made(sample, 2, 32.0)
 
 

@@ -4,22 +4,12 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import threading
-from concurrent.futures import ThreadPoolExecutor
-from importlib.abc import Loader, MetaPathFinder
-from importlib.machinery import ModuleSpec
-from importlib.util import find_spec, spec_from_loader
 from pathlib import Path
-from types import ModuleType
-from typing import Any
 
 import numpy as np
 import pytest
 
-from metagraph import compiling, object_code
-from metagraph.compiling import CompilerError
 from metagraph.errors import FileError
-from metagraph.formats import bvh
 from metagraph.formats.bvh import read_bvh, write_bvh
 from metagraph.motion import rotation
 from metagraph.motion.adopt import difference
@@ -58,18 +48,9 @@ Frame Time: {time}
 {rows}"""
 
 
-def choose(monkeypatch: pytest.MonkeyPatch, compiled: bool) -> None:
-    """Have numbers read by the compiled loops, or without them."""
-    monkeypatch.setattr(bvh.COMPILED, "now", None)
-    monkeypatch.setattr(bvh, "_failed", [])
-    monkeypatch.setattr(bvh, "_KEPT_FROM", 1 << 60)
-    monkeypatch.setattr(bvh, "_COMPILED_FROM", 0 if compiled else 1 << 60)
-
-
-@pytest.fixture(params=["numpy", "compiled"])
-def path(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A file to write, read once by each of the two number parsers."""
-    choose(monkeypatch, request.param == "compiled")
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    """A file to write."""
     return tmp_path / "clip.bvh"
 
 
@@ -407,156 +388,40 @@ def test_writing_into_a_folder_that_cannot_be_made_is_refused(tmp_path: Path) ->
 def many_rows() -> list[str]:
     rng = np.random.default_rng(5)
     values = np.concatenate([rng.normal(size=(16000, 3)), rng.uniform(-720, 720, (16000, 6))], 1)
-    rows = [" ".join(f"{v:.6g}" for v in row) for row in values]
-    assert sum(map(len, rows)) > 1 << 20, "so many bytes are parted"
-    return rows
+    return [" ".join(f"{v:.6g}" for v in row) for row in values]
 
 
-@pytest.mark.parametrize("lines", ["a row each", "blank ones between", "rows broken off in the middle"])
-def test_a_large_file_split_between_two_threads_reads_as_a_small_one(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, many_rows: list[str], lines: str
+@pytest.mark.parametrize("lines", ["blank ones between", "rows broken off in the middle"])
+def test_a_large_file_reads_the_same_however_its_rows_are_broken(
+    tmp_path: Path, many_rows: list[str], lines: str
 ) -> None:
-    rows = list(many_rows)
+    rows, path = list(many_rows), tmp_path / "large.bvh"
+    path.write_text(figure(rows="\n".join(rows) + "\n", frames=16000))
+    plain = read_bvh(path, 0.01)
     if lines == "blank ones between":
         rows[::100] = [row + "\n" for row in rows[::100]]
-    elif lines == "rows broken off in the middle":
+    else:
         rows[10:9000] = [row.replace(" ", "\n", 1) for row in rows[10:9000]]
-    path = tmp_path / "large.bvh"
     path.write_text(figure(rows="\n".join(rows) + "\n", frames=16000))
-    choose(monkeypatch, False)
-    slow = read_bvh(path, 0.01)
-    choose(monkeypatch, True)
-    fast = read_bvh(path, 0.01)
-    side = np.sign(np.einsum("fji,fji->fj", fast.rotations, slow.rotations))[
-        ..., None
-    ]  # half turns may fall to either side
-    np.testing.assert_allclose(fast.rotations, slow.rotations * side, atol=2e-7)
-    np.testing.assert_array_equal(fast.translations, slow.translations)
-    assert (np.einsum("fji,fji->fj", fast.rotations[1:], fast.rotations[:-1]) >= 0).all()
+    broken = read_bvh(path, 0.01)
+    np.testing.assert_array_equal(broken.rotations, plain.rotations)
+    np.testing.assert_array_equal(broken.translations, plain.translations)
+    assert (np.einsum("fji,fji->fj", plain.rotations[1:], plain.rotations[:-1]) >= 0).all()
 
 
 @pytest.mark.parametrize("at", [3, 8000, 15990])
 @pytest.mark.parametrize("word", ["1.1e9", "-2000000000", "1e400", "nan", "seven", "1.2.3", "4-"])
 def test_what_is_no_sensible_number_in_a_large_file_is_told_with_its_line(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, many_rows: list[str], at: int, word: str
+    tmp_path: Path, many_rows: list[str], at: int, word: str
 ) -> None:
     rows = list(many_rows)
     rows[at] = rows[at].rpartition(" ")[0] + " " + word
     path = tmp_path / "large.bvh"
     path.write_text(figure(rows="\n".join(rows) + "\n", frames=16000))
     line = path.read_text().count("\n") - len(rows) + at + 1
-    choose(monkeypatch, True)
     with pytest.raises(FileError, match=rf"'{word}' is not a sensible number") as caught:
         read_bvh(path)
     assert caught.value.where == f"line {line}"
-
-
-class SlowImport(MetaPathFinder, Loader):
-    """Finds one module and, while it is being imported, waits until it is let go on."""
-
-    def __init__(self, name: str) -> None:
-        self.real = find_spec(name)
-        self.name, self.begun, self.go_on = name, threading.Event(), threading.Event()
-
-    def find_spec(self, name: str, path: object, target: object = None) -> ModuleSpec | None:
-        return spec_from_loader(name, self) if name == self.name else None
-
-    def create_module(self, spec: ModuleSpec) -> None:
-        return None
-
-    def exec_module(self, module: ModuleType) -> None:
-        self.begun.set()
-        assert self.go_on.wait(20)
-        assert self.real is not None and self.real.loader is not None
-        module.__file__ = self.real.origin
-        self.real.loader.exec_module(module)
-
-
-def test_a_file_read_while_another_thread_imports_the_compiled_loops_reads_all_the_same(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    first, second = tmp_path / "first.bvh", tmp_path / "second.bvh"
-    for path in (first, second):
-        path.write_text(figure())
-    choose(monkeypatch, False)
-    expected = read_bvh(first, 0.01)
-    name = "metagraph.formats.bvh_kernels"
-    slow = SlowImport(name)
-    monkeypatch.delitem(sys.modules, name, raising=False)
-    monkeypatch.delattr("metagraph.formats.bvh_kernels", raising=False)
-    monkeypatch.setattr(sys, "meta_path", [slow, *sys.meta_path])
-    has_numbers, numbers = threading.Event(), bvh._numbers
-
-    def wait_behind_numbers(path: Path, *rest: Any) -> Any:
-        found = numbers(path, *rest)
-        if path == first:
-            has_numbers.set()
-            assert slow.begun.wait(20)
-        return found
-
-    monkeypatch.setattr(bvh, "_numbers", wait_behind_numbers)
-    with ThreadPoolExecutor(2) as pool:
-        try:
-            one = pool.submit(read_bvh, first, 0.01)
-            assert has_numbers.wait(20)
-            monkeypatch.setattr(bvh, "_COMPILED_FROM", 0)
-            other = pool.submit(read_bvh, second, 0.01)
-            np.testing.assert_array_equal(one.result(20).rotations, expected.rotations)
-        finally:
-            slow.go_on.set()
-        np.testing.assert_allclose(other.result(60).rotations, expected.rotations, atol=2e-7)
-
-
-def test_without_a_compiler_large_files_are_read_all_the_same_and_it_is_asked_for_once(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    asked = []
-
-    def offline(**options: Any) -> Any:
-        asked.append(options)
-        raise CompilerError("no network")
-
-    path = tmp_path / "clip.bvh"
-    path.write_text(figure())
-    choose(monkeypatch, True)
-    expected = read_bvh(path, 0.01)
-    choose(monkeypatch, True)
-    monkeypatch.delitem(sys.modules, "metagraph.formats.bvh_kernels", raising=False)
-    monkeypatch.delattr("metagraph.formats.bvh_kernels", raising=False)
-    monkeypatch.setattr("metagraph.compiling.compiler", offline)
-    monkeypatch.setattr(bvh, "there", lambda: False)
-    read_bvh(path, 0.01)
-    assert not asked  # so little is not worth it
-    monkeypatch.setattr(bvh, "_INSTALLED_FROM", 0)
-    for _ in range(2):
-        np.testing.assert_allclose(read_bvh(path, 0.01).rotations, expected.rotations, atol=2e-7)
-    assert len(asked) == 1
-
-
-def test_what_is_kept_of_the_loops_reads_as_they_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    if not object_code.usable():
-        pytest.skip("object code is for Linux on x86-64")
-    path = tmp_path / "clip.bvh"
-    rng = np.random.default_rng(3)
-    rows = "\n".join(" ".join(f"{x:.4f}" for x in row) for row in rng.normal(0, 90, (4000, 9)))
-    path.write_text(figure(frames=4000, rows=rows))
-    choose(monkeypatch, True)
-    expected = read_bvh(path, 0.01)
-    monkeypatch.setenv("METAGRAPH_LOOP_CACHE", str(tmp_path / "cache"))
-    monkeypatch.setattr(bvh.COMPILED, "now", None)
-    monkeypatch.setattr(compiling, "kept_by_numba", [True])
-    monkeypatch.delitem(sys.modules, "metagraph.formats.bvh_kernels")
-    assert bvh.COMPILED.keep()
-    monkeypatch.setattr(bvh, "_COMPILED_FROM", 1 << 60)
-    monkeypatch.setattr(bvh, "_KEPT_FROM", 0)
-    monkeypatch.delitem(sys.modules, "metagraph.formats.bvh_kernels")
-    found = read_bvh(path, 0.01)
-    assert bvh.COMPILED.now is not None and "metagraph.formats.bvh_kernels" not in sys.modules
-    np.testing.assert_allclose(found.rotations, expected.rotations, atol=2e-7)
-    np.testing.assert_allclose(found.translations, expected.translations, atol=2e-7)
-    path.write_text(figure(rows="1 2 3 4 5 x 7 8 9"))
-    with pytest.raises(FileError, match="'x' is not a sensible number"):
-        read_bvh(path)
 
 
 def test_importing_the_reader_does_not_import_numba() -> None:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 import pytest
 
 from metagraph.motion import rotation
-from metagraph.motion.forward import AT_ONCE, COMPILED
+from metagraph.motion.forward import AT_ONCE
 from metagraph.motion.skeleton import Pose, Skeleton
 
 
@@ -33,15 +31,6 @@ def trees() -> dict[str, list[int]]:
     }
 
 
-@pytest.fixture(params=["NumPy", "compiled"])
-def loops(request: pytest.FixtureRequest) -> Iterator[None]:
-    if request.param == "compiled":
-        COMPILED.load()
-    yield
-    COMPILED.now = None
-
-
-@pytest.mark.usefixtures("loops")
 @pytest.mark.parametrize("shape", [(), (0,), (1,), (3,), (2, 5), (AT_ONCE,), (AT_ONCE + 1,), (3 * AT_ONCE,)])
 @pytest.mark.parametrize("types", [("f4", "f4"), ("f8", "f8"), ("f4", "f8"), ("f8", "f4")])
 @pytest.mark.parametrize("tree", trees().values(), ids=trees())

@@ -14,7 +14,6 @@ from metagraph.graph import requests as a
 from metagraph.graph.model import Project
 from metagraph.graph.touch import Touch
 from metagraph.graph.words import FEELINGS
-from metagraph.playback.crowd import Crowd
 from metagraph.playback.extend_performance import answer, hear, since
 from metagraph.playback.mood import (
     FADE,
@@ -207,17 +206,6 @@ def test_smaller_gestures_keep_hands_nearer_their_stance_and_begin_and_end_in_it
     assert 0.4 * away[0] < away[1] < 0.85 * away[0]
     assert np.abs(places[1][[0, -1]] - places[2][[0, -1]]).max() < 1e-3
     assert np.abs(np.diff(places[1], axis=0)).max() < 0.2, "nothing jumps"
-
-
-def test_a_crowd_is_in_the_same_mood(sample: Project) -> None:
-    sample = free(sample)  # crowds have no contacts
-    plans = [make_plan(feeling(sample, -0.5, x, 1.2), 20.0, seed=n) for n, x in enumerate(STEPS)]
-    times = np.array([3.1, 6.6, 9.2, 12.7, 15.3])
-    pose = Crowd(sample, plans).poses(times)
-    for n, plan in enumerate(plans):
-        one = pose_at(plan, sample, times[n], alive=False)
-        assert np.abs(one.rotations - pose.rotations[n]).max() < 2e-5
-        assert np.abs(one.translations - pose.translations[n]).max() < 1e-5
 
 
 def test_moods_planned_tick_by_tick_are_those_planned_at_once(sample: Project) -> None:

@@ -21,8 +21,6 @@ from metagraph.playback.planner import make_plan
 from metagraph.playback.player import pose_at
 from metagraph.playback.sampling import Performer
 
-pytestmark = pytest.mark.usefixtures("compiled_loops")
-
 LENGTH = 600.0
 SEEDS = range(1, 11)
 FPS = 60

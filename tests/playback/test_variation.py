@@ -5,7 +5,6 @@ last, preparations skipped.
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -16,8 +15,6 @@ from hypothesis import strategies as st
 
 from metagraph.graph import edits
 from metagraph.graph.model import Project
-from metagraph.graph.touch import Touch
-from metagraph.playback.crowd import Crowd
 from metagraph.playback.phases import phases
 from metagraph.playback.plan import Cue, LayerPlan, MetaRequest, Plan
 from metagraph.playback.planner import extend, make_plan
@@ -259,16 +256,6 @@ def test_whatever_is_asked_of_the_phases_cues_stay_apart_and_within_their_clips(
         start, end = sample.span(cue.action)
         assert start - 1e-6 <= cue.entry and cue.last <= end + 1e-6 and cue.end > cue.start
         assert cue.blend_in + cue.blend_out <= cue.end - cue.start + 1e-9
-
-
-def test_a_crowd_holds_as_the_player_does(sample: Project) -> None:
-    sample = replace(sample, touch=Touch(False, False))  # crowds have no contacts
-    action = next(x for x in sample.actions() if x.name == "open_palms_bt_01")
-    plan = make_plan(sample, 20, [MetaRequest("x", "arms", "gesture", 1.0, action=action.id, hold=3.0)])
-    times = np.linspace(0.5, 8.0, 40)
-    crowd = Crowd(sample, [plan] * len(times)).poses(times)
-    one = pose_at(plan, sample, times, alive=False)
-    assert np.abs(crowd.rotations - one.rotations).max() < 1e-5
 
 
 def test_draws_follow_likelihood_over_uses(project: Project, toy: Any) -> None:

@@ -5,6 +5,7 @@ copy.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from PySide6.QtCore import QSize, Qt
@@ -35,7 +36,6 @@ from metagraph.formats.versions import MOST, Version, earlier_versions
 from metagraph.graph.differences import differences
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
-from metagraph.records import dataclass
 
 LINES = 500  # changes of a version that are listed
 

@@ -4,6 +4,8 @@ does.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from app.features.graph.graph_layout import GraphHit
 from app.look.names import node_names
 from app.look.plural import many
@@ -13,7 +15,6 @@ from app.widgets.vocabulary import word
 from metagraph.graph.edits import EditError, move_actions, place, refusal, to_stance
 from metagraph.graph.listing_edits import reordered
 from metagraph.graph.model import Kind, Layer, Project
-from metagraph.records import dataclass
 
 ONE: dict[Kind, str] = {
     "stance": tr_noop("a stance"),

@@ -5,11 +5,11 @@ one column where it is narrow, in one line where it is low.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from PySide6.QtCore import QRectF
 
 from metagraph.graph.model import Kind
-from metagraph.records import dataclass
 
 GRID = 8
 HEADER, ROW, PAD = 38, 24, 8

@@ -5,7 +5,7 @@ result.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Literal
 
 from PySide6.QtCore import QPointF, QRectF, QSizeF
@@ -14,7 +14,6 @@ from app.features.graph.graph_frames import GRID, HEADER, LINE, NARROW, PAD, ROW
 from app.look.names import node_names
 from app.translation import tr
 from metagraph.graph.model import Action, Kind, Layer, MetaGraph, Project
-from metagraph.records import dataclass
 
 LEAST_WIDTH, LEAST_HEIGHT = 240.0, 300.0  # pixels; a smaller canvas is laid out as if it was so large
 CHIP_HEIGHT, CHIP_TOP = 34, 12

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QImage, QPainter, QPen
@@ -13,7 +13,6 @@ from app.features.graph.graph_layout import GraphHit
 from app.look.shortening import fitted
 from app.look.theme import Theme
 from metagraph.graph.model import Kind, Project
-from metagraph.records import dataclass
 
 RADIUS = 8.0
 KNOWN = 512  # pictures

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from PySide6.QtCore import QTimer
 from PySide6.QtGui import QImage
@@ -12,7 +12,6 @@ from PySide6.QtWidgets import QWidget
 from app.features.graph.graph_layout import Layout
 from app.stage.thumbnails import Thumbnails
 from metagraph.graph.model import MetaGraph
-from metagraph.records import dataclass
 
 RATE = 12  # pictures a second of the stance in the middle
 SLOW = 0.015  # seconds of drawing for each of which a picture of it is left out

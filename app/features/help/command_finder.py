@@ -5,6 +5,7 @@ done from here.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 
 from PySide6.QtCore import QEvent, QModelIndex, QObject, QSize, Qt, QTimer
 from PySide6.QtGui import QKeyEvent
@@ -22,7 +23,6 @@ from PySide6.QtWidgets import (
 
 from app.translation import tr
 from app.widgets.tree_items import items_below, top_items
-from metagraph.records import dataclass
 
 ROLE = Qt.ItemDataRole.UserRole
 SIZE = QSize(620, 560)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from app.features.library.clip_facts import ClipFacts
 from app.features.library.clip_order import GIVEN, stances
@@ -10,7 +11,6 @@ from app.look.domain_words import COLOR_TITLES
 from app.translation import tr
 from metagraph.graph.clip_mark import STARS
 from metagraph.graph.model import KINDS, LAYERS, ClipEntry
-from metagraph.records import dataclass
 
 
 @dataclass(frozen=True)

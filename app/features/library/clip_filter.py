@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, fields
+from dataclasses import asdict, dataclass, fields
 
 from app.features.library.clip_facts import ClipFacts
 from app.look.domain_words import COLOR_TITLES, KIND_TITLES, LAYER_TITLES
@@ -11,7 +11,6 @@ from app.translation import tr
 from metagraph.graph.clip_mark import COLORS, STARS
 from metagraph.graph.model import KINDS, LAYERS, ClipEntry, Project
 from metagraph.graph.name_search import fits
-from metagraph.records import dataclass
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,9 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 from PySide6.QtCore import QPoint, QRect
-
-from metagraph.records import dataclass
 
 HEAD = 28  # pixels of a group's title
 

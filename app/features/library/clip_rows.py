@@ -5,7 +5,7 @@ in an order. `arranged` says which; the rest tells Qt.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from PySide6.QtCore import QAbstractListModel, QMimeData, QModelIndex, QPersistentModelIndex, Qt
 
@@ -19,7 +19,6 @@ from app.translation import tr
 from app.widgets.mime import mime
 from metagraph.graph.generated import origin
 from metagraph.graph.model import ClipEntry, Project
-from metagraph.records import dataclass
 
 Index = QModelIndex | QPersistentModelIndex
 ENTRY = Qt.ItemDataRole.UserRole

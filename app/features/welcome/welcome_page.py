@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import partial
 
 from PySide6.QtCore import QEvent, QObject, QPoint, QRectF, QSize, Qt
@@ -25,7 +26,6 @@ from app.project.files import Files
 from app.stage.session import Session
 from app.translation import tr
 from app.widgets.making import make_widget
-from metagraph.records import dataclass
 
 LEAST = QSize(400, 270)  # pixels of a room in which all of it is whole
 CARD = QSize(188, 92)  # at least

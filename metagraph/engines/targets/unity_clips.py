@@ -7,10 +7,10 @@ clips, too: positions become `(-x, y, z)`, rotations `(x, -y, -z, w)`.
 from __future__ import annotations
 
 import zlib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import pairwise
+from itertools import islice, pairwise
 from typing import Any
 
 import numpy as np
@@ -25,9 +25,9 @@ from metagraph.engines.targets.unity_yaml import (
     fields,
     joint_path,
     main_id,
+    number,
     text,
 )
-from metagraph.formats.decimal_lines import Lines
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
@@ -87,10 +87,10 @@ def clip_asset(
         rows = np.repeat(np.arange(len(kept)), counts), frames
         into, away = _tangents(values, slopes, *rows)
         numbers = [frames[:, None] / clip.fps, values[rows], into * clip.fps, away * clip.fps]
-        written = _KEYS[values.shape[2]].write(np.concatenate(numbers, 1), counts)
-        for joint, lines in zip(joints, written, strict=True):
+        written = _write_keys(np.concatenate(numbers, 1), values.shape[2])
+        for joint, count in zip(joints, counts, strict=True):
             path = joint_path(skeleton, joint)
-            curves[kind].append(_CURVE % (lines, text(path)))
+            curves[kind].append(_CURVE % ("".join(islice(written, count)), text(path)))
             bound.append(_BOUND % (zlib.crc32(path.encode()), kind))
 
     shifts = np.broadcast_to(
@@ -161,19 +161,25 @@ def _settings(seconds: float, loop: bool, reference: Inline | None) -> dict[str,
     }
 
 
-def _lines(axes: str) -> Lines:
-    """Return how keys are written: seconds, value, slopes into and out of it. Version 2 is that of Unity 5.5
+def _key(axes: str) -> str:
+    """Return how a key is written: seconds, value, slopes into and out of it. Version 2 is that of Unity 5.5
     to 2017, which newer ones read: half the size, for it has no tangents' weights.
     """
-    vector = "{" + ", ".join(f"{axis}: %" for axis in axes) + "}"
-    line = (
-        f"      - serializedVersion: 2\n        time: %\n        value: {vector}\n"
+    vector = "{" + ", ".join(f"{axis}: %s" for axis in axes) + "}"
+    return (
+        f"      - serializedVersion: 2\n        time: %s\n        value: {vector}\n"
         f"        inSlope: {vector}\n        outSlope: {vector}\n        tangentMode: 0\n"
     )
-    return Lines(line.split("%"), [6] * (1 + len(axes)) + [4] * (2 * len(axes)))
 
 
-_KEYS = {3: _lines("xyz"), 4: _lines("xyzw")}
+_KEY = {3: _key("xyz"), 4: _key("xyzw")}
+
+
+def _write_keys(rows: Array, size: int) -> Iterator[str]:
+    """Yield the text of each key `[K, 1 + 3 * size]`: seconds and values to 6 digits, slopes to 4."""
+    digits, key = [6] * (1 + size) + [4] * (2 * size), _KEY[size]
+    for row in rows.tolist():
+        yield key % tuple(map(number, row, digits))
 
 
 def _keys(values: Array, slopes: Array, tolerance: float) -> list[list[int]]:

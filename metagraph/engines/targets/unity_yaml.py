@@ -12,7 +12,6 @@ from typing import Any
 import yaml
 from numpy.typing import NDArray
 
-from metagraph.formats.decimal_lines import number
 from metagraph.motion.skeleton import Skeleton
 
 Array = NDArray[Any]
@@ -31,6 +30,14 @@ class Written(str):
 
 NOTHING = Inline(fileID=0)
 _HEAD = {"m_CorrespondingSourceObject": NOTHING, "m_PrefabInstance": NOTHING, "m_PrefabAsset": NOTHING}
+
+
+def number(value: float, digits: int = 6) -> str:
+    """Return a number with at most so many digits (1 or more) behind the point, none needless, and without an
+    exponent.
+    """
+    short = f"{value:.{digits}f}".rstrip("0").rstrip(".")
+    return "0" if short == "-0" else short
 
 
 def main_id(klass: int) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,6 @@ from metagraph.motion import rotation
 from metagraph.motion.joint_map import known_roles
 from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.life.tension import tensed
-from metagraph.records import dataclass
 
 Array = NDArray[Any]
 

@@ -21,13 +21,14 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.anatomy import base_pose
-from metagraph.graph.face import CHANNELS, LIDS, MOUTH, FaceRig
+from metagraph.graph.face import CHANNELS, LIDS, MOUTH, UPPER_FOLLOWS, UPPER_LID_SHUT, FaceRig
 from metagraph.graph.face_names import MOOD_FACE
 from metagraph.graph.life import Life
 from metagraph.graph.model import Project
@@ -37,13 +38,11 @@ from metagraph.playback.life.expressions import FaceShown, answer, settle, shown
 from metagraph.playback.life.gaze import Gaze, Moves, ease, gaze_of
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.lips import mouth
-from metagraph.playback.life.living import brought_to_life, compiled, lids_of
 from metagraph.playback.life.schedule import Schedule
-from metagraph.playback.life.solve import LifeDials, LifeNow, enlivened
+from metagraph.playback.life.solve import FaceLids, LifeDials, LifeNow, enlivened
 from metagraph.playback.life.track import Track
 from metagraph.playback.mood import Bearing, bearing
 from metagraph.playback.mood import shown as mood_shown
-from metagraph.records import dataclass
 
 Array = NDArray[Any]
 
@@ -51,6 +50,8 @@ Playing = tuple[Sequence[str], float, float]  # a cue: its action's tags, start 
 INHALE = 0.4  # of a breath
 UNMOVED = Bearing()
 MORPH_LOOK = np.radians(30.0)  # the turn of an eye that a morph target of a look stands for
+# How far a morph target shuts for an eye that looks down a radian.
+MORPH_FOLLOWS = UPPER_FOLLOWS / np.radians(UPPER_LID_SHUT)
 MORPH_WIDE = 0.6  # of a target that opens wide, for a lid as far open as it would be shut
 
 _PRODUCT = np.array(
@@ -69,8 +70,6 @@ def enliven(pose: Pose, project: Project, schedule: Schedule, track: Track, time
     body = body_of(project)
     if body.empty:
         return pose
-    if compiled(pose):
-        return _compiled(body, project, schedule, track, np.asarray(times, np.float64), pose)
     found = _Found(body, project, schedule, track, np.asarray(times, np.float64), pose)
     rotations = np.array(pose.rotations)
     rotations[:, body.joints] = found.rotations()
@@ -82,18 +81,11 @@ def enliven(pose: Pose, project: Project, schedule: Schedule, track: Track, time
     return Pose(rotations, translations)
 
 
-def _compiled(
-    body: Body, project: Project, schedule: Schedule, track: Track, times: Array, pose: Pose
-) -> Pose:
-    """Return what `_Found` makes of poses, by compiled loops."""
-    life = project.life
-    looking = _looking(body, project, schedule)
-    now, moves = [], []
-    for time in times.tolist():
-        now.append(happening(schedule, life, time)[0])
-        moves.append(looking.at(time) if looking is not None else NO_MOVES)
-    channels = _spoken(project, track, times)
-    return brought_to_life(pose, body, _dials(life), now, moves, looking is not None, channels)
+def lids_of(face: FaceRig) -> FaceLids:
+    """Return a face's lids as `enlivened` takes them; where none is a joint, how far morph targets follow."""
+    joints = [joint >= 0 for joint in face.lid_joints.tolist()]
+    follows = face.follows.tolist() if any(joints) else [MORPH_FOLLOWS, MORPH_FOLLOWS, 0.0, 0.0]
+    return FaceLids(joints, follows, face.shut_by.tolist())
 
 
 def _looking(body: Body, project: Project, schedule: Schedule) -> Gaze | None:

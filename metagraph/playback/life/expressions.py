@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from metagraph.graph.life import Life
 from metagraph.playback.choice import chance_of, keyed, uniform
@@ -22,7 +23,6 @@ from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.track import Speech, Track
 from metagraph.playback.life.voice import Voice, stressed
 from metagraph.playback.mood import Bearing, faded, within
-from metagraph.records import dataclass
 
 # Swells: how the face of a mood comes up; rows: length s, amount, 1 where the mode was listening.
 SWELL_GAP = 3.5  # seconds between two, on average

@@ -16,6 +16,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections import OrderedDict
 from collections.abc import Mapping
+from dataclasses import dataclass
 from math import acos, degrees, exp, hypot, inf, radians, sqrt
 from typing import Any
 
@@ -25,7 +26,6 @@ from metagraph.playback.life.body import Body
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.schedule import Schedule
 from metagraph.playback.life.wanted import AHEAD, PARTNER, GazeTarget
-from metagraph.records import dataclass
 
 EYE_TIME, EYE_TIME_PER_DEGREE = 0.021, 0.0022  # seconds
 HEAD_LAG = 0.04  # seconds the head sets off after the eyes

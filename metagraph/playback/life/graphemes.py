@@ -6,11 +6,10 @@ shut.
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from metagraph.playback.life.alphabet import Alphabet
 from metagraph.playback.life.mouth import VOWELS, MouthPiece
-from metagraph.records import dataclass
 
 PACE = 14.0  # characters a second: about 150 words a minute
 SHORTEST = 0.4  # seconds

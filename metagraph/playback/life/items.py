@@ -6,14 +6,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from metagraph.graph.requests import Point
 from metagraph.graph.words import Layer, Mode
 from metagraph.playback.life.line_timing import LineTiming, alike_timings, extended, timed_seconds, told_text
 from metagraph.playback.life.spots import Spot, same_spot
 from metagraph.playback.mood import MoodFrom
-from metagraph.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

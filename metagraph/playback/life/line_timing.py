@@ -5,13 +5,12 @@ between. Times are seconds from the line's start.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import ceil
 
 from metagraph.playback.life.alphabet import Alphabet
 from metagraph.playback.life.graphemes import Spelled, sounds
 from metagraph.playback.life.mouth import LATE, STEP, VOWELS, MouthPiece
-from metagraph.records import dataclass
 
 WORD = 0.15  # seconds a word takes of which only the start is told, if nothing comes before
 LETTER = 0.07  # and for each of its letters

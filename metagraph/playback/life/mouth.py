@@ -11,10 +11,10 @@ as soon as the consonants before it begin (look-ahead, Henke 1966), at most a qu
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from math import ceil
 
 from metagraph.graph.face_names import VISEMES
-from metagraph.records import dataclass
 
 # How much each of VISEMES rules its neighbours: tongue and palate need not be seen. What closes the mouth
 # does not take part in the mean.

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
 from metagraph.graph.life import Life, Manner, manner, same_life
 from metagraph.graph.words import MODES
@@ -29,7 +29,6 @@ from metagraph.playback.life.wanted import (
     ways_in,
 )
 from metagraph.playback.mood import Mood
-from metagraph.records import dataclass
 
 BLOCK = 8.0  # seconds drawn at a time, so that a running plan need not draw at every tick
 RECALL = 4.0  # seconds of looks kept when the past is forgotten: longer than any turn of the head takes

@@ -6,7 +6,7 @@ import math
 from bisect import bisect_right, insort
 from collections.abc import Collection, Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from metagraph.graph.words import Layer, Mode
 from metagraph.playback.life.items import (
@@ -28,7 +28,6 @@ from metagraph.playback.life.items import (
     cut,
 )
 from metagraph.playback.mood import MoodFrom, lasting
-from metagraph.records import dataclass
 
 __all__ = [
     "BlinkAt",

@@ -5,7 +5,7 @@ through.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -18,7 +18,6 @@ from metagraph.playback.life.graphemes import read_aloud, spelled
 from metagraph.playback.life.items import Speech
 from metagraph.playback.life.line_timing import LineTiming, timed_sounds
 from metagraph.playback.life.mouth import MouthPiece, accents_of, mouth_track
-from metagraph.records import dataclass
 
 __all__ = ["VISEMES", "Voice", "silent", "voice_from_text", "voice_of"]
 

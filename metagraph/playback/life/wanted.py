@@ -5,6 +5,7 @@ at.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from metagraph.graph.life import Life, Manner, scaled
 from metagraph.graph.requests import Point
@@ -13,7 +14,6 @@ from metagraph.playback.life.items import LookAt
 from metagraph.playback.life.spots import Spot, named, placed, same_spot
 from metagraph.playback.life.track import Track
 from metagraph.playback.mood import Mood, Moods, life_of, mood_at, mood_edges
-from metagraph.records import dataclass
 
 PARTNER = "user"  # whom the character talks with, and looks at when nothing else is asked for
 AHEAD = "ahead"  # nothing in particular: eyes and head as the layers have them
