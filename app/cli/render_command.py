@@ -381,7 +381,8 @@ def bake_to(out: Path, shown: Shown, seconds: float, fps: float, folder: Path, s
     project = shown.project
     whole = shown.clip or shown.motion
     if whole is None or (shown.clip is None and project.clips[whole].made_by):
-        motion: Clip | None = bake(shown.plan, project, seconds, fps, shown.pose, start)
+        assert shown.evaluator is not None
+        motion: Clip | None = bake(shown.evaluator, project, seconds, fps, start)
     else:
         motion = project.clips[whole].motion
     assert motion is not None

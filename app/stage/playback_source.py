@@ -14,25 +14,26 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from metagraph.graph.edits import EditError, added_actions, place
-from metagraph.graph.face_curves import worn
 from metagraph.graph.model import Action, Layer, Project
 from metagraph.graph.requests import AnyRequest
-from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.playback.faces import faces_at
-from metagraph.playback.life.evaluate import enliven
+from metagraph.playback.clip_evaluators import (
+    ClipEvaluator,
+    GeneratedEvaluator,
+    MovedEvaluator,
+    OverlaidEvaluator,
+)
+from metagraph.playback.evaluator import Evaluator, Poses
 from metagraph.playback.manual_playback import (
     Fire,
+    ManualEvaluator,
     ManualPlan,
     link_alone,
     make_manual_plan,
-    manual_morphs_at,
-    manual_pose_at,
     state_alone,
 )
 from metagraph.playback.plan import MetaRequest, Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import morphs_at, pose_at
 
 if TYPE_CHECKING:
     from metagraph.playback.overlay import Overlay
@@ -119,64 +120,38 @@ class Shown:
                 return float(np.interp(moment, cue.clip_seconds(times), times))
         return None
 
-    def pose(self, seconds: Any) -> Pose | None:
-        """Return the pose at a time, or at many, None when there is nothing to show."""
+    @cached_property
+    def evaluator(self) -> Poses | None:
+        """What plays, as poses; None where there is nothing to show."""
+        project = self.project
+        entry = project.clips.get(self.clip or self.motion or "")
+        motion = entry.motion if entry is not None else None
         if self.clip is not None:
-            motion = self.project.clips[self.clip].motion
-            return worn(self.project, motion).pose_at(seconds) if motion is not None else None
-        if self.project.skeleton is None:
+            return ClipEvaluator(project, motion) if motion is not None else None
+        if project.skeleton is None:
             return None
         if self.manual is not None:
-            return manual_pose_at(self.manual, self.project, seconds)
-        if self.motion is not None:
-            return self._moved(seconds)
-        if self.over is not None and (laid := self.over(seconds)) is not None:
-            from metagraph.playback.overlay import overlaid
+            return ManualEvaluator(self.manual, project)
+        if entry is not None:
+            if motion is None:
+                return None
+            return (GeneratedEvaluator if entry.made_by else MovedEvaluator)(self.plan, project, motion)
+        if self.over is not None:
+            over = self.over
+            return OverlaidEvaluator(self.moving, project, lambda times: over(float(times[0])))
+        return Evaluator(self.moving, project)
 
-            return overlaid(self.moving, self.project, seconds, laid)
-        return pose_at(self.moving, self.project, seconds)
-
-    def _moved(self, seconds: Any) -> Pose | None:
-        """Return the pose of the clip it moves with, alive: eyes, lids and lips are the plan's."""
-        entry = self.project.clips[self.motion or ""]
-        clip = entry.motion
-        if clip is None:
-            return None
-        if entry.made_by:
-            return self._overlaid(clip, seconds)
-        times = np.asarray(seconds, np.float64).reshape(-1)
-        pose = clip.pose_at(np.clip(times, 0.0, clip.duration))
-        if self.project.life.on and self.plan.life.end > 0:
-            pose = enliven(pose, self.project, self.plan.life, self.plan.track, times)
-        shape = (*np.shape(seconds), len(clip.skeleton))
-        return Pose(pose.rotations.reshape(*shape, 4), pose.translations.reshape(*shape, 3))
+    def pose(self, seconds: Any) -> Pose | None:
+        """Return the pose at a time, or at many, None when there is nothing to show."""
+        return self.evaluator.at(seconds) if self.evaluator is not None else None
 
     def morphs(self, seconds: float) -> dict[str, float]:
         """Return face shapes and their weights, 0..1, at a time."""
-        if self.clip is not None:
-            motion = self.project.clips[self.clip].motion
-            return worn(self.project, motion).morphs_at(seconds) if motion is not None else {}
-        if self.manual is not None:
-            return manual_morphs_at(self.manual, self.project, seconds)
-        entry = self.project.clips.get(self.motion or "")
-        if entry is not None and entry.made_by and entry.motion is not None:
-            return morphs_at(
-                self.plan, self.project, seconds, composed=self._overlaid(entry.motion, seconds, False)
-            )
-        return morphs_at(self.moving, self.project, seconds)
+        return self.evaluator.morphs_at(seconds) if self.evaluator is not None else {}
 
     def faces(self, times: np.ndarray) -> list[dict[str, float]]:
         """Return face shapes and their weights at each of many times, as `morphs` gives them."""
-        if self.clip is None and self.manual is None and self.motion is None:
-            return faces_at(self.moving, self.project, times)
-        return [self.morphs(float(at)) for at in times]
-
-    def _overlaid(self, clip: Clip, seconds: Any, alive: bool = True) -> Pose:
-        """Return the pose of a generated clip: it moves what is above the hips, the plan moves the rest."""
-        from metagraph.playback.overlay import clip_overlay, overlaid
-
-        over = clip_overlay(self.project, clip, np.asarray(seconds, np.float64).reshape(-1))
-        return overlaid(self.plan, self.project, seconds, over, alive)
+        return self.evaluator.faces_at(times) if self.evaluator is not None else [{} for _ in times]
 
 
 def alone(project: Project, clip: str) -> Shown:

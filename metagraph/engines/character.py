@@ -24,11 +24,11 @@ from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.offered import offered, tools
 from metagraph.motion.skeleton import Pose
+from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.extend_performance import Answer, answer, answers
 from metagraph.playback.life.line_timing import VisemeMark
 from metagraph.playback.life.streamed_voice import StreamedVoice
 from metagraph.playback.plan import Plan
-from metagraph.playback.player import morphs_at, pose_at
 from metagraph.playback.running_plan import CUT, RunningPlan
 
 LEAP = 3600.0  # seconds an update may move on: all that lies between is planned
@@ -82,6 +82,7 @@ class Character:
         self._running = RunningPlan(
             self.project, None if seed is None else seed & 0xFFFFFFFF, stances, idle, ahead
         )
+        self._evaluator = Evaluator(self.plan, self.project)
 
     @property
     def plan(self) -> Plan:
@@ -257,11 +258,13 @@ class Character:
 
     def pose(self, alive: bool = True) -> Pose:
         """Return the pose at the time of the last update; alive: with the life layers."""
-        return pose_at(self.plan, self.project, self.now, alive)
+        self._evaluator = self._evaluator.follow(self.plan, self.project)
+        return self._evaluator.at(self.now, alive)
 
     def morphs(self, alive: bool = True) -> dict[str, float]:
         """Return the morph target weights, 0..1, at the time of the last update."""
-        return morphs_at(self.plan, self.project, self.now, alive)
+        self._evaluator = self._evaluator.follow(self.plan, self.project)
+        return self._evaluator.morphs_at(self.now, alive)
 
 
 def _seconds(value: Any) -> float | None:

@@ -26,7 +26,7 @@ from metagraph.graph.model import LAYERS, REACH, Action, Layer, MetaGraph, Proje
 from metagraph.motion.character_mesh import Character
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import unique_names
-from metagraph.playback.player import keep_to
+from metagraph.playback.layers import keep_to
 
 Array = NDArray[Any]
 

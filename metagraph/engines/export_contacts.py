@@ -11,7 +11,8 @@ from metagraph.motion.contact_solve import BodyCapsule, ContactArm, ContactRig
 from metagraph.motion.contact_spans import ContactKey, ContactSpan
 from metagraph.motion.plain_vectors import Vector
 from metagraph.motion.skeleton import Skeleton
-from metagraph.playback.contacts import contact_rig, matters
+from metagraph.playback.contacts import matters
+from metagraph.playback.rigs import rigs_of
 
 
 def contacts_of(action: Action) -> list[c.ExportedContact]:
@@ -50,7 +51,7 @@ def read_contacts(contacts: Sequence[c.ExportedContact]) -> tuple[ContactSpan, .
 
 def contact_rig_of(project: Project) -> c.ExportedContactRig | None:
     """Return what runtimes need for contacts and the guard, None where neither does anything."""
-    rig = contact_rig(project) if matters(project) else None
+    rig = rigs_of(project).contacts if matters(project) else None
     if rig is None:
         return None
     return c.ExportedContactRig(

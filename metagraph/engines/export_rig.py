@@ -12,15 +12,16 @@ import numpy as np
 from metagraph.engines import contract as c
 from metagraph.graph.face import CHANNELS, FaceRig
 from metagraph.graph.model import Project
-from metagraph.playback.life.body import Body, EyeAt, Looker, Quaternion, Vector, body_of
+from metagraph.playback.life.body import Body, EyeAt, Looker, Quaternion, Vector
 from metagraph.playback.life.voice import Voice
+from metagraph.playback.rigs import rigs_of
 
 STEPS = 1e4  # a mouth shape's weight is written in steps of this part of one
 
 
 def rig_of(project: Project) -> c.Rig | None:
     """Return the resolved body of a project, None where nothing of it can live."""
-    body = body_of(project)
+    body = rigs_of(project).body
     if body.empty:
         return None
     long, face = len(body.chain), body.face
@@ -121,38 +122,6 @@ def read_rig(rig: c.Rig) -> Body:
         eyes_at_rest=_three(rig.eyes_at_rest),
         face=found,
     )
-
-
-def _lifeless() -> Body:
-    """Return a body of which nothing can live."""
-    axes: tuple[Vector, Vector, Vector] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-    none: Vector = (0.0, 0.0, 0.0)
-    eye = EyeAt(none, *axes, False, none, none, (0.0, 0.0, 0.0, 0.0))
-    shapes, first = np.zeros((len(CHANNELS), 0, 3)), np.zeros(1, int)
-    face = FaceRig((), np.zeros(0, int), shapes, shapes, np.zeros(4), np.full(4, -1), np.zeros((4, 4)), {})
-    breath = ((axes[0], 0.0),)
-    return Body(
-        *axes,
-        first,
-        breath,
-        (0.0,),
-        (0.0,),
-        first,
-        first,
-        (),
-        (),
-        (),
-        0,
-        axes[2],
-        axes[2],
-        (eye, eye),
-        axes[2],
-        none,
-        face,
-    )
-
-
-LIFELESS = _lifeless()  # of an export without a rig
 
 
 def _three(values: Sequence[float]) -> Vector:

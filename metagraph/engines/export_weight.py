@@ -13,14 +13,15 @@ from metagraph.motion.plain_vectors import Vector
 from metagraph.motion.skeleton import Skeleton
 from metagraph.motion.weight_solve import WeightBend, WeightCollar, WeightRig
 from metagraph.playback.feet import moved_alone
-from metagraph.playback.weight import Weight, foot_rows_of, plants, rows_of, sways, weight_of
+from metagraph.playback.rigs import rigs_of
+from metagraph.playback.weight import Weight, foot_rows_of, plants, rows_of, sways
 
 
 def weight_rig_of(project: Project) -> c.ExportedWeightRig | None:
     """Return what runtimes need for bodies that answer their arms or whose feet stay planted, None where none
     does.
     """
-    rig = weight_of(project).rig
+    rig = rigs_of(project).weight.rig
     if rig is None or not (_sways(project, rig) or _plants(project, rig)):
         return None
     return c.ExportedWeightRig(
@@ -40,20 +41,20 @@ def weight_rig_of(project: Project) -> c.ExportedWeightRig | None:
 
 def arms_of(project: Project) -> dict[str, list[list[int]]]:
     """Return the rows of the clips that the arms' layer plays, none where no body answers its arms."""
-    rig = weight_of(project).rig
-    if rig is None or not _sways(project, rig):
+    weight = rigs_of(project).weight
+    if weight.rig is None or not _sways(project, weight.rig):
         return {}
     clips = {action.clip for action in project.graphs["arms"].actions.values()}
-    return {clip: [[int(x) for x in row] for row in rows_of(project, clip)] for clip in clips}
+    return {clip: [[int(x) for x in row] for row in rows_of(weight, project, clip)] for clip in clips}
 
 
 def feet_of(project: Project) -> dict[str, list[list[int]]]:
     """Return where the feet of the clips are that the body's layer plays, none where none stays planted."""
-    rig = weight_of(project).rig
-    if rig is None or not _plants(project, rig):
+    weight = rigs_of(project).weight
+    if weight.rig is None or not _plants(project, weight.rig):
         return {}
     clips = {action.clip for action in project.graphs["body"].actions.values()}
-    return {clip: [[int(x) for x in row] for row in foot_rows_of(project, clip)] for clip in clips}
+    return {clip: [[int(x) for x in row] for row in foot_rows_of(weight, project, clip)] for clip in clips}
 
 
 def _sways(project: Project, rig: WeightRig) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -12,7 +13,7 @@ import numpy as np
 from metagraph.budgets import TEXT_FILE
 from metagraph.engines import contract as c
 from metagraph.engines.export_contacts import read_contact_rig, read_contacts
-from metagraph.engines.export_rig import LIFELESS, read_rig, read_voices
+from metagraph.engines.export_rig import read_rig, read_voices
 from metagraph.engines.export_weight import read_weight
 from metagraph.errors import FileError
 from metagraph.files import guarded, is_file, read_file
@@ -39,8 +40,9 @@ from metagraph.graph.model import (
 from metagraph.graph.touch import Touch
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
-from metagraph.playback.life.body import Body
+from metagraph.playback.life.body import LIFELESS, Body
 from metagraph.playback.markov import DEFAULTS
+from metagraph.playback.rigs import ResolvedProject
 from metagraph.wording import told
 
 
@@ -121,20 +123,22 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         )
     p = document.planner
     base = BasePose(document.base.clip, document.base.frame)
-    body, contact_rig, touch, weight = None, None, document.touch, None
+    rigs: dict[str, Any] = {}
+    touch = document.touch
     if resolved:
         clips[BASE] = _base(document, skeleton)
         base = BasePose(BASE)
-        body = _body(document.rig, skeleton) if document.rig is not None else LIFELESS
+        rigs["body"] = _body(document.rig, skeleton) if document.rig is not None else LIFELESS
+        rigs["weight"] = read_weight(document.weight_rig, document.clips, skeleton)
         touch = Touch(False, False)
-        weight = read_weight(document.weight_rig, document.clips, skeleton)
         if document.contact_rig is not None:
-            contact_rig = read_contact_rig(document.contact_rig, skeleton)
-            touch = Touch(contact_rig.contacts, contact_rig.guard)
+            rigs["contact_rig"] = found = read_contact_rig(document.contact_rig, skeleton)
+            touch = Touch(found.contacts, found.guard)
     graphs: dict[Layer, MetaGraph] = {
         layer: _graph(layer, document.layers[layer], resolved) for layer in LAYERS
     }
-    return Project(
+    return (ResolvedProject if resolved else Project)(
+        **rigs,
         name=document.name,
         skeleton=skeleton,
         clips=clips,
@@ -150,10 +154,7 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         },
         settings=Settings(p.alpha, p.seed, p.never_twice, p.shortest, p.wait, p.memory, p.rest, p.lookahead),
         life=document.life,
-        body=body,
         touch=touch,
-        contact_rig=contact_rig,
-        weight=weight,
         face=document.face,
         points=dict(document.points),
         lines=dict(document.lines),

@@ -9,7 +9,8 @@ import numpy as np
 from metagraph.engines.script_parts import Case, ask, once
 from metagraph.graph.model import Project
 from metagraph.playback.feet import moved_alone
-from metagraph.playback.weight import plants, weight_of
+from metagraph.playback.rigs import rigs_of
+from metagraph.playback.weight import plants
 
 MOST = 6  # actions in a case
 EDGES = (
@@ -27,7 +28,7 @@ EDGES = (
 
 def feet_cases(project: Project) -> Iterator[Case]:
     """Yield cases of one of the body's actions after the other, from stance to stance, and of its loops."""
-    rig = weight_of(project).rig if plants(project) and project.skeleton is not None else None
+    rig = rigs_of(project).weight.rig if plants(project) and project.skeleton is not None else None
     body = project.graphs["body"]
     if rig is None or not moved_alone(project, rig):
         return

@@ -8,14 +8,15 @@ import numpy as np
 
 from metagraph.engines.script_parts import Case, ask, once
 from metagraph.graph.model import Project
-from metagraph.playback.weight import weighs, weight_of
+from metagraph.playback.rigs import rigs_of
+from metagraph.playback.weight import weighs
 
 MOST = 6  # actions in a case
 
 
 def weight_cases(project: Project) -> Iterator[Case]:
     """Yield cases of one arms' action after the other, and of some that the body plays, too."""
-    rig = weight_of(project).rig if weighs(project) and project.skeleton is not None else None
+    rig = rigs_of(project).weight.rig if weighs(project) and project.skeleton is not None else None
     arms, body = project.graphs["arms"], project.graphs["body"]
     if rig is None or rig.strength <= 0:
         return

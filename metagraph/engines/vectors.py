@@ -32,11 +32,12 @@ from metagraph.graph.requests import AnyRequest, RequestError, request_from
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.choice import key32
+from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.extend_performance import hear, since
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.plan import LayerPlan, Plan, Report
-from metagraph.playback.player import before_life, morphs_at, pose_at
-from metagraph.playback.weight import weighs, weight_of
+from metagraph.playback.rigs import rigs_of
+from metagraph.playback.weight import weighs
 
 Array = NDArray[Any]
 
@@ -108,7 +109,8 @@ def write_vectors(export: Path, chosen: Iterable[Case] | None = None) -> Path:
 def _expected(project: Project, case: Case) -> dict[str, Any]:
     plan = follow(project, case)
     times = case.times or _telling(plan)
-    answers = weighs(project) and weight_of(project).rig is not None
+    answers = weighs(project) and rigs_of(project).weight.rig is not None
+    evaluator = Evaluator(plan, project)
     living = (*times, *_living(plan, answers)) if len(case.steps) + case.idle > 1 else times
     return {
         "name": case.name,
@@ -120,7 +122,7 @@ def _expected(project: Project, case: Case) -> dict[str, Any]:
         "plan": plan_data(plan),
         "life": life_data(plan),
         "poses": [
-            pose for alive in case.alive for pose in _poses(project, plan, living if alive else times, alive)
+            pose for alive in case.alive for pose in _poses(evaluator, living if alive else times, alive)
         ],
     }
 
@@ -191,16 +193,16 @@ def _time(seconds: float) -> float:
     return round(float(seconds), 7)
 
 
-def _poses(project: Project, plan: Plan, times: Sequence[float], alive: bool) -> Iterator[dict[str, Any]]:
+def _poses(evaluator: Evaluator, times: Sequence[float], alive: bool) -> Iterator[dict[str, Any]]:
     """Yield what is shown at each time: all of a case at once, which takes a third of the time."""
     if not times:
         return
     at = np.array(times)
-    pose = pose_at(plan, project, at, alive)
-    before = before_life(plan, project, at) if alive else None
-    assert project.skeleton is not None
+    pose = evaluator.at(at, alive)
+    before = evaluator.before_life(at) if alive else None
+    skeleton = evaluator.rigs.composer.ground.skeleton
     every = pose.rotations.astype(float)
-    _, positions = project.skeleton.globals(Pose(every, pose.translations.astype(float)))
+    _, positions = skeleton.globals(Pose(every, pose.translations.astype(float)))
     for n, (time, rotations, place) in enumerate(
         zip(times, np.round(every, 5).tolist(), np.round(positions, 5).tolist(), strict=True)
     ):
@@ -212,7 +214,7 @@ def _poses(project: Project, plan: Plan, times: Sequence[float], alive: bool) ->
             "positions": place,
             "morphs": {
                 name: round(value, 5)
-                for name, value in sorted(morphs_at(plan, project, time, alive, composed).items())
+                for name, value in sorted(evaluator.morphs_at(time, alive, composed).items())
                 if value > 1e-5
             },
         }
@@ -338,9 +340,10 @@ def differences(project: Project, case: Mapping[str, Any]) -> list[str]:
     out = [*_unlike(plan_data(plan), case["plan"], "plan"), *_unlike(life_data(plan), case["life"], "life")]
     if out:
         return out
+    evaluator = Evaluator(plan, project)
     for alive, group in groupby(case["poses"], lambda pose: bool(pose["alive"])):
         expected = list(group)
-        ours = _poses(project, plan, [pose["time"] for pose in expected], alive)
+        ours = _poses(evaluator, [pose["time"] for pose in expected], alive)
         out += [words for pair in zip(ours, expected, strict=True) for words in _apart(*pair)]
     return out
 

@@ -20,6 +20,7 @@ from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 from metagraph.playback.bake import bake
 from metagraph.playback.choice import key32
+from metagraph.playback.evaluator import Evaluator
 from metagraph.speech.drive import drive
 from metagraph.suggest.tracks import RATE
 
@@ -141,7 +142,10 @@ def made(
 def moved(project: Project, talk: Conversation, side: int, fps: float = RATE) -> Clip:
     """Return how a project moves a side."""
     _, plan = drive(talk, side, project)
-    return replace(bake(plan, project, talk.length, fps), name=f"{talk.name}, {talk.sides[side].name}")
+    return replace(
+        bake(Evaluator(plan, project), project, talk.length, fps),
+        name=f"{talk.name}, {talk.sides[side].name}",
+    )
 
 
 def with_rates(talk: Conversation, rates: Sequence[Rates]) -> Conversation:

@@ -277,8 +277,6 @@ _CLIP_FIELDS = ({f.name for f in fields(ClipEntry)} | {"sha256", "speed", "holds
 _PROJECT_FIELDS = ({f.name for f in fields(Project)} | {"metagraph", "layers", "next_id"}) - {
     "graphs",
     "voices",
-    "contact_rig",
-    "weight",
 }
 
 

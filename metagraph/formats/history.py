@@ -139,7 +139,7 @@ def with_motion(
             clips = {i: entries.setdefault(id(e), _filled(e, read)) for i, e in project.clips.items()}
             same = clips.keys() == whole.clips.keys() and all(clips[i] is whole.clips[i] for i in clips)
             projects[id(project)] = replace(
-                project, clips=whole.clips if same else clips, voices=whole.voices, body=whole.body
+                project, clips=whole.clips if same else clips, voices=whole.voices
             )
         return projects[id(project)]
 

@@ -203,7 +203,7 @@ def writable(project: Project) -> Project:
         i: replace(e, motion=project.clips[i].motion, source=project.clips[i].source)
         for i, e in clean.clips.items()
     }
-    return replace(clean, clips=clips, skeleton=project.skeleton, voices=project.voices, body=project.body)
+    return replace(clean, clips=clips, skeleton=project.skeleton, voices=project.voices)
 
 
 def file_digest(path: Path | None) -> str | None:

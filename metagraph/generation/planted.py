@@ -29,6 +29,7 @@ from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 from metagraph.playback.bake import bake
 from metagraph.playback.choice import key32
+from metagraph.playback.evaluator import Evaluator
 from metagraph.speech.drive import drive
 
 MINUTES = 3.0
@@ -62,7 +63,7 @@ def talk_of(planted: Planted, n: int) -> Spoken:
 def performed(project: Project, conversation: Conversation, side: int) -> Clip:
     """Return how a side moves, FPS frames a second. Raises ValueError where the project has no skeleton."""
     _, plan = drive(conversation, side, project, together=False)
-    return bake(plan, project, conversation.length, FPS)
+    return bake(Evaluator(plan, project), project, conversation.length, FPS)
 
 
 def write_planted(

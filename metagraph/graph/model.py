@@ -400,11 +400,7 @@ class Project:
     skeletons are retargeted, by `joint_map.fingerprint` of theirs. language: what conversations are read in,
     a code ("de"), or "auto" for what their words tell. manual: state machines drawn by hand, of
     the layers that have one. voices: line -> its analysed sound (`playback.life.voice.Voice`), as far as
-    read; never saved. body: what of it breathes and looks (`playback.life.body.Body`) as an export says; None
-    to find it. Never saved. touch: whether contacts hold and hands
-    are kept out of the body. contact_rig: what contacts need of it (`motion.contact_solve.ContactRig`) as an
-    export says; None to find it. Never saved. weight: what of it answers its arms (`playback.weight.Weight`)
-    as an export says; None to find it. Never saved.
+    read; never saved. touch: whether contacts hold and hands are kept out of the body.
     """
 
     name: str = "untitled"
@@ -433,10 +429,7 @@ class Project:
     joint_maps: Mapping[str, JointMap] = field(default_factory=dict)
     manual: Mapping[Layer, Manual] = field(default_factory=dict)
     voices: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
-    body: Any = field(default=None, compare=False, repr=False)
     touch: Touch = field(default_factory=Touch)
-    contact_rig: Any = field(default=None, compare=False, repr=False)
-    weight: Any = field(default=None, compare=False, repr=False)
 
     def actions(self) -> Iterable[Action]:
         """Every action of every layer."""

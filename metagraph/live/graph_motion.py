@@ -25,12 +25,12 @@ from metagraph.live.laid_motion import LaidMotion, voices_of
 from metagraph.live.messages import Comes, Generate, Hear
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.playback.composer import Reach, rig
+from metagraph.playback.composer import Reach, find_composer
+from metagraph.playback.layers import sample
 from metagraph.playback.life.track import Speech
 from metagraph.playback.life.voice import voice_of
 from metagraph.playback.overlay import reached
 from metagraph.playback.plan import Plan
-from metagraph.playback.player import sample
 from metagraph.suggest.tracks import RATE, times_of
 from metagraph.synthesis.extending import FADE, DriverGraph, PathExtender, Told, driver_graph
 from metagraph.synthesis.speech_so_far import SpeechNews
@@ -92,7 +92,7 @@ class LiveGraph:
         """Return how the joints that are laid over are turned from the base pose at each state `[F, n, 4]`
         float32; worked out once.
         """
-        frame = rig(project)
+        frame = find_composer(project)
         joints = reached(project)
         ground = frame.ground.base.rotations
         known = self._turns

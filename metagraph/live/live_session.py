@@ -62,8 +62,9 @@ from metagraph.live.tape import Tape
 from metagraph.live.tick_work import Client, Open, Out, TickWork, in_turn, thinned
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.bml import Block, read_block
+from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.life.track import Speech
-from metagraph.playback.overlay import Overlay, overlaid
+from metagraph.playback.overlay import Overlay
 from metagraph.playback.phases import phases
 from metagraph.playback.plan import Plan
 from metagraph.playback.plan_head import RECENT
@@ -108,11 +109,23 @@ class LiveSession:
         self._edited = False
         self._cold = [x for x in project.actions() if x.kind == "gesture"]
         self._told: dict[str, bytes] = {}
+        self._evaluator: Evaluator | None = None
 
     @property
     def plan(self) -> Plan:
         """The plan as it is now."""
         return self.running.plan
+
+    @property
+    def evaluator(self) -> Evaluator | None:
+        """What has the poses of the plan as it is now; None for a project without a skeleton."""
+        if self.project.skeleton is None:
+            return None
+        known = self._evaluator
+        self._evaluator = (
+            known.follow(self.plan, self.project) if known else Evaluator(self.plan, self.project)
+        )
+        return self._evaluator
 
     # --- clients
 
@@ -183,8 +196,7 @@ class LiveSession:
         self.warm(1)
         out.frames = due(
             self.now,
-            self.plan,
-            self.project,
+            self.evaluator,
             [(c.number, c.stream) for c in self.clients.values() if c.stream],
             self.overlay,
         )
@@ -558,7 +570,9 @@ class LiveSession:
 
     def pose(self, seconds: float) -> Pose:
         """Return the pose at a time about now, generated motion and all."""
-        return overlaid(self.plan, self.project, seconds, self.overlay(seconds))
+        if self.evaluator is None:
+            raise ValueError("a project without clips cannot be posed")
+        return self.evaluator.at(seconds, overlay=self.overlay(seconds))
 
     def plan_at(self, seconds: float) -> Plan:
         """Return the plan that knows what was shown at a time: the running one, or for the past one of

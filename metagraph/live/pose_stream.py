@@ -17,9 +17,8 @@ from metagraph.graph.requests import RequestError
 from metagraph.live.messages import Poses, encode
 from metagraph.live.osc_bytes import padded
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.overlay import Overlay, overlaid
-from metagraph.playback.plan import Plan
-from metagraph.playback.player import morphs_at
+from metagraph.playback.evaluator import Evaluator
+from metagraph.playback.overlay import Overlay
 
 Array = NDArray[Any]
 
@@ -77,26 +76,31 @@ class Stream:
 
 def due(
     now: float,
-    plan: Plan,
-    project: Project,
+    evaluator: Evaluator | None,
     streams: Sequence[tuple[int, Stream]],
     over: Callable[[float], Overlay | None] = lambda _: None,
 ) -> list[PoseFrame]:
-    """Return the poses that are due at `now`, and say when the next are. over: what is laid over the plan."""
+    """Return the poses that are due at `now`, and say when the next are. evaluator: of what plays, None for a
+    project without a skeleton. over: what is laid over the plan.
+    """
     groups: dict[Any, list[tuple[int, Stream]]] = {}
     for client, stream in streams:
-        if stream.next <= now and project.skeleton is not None:
+        if stream.next <= now and evaluator is not None:
             stream.next = (
                 floor(now * stream.wish.rate + 1e-6) + 1
             ) / stream.wish.rate  # those of one rate are due together
             groups.setdefault(stream.key, []).append((client, stream))
-    if not groups or project.skeleton is None:
+    if not groups or evaluator is None:
         return []
     laid = over(now)
-    pose = overlaid(plan, project, now, laid)
-    turned = project.skeleton.globals(pose) if any(key[1] == "model" for key in groups) else None
-    still = None if laid is None else overlaid(plan, project, now, laid, alive=False)
-    weights = morphs_at(plan, project, now, composed=still)
+    pose = evaluator.at(now, overlay=laid)
+    turned = (
+        evaluator.rigs.composer.ground.skeleton.globals(pose)
+        if any(key[1] == "model" for key in groups)
+        else None
+    )
+    still = None if laid is None else evaluator.at(now, False, laid)
+    weights = evaluator.morphs_at(now, composed=still)
     out = []
     for group in groups.values():
         stream = group[0][1]

@@ -18,8 +18,8 @@ from metagraph.mimicry.pose_measures import frame_of, measured
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.composer import playable
+from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.plan import LayerPlan, Plan, Rest
-from metagraph.playback.player import pose_at
 
 Array = NDArray[Any]
 
@@ -181,6 +181,6 @@ def _seen(project: Project, body: BodySignature, layer: Layer, rest: Rest) -> Ar
     start, end = project.span(rest.action)
     layers = {x: LayerPlan(x, rests=(rest,)) if x == layer else LayerPlan(x) for x in LAYERS}
     times = np.linspace(0.0, max(0.0, end - start - rest.action.timing.blend_in), FRAMES, endpoint=False)
-    pose = pose_at(Plan(0, end - start, layers), project, times, alive=False)
+    pose = Evaluator(Plan(0, end - start, layers), project).at(times, alive=False)
     points = np.asarray(body.points(pose).mean(0))
     return points if np.isfinite(points).all() else None

@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from metagraph.graph import anatomy
 from metagraph.graph.face_curves import worn
 from metagraph.graph.model import LAYERS, Action, Layer, Part, Project
-from metagraph.graph.remembered import Latest
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose, Skeleton
@@ -129,14 +128,10 @@ def _rig(
     return ComposerRig(ground, reach)
 
 
-def rig(project: Project) -> ComposerRig:
-    """Return the project's rig; the same object as long as skeleton, base pose, parts and weights stay as
-    they are. Raises ValueError without a skeleton.
+def find_composer(project: Project) -> ComposerRig:
+    """Return how a project's layers reach joints; the same object as long as skeleton, base pose, parts and
+    weights stay as they are. Raises ValueError without a skeleton.
     """
-    return _latest(project)
-
-
-def _found(project: Project) -> ComposerRig:
     if project.skeleton is None:
         raise ValueError("a project without clips cannot be posed")
     entry = project.clips.get(project.base.clip) if project.base.clip else None
@@ -148,9 +143,6 @@ def _found(project: Project) -> ComposerRig:
     weights = tuple(tuple(project.graphs[layer].weight(part) for part in order) for layer in LAYERS)
     ground = _ground(project.skeleton, ref(motion) if motion is not None else None, frame)
     return _rig(ground, anatomy.parts(project), weights, order)
-
-
-_latest = Latest(_found)
 
 
 def playable(project: Project, action: Action) -> Clip | None:

@@ -15,9 +15,8 @@ from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
 from metagraph.graph.end_gaps import motion_of
-from metagraph.graph.face import axes_of, made_of
+from metagraph.graph.face import axes_of
 from metagraph.graph.model import LAYERS, Project
-from metagraph.graph.remembered import Latest, Remembered
 from metagraph.motion import rotation
 from metagraph.motion.body_capsules import SIDES, BodyPart, body_capsules
 from metagraph.motion.character_mesh import Character
@@ -41,8 +40,6 @@ Array = NDArray[Any]
 
 FEW = 2  # poses
 
-_known: Remembered[ContactRig | None] = Remembered(made_of)
-
 
 def parts_of(project: Project, character: Character | None = None) -> tuple[BodyPart, ...]:
     """Return the parts of a project's body: as it says, else found from its skeleton, or from the mesh of a
@@ -56,24 +53,9 @@ def parts_of(project: Project, character: Character | None = None) -> tuple[Body
     return body_capsules(project.skeleton, roles, base, axes, character)
 
 
-def contact_rig(project: Project) -> ContactRig | None:
+def find_contact_rig(project: Project) -> ContactRig | None:
     """Return what contacts need of a project, None of one without two arms."""
-    return _latest(project)
-
-
-def _found(project: Project) -> ContactRig | None:
-    if isinstance(project.contact_rig, ContactRig):
-        return project.contact_rig
-    targets = sorted(project.touched)
-    key = (project.base, project.touch, tuple(targets))
-    return _known.of(project, key, lambda: _rig(project, targets))
-
-
-_latest = Latest(_found)
-
-
-def _rig(project: Project, targets: Sequence[str]) -> ContactRig | None:
-    skeleton, roles = project.skeleton, anatomy.roles(project)
+    skeleton, roles, targets = project.skeleton, anatomy.roles(project), sorted(project.touched)
     arms = [[roles.get(f"{s}_{p}") for p in ("upper_arm", "lower_arm", "hand")] for s in SIDES]
     if skeleton is None or any(j is None for arm in arms for j in arm):
         return None
@@ -158,24 +140,30 @@ def matters(project: Project) -> bool:
     return project.skeleton is not None and (touch.guard or (touch.contacts and bool(project.touched)))
 
 
-def touched(pose: Pose, plan: Plan, project: Project, times: Array, shown: Array | None = None) -> Pose:
-    """Return composed poses `[N, J]` with hands kept in contact and out of the body at `times [N]`; the very
-    same arrays where nothing is to be done. shown `[N]`: how much of what the plan does with arms is seen,
-    0..1; None for all.
-    """
-    if not len(times) or not matters(project):
-        return pose
-    rig = contact_rig(project)
-    if rig is None:
-        return pose
-    none: list[HandGoal] = []
-    goals = [goals_at(plan, project, rig, t) if rig.contacts else none for t in times.tolist()]
-    if shown is not None:
-        goals = [
-            [replace(g, weight=g.weight * part) for g in some if g.weight * part > LEAST]
-            for some, part in zip(goals, shown.tolist(), strict=True)
-        ]
-    return solved(pose, rig, goals)
+class ContactStage:
+    """Keeps the hands of a plan in contact, and out of the body."""
+
+    def __init__(self, plan: Plan, project: Project, rig: ContactRig | None) -> None:
+        self._plan, self._project = plan, project
+        self._rig = rig if matters(project) else None
+
+    def run(self, pose: Pose, times: Array, shown: Array | None = None) -> Pose:
+        """Return composed poses `[N, J]` with hands kept in contact and out of the body at `times [N]`; the
+        very same arrays where nothing is to be done. shown `[N]`: how much of what the plan does with arms is
+        seen, 0..1; None for all.
+        """
+        rig = self._rig
+        if rig is None or not len(times):
+            return pose
+        none: list[HandGoal] = []
+        plan, project = self._plan, self._project
+        goals = [goals_at(plan, project, rig, t) if rig.contacts else none for t in times.tolist()]
+        if shown is not None:
+            goals = [
+                [replace(g, weight=g.weight * part) for g in some if g.weight * part > LEAST]
+                for some, part in zip(goals, shown.tolist(), strict=True)
+            ]
+        return solved(pose, rig, goals)
 
 
 def solved(pose: Pose, rig: ContactRig, goals: Sequence[Sequence[HandGoal]]) -> Pose:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -20,9 +21,10 @@ from metagraph.motion.clip import Clip
 from metagraph.playback.composer import playable
 from metagraph.playback.feet import STANDS as HELD_BELOW
 from metagraph.playback.feet import FeetOfPlan
+from metagraph.playback.layers import cue_weight, loop_seconds
 from metagraph.playback.plan import Plan
-from metagraph.playback.player import cue_weight, loop_seconds
-from metagraph.playback.weight import foot_rows_of, plants, weight_of
+from metagraph.playback.rigs import rigs_of
+from metagraph.playback.weight import foot_rows_of, plants
 
 Array = NDArray[Any]
 
@@ -140,10 +142,11 @@ class FeetWatch:
         self.feet = feet_joints(project) if project.skeleton is not None else []
         self._joints = [joint for side in self.feet for joint in side]
         self._places_at, self._clip = places_at, clip
-        rig = weight_of(project).rig if self.feet else None
+        weight = rigs_of(project).weight if self.feet else None
+        rig = weight.rig if weight is not None else None
         self._height = rig.height if rig is not None else project.skeleton.height if project.skeleton else 1.0
         steps = plan is not None and plants(project) and rig is not None
-        self._goals = FeetOfPlan(foot_rows_of, self._height) if steps else None
+        self._goals = FeetOfPlan(partial(foot_rows_of, weight), self._height) if steps and weight else None
         self._floor: Array | None = None
         self._known: dict[int, tuple[Array, Array, Array]] = {}  # of a sample: places, clips' speeds, steps
 

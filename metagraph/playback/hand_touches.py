@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.motion import rotation
 from metagraph.motion.contact_solve import ContactRig, HandGoal
-from metagraph.playback.contacts import contact_rig, goals_at
+from metagraph.playback.contacts import goals_at
 from metagraph.playback.plan import Cue, LayerPlan, Plan
+from metagraph.playback.rigs import rigs_of
 
 Array = NDArray[Any]
 
@@ -52,7 +53,7 @@ def hand_touches(
     rotations, positions: `[J, 4]` and `[J, 3]` in model space, metres, of the pose that is seen then. None
     where a project has its contacts off, or no two arms.
     """
-    rig = contact_rig(project)
+    rig = rigs_of(project).contacts if project.skeleton is not None else None
     if rig is None or not rig.contacts:
         return []
     found: dict[tuple[int, int], list[HandGoal]] = {}

@@ -23,13 +23,14 @@ from metagraph.graph.model import LAYERS, Action, Kind, Layer, Project, Timing
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.choice import pick
-from metagraph.playback.composer import Ground, Reach, playable, rig
-from metagraph.playback.life.body import body_of
-from metagraph.playback.life.evaluate import enliven, face_weights
+from metagraph.playback.composer import Ground, Reach, playable
+from metagraph.playback.evaluator import add_life
+from metagraph.playback.layers import Sample, ease, keep_to, mix, no_offsets, sample
+from metagraph.playback.life.evaluate import LifeStage
 from metagraph.playback.life.schedule import Schedule, schedule
 from metagraph.playback.life.track import Track
 from metagraph.playback.plan import Cue, LayerPlan, Plan, Report
-from metagraph.playback.player import Sample, add_life, ease, keep_to, mix, sample
+from metagraph.playback.rigs import rigs_of
 
 Array = NDArray[Any]
 LEAST = 1 / 30  # seconds a state plays at least: links in a circle without length take their time
@@ -76,6 +77,16 @@ class ManualLayer:
         """Return whose turn it is."""
         place = max(0, int(self.starts.searchsorted(seconds, "right")) - 1) if self.played else 0
         return self.played[place] if self.played else None
+
+    def shares(self, seconds: float) -> list[tuple[Played, float]]:
+        """Return who shows, and how much, 0..1: whose turn it is, and who fades out."""
+        turn = self.at(seconds)
+        if turn is None:
+            return []
+        if turn.blend <= 0 or turn is self.played[0]:
+            return [(turn, 1.0)]
+        share = float(ease(np.array((seconds - turn.start) / turn.blend)))
+        return [(turn, share), (self.played[self.played.index(turn) - 1], 1 - share)][: 2 if share < 1 else 1]
 
 
 @dataclass(frozen=True)
@@ -281,25 +292,53 @@ def link_alone(project: Project, ident: str) -> ManualPlan:
 # --- the pose at a time
 
 
-def manual_pose_at(plan: ManualPlan, project: Project, seconds: Any, alive: bool = True) -> Pose:
-    """Return the composed pose at `seconds`, a number or an array `[...]`: rotations `[..., J, 4]`,
-    translations `[..., J, 3]`.
+class ManualEvaluator:
+    """What manual state machines play, as poses and weights of face shapes."""
 
-    Layers add up as the meta-graph's do. alive: with the life layers, as far as the project has them on.
-    Raises ValueError when the project has no skeleton.
-    """
-    at = np.asarray(seconds, np.float64)
-    times = at.reshape(-1)
-    frame = rig(project)
-    layers = {}
-    for layer, of in plan.layers.items():
-        if of.played and len(times):
-            layers[layer] = _layer(of, project, frame.ground, frame.reach[layer], times)
-    pose = frame.compose(layers, len(times))
-    if alive and project.life.on and plan.life.end > 0 and len(times):
-        pose = enliven(pose, project, plan.life, Track(), times)
-    shape = (*at.shape, len(frame.ground.skeleton))
-    return Pose(pose.rotations.reshape(*shape, 4), pose.translations.reshape(*shape, 3))
+    def __init__(self, plan: ManualPlan, project: Project) -> None:
+        """Raises ValueError for a project without a skeleton."""
+        rigs = rigs_of(project)
+        self.plan, self.project, self._rig = plan, project, rigs.composer
+        self._lives = project.life.on and plan.life.end > 0
+        self._life = LifeStage(project, plan.life, Track(), rigs.body)
+
+    def at(self, seconds: Any, alive: bool = True) -> Pose:
+        """Return the composed pose at `seconds`, a number or an array `[...]`: rotations `[..., J, 4]`,
+        translations `[..., J, 3]`. Layers add up as the meta-graph's do. alive: with life, as far as the
+        project has it on.
+        """
+        at = np.asarray(seconds, np.float64)
+        times, rig = at.reshape(-1), self._rig
+        layers = {}
+        for layer, of in self.plan.layers.items():
+            if of.played and len(times):
+                layers[layer] = _layer(of, self.project, rig.ground, rig.reach[layer], times)
+        pose = rig.compose(layers, len(times))
+        if alive and self._lives:
+            pose = self._life.run(pose, times)
+        shape = (*at.shape, len(rig.ground.skeleton))
+        return Pose(pose.rotations.reshape(*shape, 4), pose.translations.reshape(*shape, 3))
+
+    def morphs_at(self, seconds: float, alive: bool = True) -> dict[str, float]:
+        """Return morph target weights, 0..1, at one time: the layers' sums, and with `alive` life's on
+        top.
+        """
+        out: dict[str, float] = {}
+        for of in self.plan.layers.values():
+            for turn, weight in of.shares(seconds):
+                motion = playable(self.project, turn.action)
+                if motion is not None:
+                    at = float(clip_seconds(self.project, turn, seconds))
+                    for name, value in motion.morphs_at(at).items():
+                        out[name] = out.get(name, 0.0) + weight * value
+        if alive and self._lives:
+            composed = self.at(seconds, alive=False) if self._life.body.face.morphs else None
+            add_life(out, self._life.morphs(seconds, composed))
+        return {name: min(1.0, max(0.0, value)) for name, value in out.items()}
+
+    def faces_at(self, times: Array) -> list[dict[str, float]]:
+        """Return morph target weights, 0..1, at each of `times [N]`."""
+        return [self.morphs_at(float(time)) for time in times]
 
 
 def _layer(plan: ManualLayer, project: Project, ground: Ground, reach: Reach, times: Array) -> Sample:
@@ -338,48 +377,10 @@ def _offsets(turn: Played, project: Project, ground: Ground, reach: Reach, times
     """
     motion = playable(project, turn.action)
     if motion is None:
-        return rotation.identity((len(times), len(reach.joints)), np.float32), np.zeros(
-            (len(times), len(reach.joints), 3), np.float32
-        )
+        return no_offsets(len(times), len(reach.joints))
     shown = sample(ground, reach, motion, clip_seconds(project, turn, times))
     mask = anatomy.mask(project, turn.action)
     if mask is not None:
         none = rotation.identity(shown[0].shape[:-1], np.float32), np.zeros_like(shown[1])
         keep_to(shown, none, mask[reach.joints])
     return shown
-
-
-def manual_morphs_at(
-    plan: ManualPlan, project: Project, seconds: float, alive: bool = True
-) -> dict[str, float]:
-    """Return morph target weights, 0..1, at one time: the layers' sums, and with `alive` the life layers' on
-    top.
-    """
-    out: dict[str, float] = {}
-    for of in plan.layers.values():
-        turn = of.at(seconds)
-        if turn is None:
-            continue
-        share = (
-            float(ease(np.array((seconds - turn.start) / turn.blend)))
-            if turn.blend > 0 and turn is not of.played[0]
-            else 1.0
-        )
-        shares = [(turn, share)]
-        if share < 1:
-            shares.append((of.played[of.played.index(turn) - 1], 1 - share))
-        for one, weight in shares:
-            motion = playable(project, one.action)
-            for name, value in (
-                motion.morphs_at(float(clip_seconds(project, one, seconds))).items()
-                if motion is not None
-                else ()
-            ):
-                out[name] = out.get(name, 0.0) + weight * value
-    if alive and project.life.on and plan.life.end > 0:
-        by_morphs = project.skeleton is not None and bool(body_of(project).face.morphs)
-        composed = (
-            manual_pose_at(plan, project, seconds, alive=False) if by_morphs else None
-        )  # what the eyes hold against
-        add_life(out, face_weights(project, plan.life, Track(), seconds, composed))
-    return {name: min(1.0, max(0.0, value)) for name, value in out.items()}

@@ -7,6 +7,7 @@ are: somebody who shifts the weight while gesturing shifts it here, too.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -19,12 +20,8 @@ from metagraph.graph.model import Layer, Part, Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.composer import Reach, rig
-from metagraph.playback.contacts import touched
-from metagraph.playback.life.evaluate import enliven
-from metagraph.playback.plan import Plan
-from metagraph.playback.player import ease, layered, layers_at, sample
-from metagraph.playback.weight import weighed
+from metagraph.playback.composer import ComposerRig, Reach, find_composer
+from metagraph.playback.layers import Sample, ease, no_offsets, sample
 
 Array = NDArray[Any]
 
@@ -46,38 +43,20 @@ class Overlay:
     head: Array
 
 
-def overlaid(plan: Plan, project: Project, seconds: Any, overlay: Overlay | None, alive: bool = True) -> Pose:
-    """Return the composed pose at `seconds`, a number or an array `[...]`, as `player.pose_at` does, with an
-    overlay of as many times over it. Raises ValueError when the project has no skeleton.
+def lay_over(project: Project, rig: ComposerRig, layers: Mapping[Layer, Sample], over: Overlay) -> Pose:
+    """Return the pose `[N, J]` of the body's layer with the other two, and the overlay in their place.
+    layers: what each adds.
     """
-    at = np.asarray(seconds, np.float64)
-    times = at.reshape(-1)
-    frame = rig(project)
-    if overlay is None or not overlay.weight.any():
-        pose = layered(plan, project, times)
-    else:
-        layers = layers_at(plan, project, times)
-        body: dict[Layer, Any] = {"body": layers.pop("body")} if "body" in layers else {}
-        pose = _over(frame.compose(body, len(times)), project, layers, overlay)
-    shown = None if overlay is None else 1 - overlay.weight * (1 - overlay.arms)
-    if alive and project.life.on and plan.life.end > 0 and len(times):
-        pose = weighed(pose, plan, project, times, shown)
-        pose = enliven(pose, project, plan.life, plan.track, times)
-    pose = touched(pose, plan, project, times, shown)
-    shape = (*at.shape, len(frame.ground.skeleton))
-    return Pose(pose.rotations.reshape(*shape, 4), pose.translations.reshape(*shape, 3))
-
-
-def _over(pose: Pose, project: Project, layers: dict[Layer, Any], over: Overlay) -> Pose:
-    """Return the body's pose `[N, J]` with the other two layers, and the overlay in their place."""
-    count, size = pose.rotations.shape[:2]
+    count = len(over.weight)
+    pose = rig.compose({"body": layers["body"]} if "body" in layers else {}, count)
+    size = pose.rotations.shape[1]
     parts = anatomy.parts(project)
     heads = np.array([parts[j] == "head" for j in over.joints])
     both = np.maximum(over.arms, over.head)
     share = np.zeros((count, size), np.float32)
     share[:, over.joints] = over.weight[:, None] * (1 - np.where(heads, both[:, None], over.arms[:, None]))
     rotations, translations = pose.rotations, pose.translations
-    turned, away = _whole(project, layers, "arms", count, size)
+    turned, away = _whole(rig, layers, "arms", count)
     turns = rotation.identity((count, size), np.float32)
     turns[:, over.joints] = over.turns
     rotations = rotation.multiply(rotations, rotation.nlerp(turned, turns, share))
@@ -85,20 +64,17 @@ def _over(pose: Pose, project: Project, layers: dict[Layer, Any], over: Overlay)
     # The head's layer has no part of its own in the overlay: what is not asked of it, is not to be seen.
     share = np.zeros((count, size), np.float32)
     share[:, over.joints] = (over.weight * (1 - both))[:, None]
-    turned, away = _whole(project, layers, "head", count, size)
+    turned, away = _whole(rig, layers, "head", count)
     still = rotation.identity((count, size), np.float32)
     rotations = rotation.multiply(rotations, rotation.nlerp(turned, still, share))
     return Pose(rotation.normalize(rotations), translations + away * (1 - share[..., None]))
 
 
-def _whole(
-    project: Project, layers: dict[Layer, Any], layer: Layer, count: int, size: int
-) -> tuple[Array, Array]:
-    """Return what a layer adds on every joint `[count, size]`."""
-    rotations = rotation.identity((count, size), np.float32)
-    translations = np.zeros((count, size, 3), np.float32)
+def _whole(rig: ComposerRig, layers: Mapping[Layer, Sample], layer: Layer, count: int) -> Sample:
+    """Return what a layer adds on every joint `[count, J]`."""
+    rotations, translations = no_offsets(count, len(rig.ground.skeleton))
     if layer in layers:
-        reach = rig(project).reach[layer]
+        reach = rig.reach[layer]
         turned, away = layers[layer]
         if reach.weights is not None:
             turned, away = rotation.power(turned, reach.weights[:, 0]), away * reach.weights
@@ -121,7 +97,7 @@ def clip_overlay(project: Project, clip: Clip, times: Array) -> Overlay:
     seconds, half of it for a short one. Raises ValueError for a clip of another skeleton.
     """
     reach = _reach(anatomy.parts(project))
-    turns, _ = sample(rig(project).ground, reach, clip, np.clip(times, 0.0, clip.duration))
+    turns, _ = sample(find_composer(project).ground, reach, clip, np.clip(times, 0.0, clip.duration))
     blend = max(1e-6, min(BLEND, clip.duration / 2))
     weight = ease(times / blend) * ease((clip.duration - times) / blend)
     none = np.zeros(len(times))

@@ -9,25 +9,24 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from typing import Any
-from weakref import ref
 
 import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
 from metagraph.graph.end_gaps import motion_of
-from metagraph.graph.face import axes_of, made_of
+from metagraph.graph.face import axes_of
 from metagraph.graph.model import Action, Project
-from metagraph.graph.remembered import Latest, Remembered
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.contact_solve import ContactArm, ContactPose, ContactRig
 from metagraph.motion.feet_solve import FootGoal, plant_feet
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.motion.weight_solve import WeightBend, WeightCollar, WeightRig, answer_arms, moves_body
-from metagraph.playback.feet import FeetOfPlan, moved_alone, rows_of_feet
+from metagraph.playback.feet import FeetOfPlan, Rows, moved_alone, rows_of_feet
 from metagraph.playback.follow_through import (
     KNOTS,
     NUMBERS,
@@ -68,29 +67,15 @@ class Weight:
     """
 
     rig: WeightRig | None
-    rows: dict[str, Sequence[Sequence[float]]]
-    feet: dict[str, Sequence[Sequence[float]]]
+    rows: dict[str, Rows]
+    feet: dict[str, Rows]
 
 
-_known: Remembered[Weight] = Remembered(made_of)
-
-
-def weight_of(project: Project) -> Weight:
-    """Return what of a project answers its arms; the same object as long as nothing it depends on changes."""
-    return _latest(project)
-
-
-def _of(project: Project) -> Weight:
-    if isinstance(project.weight, Weight):
-        return project.weight
+def find_weight(project: Project) -> Weight:
+    """Return what of a project answers its arms."""
     arms = project.graphs["arms"]
     strength = min(1.0, arms.weight("arms")) * max(0.0, 1.0 - arms.weight("legs"))
-    body = tuple(tuple(sorted(project.graphs[layer].weights.items())) for layer in ("body", "head"))
-    depends = (project.base, strength, *body)
-    return _known.of(project, depends, lambda: Weight(_rig(project, strength), {}, {}))
-
-
-_latest = Latest(_of)
+    return Weight(_rig(project, strength), {}, {})
 
 
 def _rig(project: Project, strength: float) -> WeightRig | None:
@@ -171,9 +156,8 @@ def _found(skeleton: Skeleton, roles: Mapping[str, int], base: Pose, strength: f
     )
 
 
-def rows_of(project: Project, clip: str) -> Sequence[Sequence[float]]:
+def rows_of(weight: Weight, project: Project, clip: str) -> Rows:
     """Return the rows of a clip's `ArmTrack`; none of one that is missing, or of another skeleton."""
-    weight = weight_of(project)
     found = weight.rows.get(clip)
     if found is None:
         entry = project.clips.get(clip)
@@ -184,11 +168,10 @@ def rows_of(project: Project, clip: str) -> Sequence[Sequence[float]]:
     return found
 
 
-def foot_rows_of(project: Project, clip: str) -> Sequence[Sequence[float]]:
+def foot_rows_of(weight: Weight, project: Project, clip: str) -> Rows:
     """Return the rows of a clip's `FootTrack`; none of one that is missing, of another skeleton, or where
     more than the body's layer moves the legs.
     """
-    weight = weight_of(project)
     found = weight.feet.get(clip)
     if found is None:
         entry = project.clips.get(clip)
@@ -263,76 +246,6 @@ def _raised(places: Mapping[int, Array], joints: Sequence[int], axes: Array) -> 
     return np.asarray(LIFT * x * x * (3 - 2 * x))
 
 
-class _Swaying:
-    """What the arms of a plan do at the times that are looked at, worked out once each."""
-
-    def __init__(self, plan: Plan, project: Project, weight: Weight) -> None:
-        self.plan, self.project, self.weight = ref(plan), ref(project), weight
-        self.tracks: dict[str, ArmTrack] = {}
-        self.found: dict[int, list[float]] = {}
-        self.feet = FeetOfPlan(foot_rows_of, weight.rig.height if weight.rig is not None else 1.0)
-
-    def drive(self, plan: Plan, project: Project, time: float) -> list[float]:
-        """Return what moves the body at a time."""
-        last = knot_before(time)
-        return driven([self._at(plan, project, n) for n in range(last - KNOTS + 1, last + 1)], time)
-
-    def _at(self, plan: Plan, project: Project, number: int) -> list[float]:
-        known = self.found.get(number)
-        if known is not None:
-            return known
-        time, rig = knot_time(number), self.weight.rig
-        assert rig is not None
-        arms, body = plan.layers["arms"], plan.layers["body"]
-        cue, place = self._playing(arms, project, time, True)
-        body_cue, body_place = self._playing(body, project, time, False) if cue is not None else (None, -1)
-        out = arm_sway(
-            project,
-            self.tracks,
-            rig.body.hands,
-            arms,
-            cue,
-            place,
-            body,
-            body_cue,
-            body_place,
-            time,
-        )
-        if len(self.found) >= KEPT:
-            self.found.clear()
-        self.found[number] = out
-        return out
-
-    def _playing(self, of: LayerPlan, project: Project, time: float, whole: bool) -> tuple[Any, int]:
-        """Return the cue with motion that plays in a layer, and the place of its rest; their tracks are made.
-        whole: with rows.
-        """
-        cue = of.cue_at(time)
-        if cue is not None and motion_of(project, cue.action) is None:
-            cue = None
-        place = max(int(of.fade_starts.searchsorted(time, "right")) - 1, 0) if of.rests else -1
-        actions: list[Action] = [cue.action] if cue is not None else []
-        actions += [of.rests[n].action for n in (place, place - 1) if n >= 0]
-        for action in actions:
-            if action.id not in self.tracks:
-                rows = rows_of(project, action.clip) if whole else ()
-                self.tracks[action.id] = ArmTrack(action.clip, rows)
-        return cue, place
-
-
-_lately: list[_Swaying] = []
-
-
-def _swaying(plan: Plan, project: Project, weight: Weight) -> _Swaying:
-    for known in _lately:
-        if known.plan() is plan and known.project() is project and known.weight is weight:
-            return known
-    made = _Swaying(plan, project, weight)
-    _lately.insert(0, made)
-    del _lately[4:]
-    return made
-
-
 def sways(project: Project) -> bool:
     """Whether the bodies of a project answer their arms."""
     life = project.life
@@ -349,47 +262,94 @@ def weighs(project: Project) -> bool:
     return sways(project) or plants(project)
 
 
-def weighed(pose: Pose, plan: Plan, project: Project, times: Array, shown: Array | None = None) -> Pose:
-    """Return composed poses `[N, J]` at `times [N]` in which feet stay planted and the body answers its arms;
-    the very same arrays where nothing moves them. shown `[N]`: how much of what the plan does with arms is
-    seen, 0..1; None for all.
+class WeightStage:
+    """Keeps the feet of a plan planted, and lets the body answer its arms. What the arms do at a time is
+    worked out once.
     """
-    if not weighs(project) or project.skeleton is None or not len(times):
-        return pose
-    weight = weight_of(project)
-    rig = weight.rig
-    if rig is None:
-        return pose
-    known, life = _swaying(plan, project, weight), project.life
-    calm = 1.0 - life.stillness
-    parts = [calm] * len(times) if shown is None else (calm * shown).tolist()
-    if rig.strength <= 0 or not sways(project) or not plan.layers["arms"].cues:
-        parts = [0.0] * len(times)
-    drives: list[list[float]] = []
-    feet: list[list[FootGoal]] = []
-    for n, time in enumerate(np.asarray(times, np.float64).tolist()):
-        drives.append(known.drive(plan, project, time) if parts[n] > 0 else [])
-        feet.append(known.feet.goals(plan, project, time) if plants(project) else [])
-    busy = [n for n in range(len(times)) if feet[n] or moves_body(drives[n])]
-    if not busy:
-        return pose
-    joints, hips = list(rig.body.joints), rig.bends[0].place
-    rotations, translations = np.array(pose.rotations), np.array(pose.translations)
-    locals_, moved = rotations[busy][:, joints].tolist(), translations[busy][:, joints].tolist()
-    changed = []
-    for k, n in enumerate(busy):
-        one = ContactPose([tuple(q) for q in locals_[k]], [tuple(v) for v in moved[k]])
-        found = plant_feet(rig, one, feet[n], life.planted_feet)
-        if parts[n] > 0 and answer_arms(
-            rig, one, drives[n], life.follow_through * parts[n], life.shoulder_lift * parts[n]
-        ):
-            found = True
-        if found:
-            changed.append(k)
-            locals_[k], moved[k] = one.local, one.moved[hips]
-    if not changed:
-        return pose
-    here = [busy[k] for k in changed]
-    rotations[np.ix_(here, joints)] = rotation.normalize(np.array([locals_[k] for k in changed]))
-    translations[here, joints[hips]] = [moved[k] for k in changed]
-    return Pose(rotations, translations)
+
+    def __init__(self, plan: Plan, project: Project, weight: Weight) -> None:
+        self._plan, self._project, self._weight = plan, project, weight
+        self._tracks: dict[str, ArmTrack] = {}
+        self._sways: dict[int, list[float]] = {}
+        rig = weight.rig
+        self._feet = (
+            FeetOfPlan(partial(foot_rows_of, weight), rig.height) if rig and plants(project) else None
+        )
+        self._answers = bool(rig and rig.strength > 0 and sways(project) and plan.layers["arms"].cues)
+
+    def run(self, pose: Pose, times: Array, shown: Array | None = None) -> Pose:
+        """Return composed poses `[N, J]` at `times [N]` in which feet stay planted and the body answers its
+        arms; the very same arrays where nothing moves them. shown `[N]`: how much of what the plan does with
+        arms is seen, 0..1; None for all.
+        """
+        rig, life, feet = self._weight.rig, self._project.life, self._feet
+        if rig is None or not (self._answers or feet) or not len(times):
+            return pose
+        calm = 1.0 - life.stillness
+        parts = [calm] * len(times) if shown is None else (calm * shown).tolist()
+        if not self._answers:
+            parts = [0.0] * len(times)
+        drives: list[list[float]] = []
+        goals: list[list[FootGoal]] = []
+        for part, time in zip(parts, times.tolist(), strict=True):
+            drives.append(self.drive(time) if part > 0 else [])
+            goals.append(feet.goals(self._plan, self._project, time) if feet else [])
+        busy = [n for n in range(len(times)) if goals[n] or moves_body(drives[n])]
+        if not busy:
+            return pose
+        joints, hips = list(rig.body.joints), rig.bends[0].place
+        rotations, translations = np.array(pose.rotations), np.array(pose.translations)
+        locals_, moved = rotations[busy][:, joints].tolist(), translations[busy][:, joints].tolist()
+        changed = []
+        for k, n in enumerate(busy):
+            one = ContactPose([tuple(q) for q in locals_[k]], [tuple(v) for v in moved[k]])
+            found = plant_feet(rig, one, goals[n], life.planted_feet)
+            follow, lift = life.follow_through * parts[n], life.shoulder_lift * parts[n]
+            if parts[n] > 0 and answer_arms(rig, one, drives[n], follow, lift):
+                found = True
+            if found:
+                changed.append(k)
+                locals_[k], moved[k] = one.local, one.moved[hips]
+        if not changed:
+            return pose
+        here = [busy[k] for k in changed]
+        rotations[np.ix_(here, joints)] = rotation.normalize(np.array([locals_[k] for k in changed]))
+        translations[here, joints[hips]] = [moved[k] for k in changed]
+        return Pose(rotations, translations)
+
+    def drive(self, time: float) -> list[float]:
+        """Return what moves the body at a time."""
+        last = knot_before(time)
+        return driven([self._at(n) for n in range(last - KNOTS + 1, last + 1)], time)
+
+    def _at(self, number: int) -> list[float]:
+        known = self._sways.get(number)
+        if known is not None:
+            return known
+        time, rig = knot_time(number), self._weight.rig
+        assert rig is not None
+        arms, body = self._plan.layers["arms"], self._plan.layers["body"]
+        cue, place = self._playing(arms, time, True)
+        body_cue, body_place = self._playing(body, time, False) if cue is not None else (None, -1)
+        hands, now = rig.body.hands, (arms, cue, place, body, body_cue, body_place, time)
+        out = arm_sway(self._project, self._tracks, hands, *now)
+        if len(self._sways) >= KEPT:
+            self._sways.clear()
+        self._sways[number] = out
+        return out
+
+    def _playing(self, of: LayerPlan, time: float, whole: bool) -> tuple[Any, int]:
+        """Return the cue with motion that plays in a layer, and the place of its rest; their tracks are made.
+        whole: with rows.
+        """
+        cue = of.cue_at(time)
+        if cue is not None and motion_of(self._project, cue.action) is None:
+            cue = None
+        place = max(int(of.fade_starts.searchsorted(time, "right")) - 1, 0) if of.rests else -1
+        actions: list[Action] = [cue.action] if cue is not None else []
+        actions += [of.rests[n].action for n in (place, place - 1) if n >= 0]
+        for action in actions:
+            if action.id not in self._tracks:
+                rows = rows_of(self._weight, self._project, action.clip) if whole else ()
+                self._tracks[action.id] = ArmTrack(action.clip, rows)
+        return cue, place

@@ -20,9 +20,10 @@ from metagraph.graph.conversation import Conversation, Side, others_of
 from metagraph.graph.model import Project
 from metagraph.graph.requests import AnyRequest, Line, Performance, Point
 from metagraph.motion import rotation
-from metagraph.playback.life.body import body_of
+from metagraph.playback.life.body import LIFELESS
 from metagraph.playback.life.voice import Voice
 from metagraph.playback.plan import Plan
+from metagraph.playback.rigs import rigs_of
 from metagraph.speech.delivered import Delivered, delivered
 from metagraph.speech.drive import drive
 from metagraph.speech.gaze_shares import GazeShare, gaze_shares
@@ -206,7 +207,8 @@ def _head(project: Project) -> float:
 
 def _eyes(project: Project) -> Point:
     """Return where a character's eyes are, metres, in its own space."""
-    if project.skeleton is None or body_of(project).empty:
+    body = rigs_of(project).body if project.skeleton is not None else LIFELESS
+    if body.empty:
         return 0.0, round(_head(project), 3), 0.0
-    x, y, z = (round(v, 3) for v in body_of(project).eyes_at_rest)
+    x, y, z = (round(v, 3) for v in body.eyes_at_rest)
     return x, y, z

@@ -12,9 +12,9 @@ from typing import Literal
 from metagraph.graph.conversation import EVERYBODY, Conversation
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Point
-from metagraph.playback.life.body import body_of
-from metagraph.playback.life.gaze import Gaze, gaze_of
+from metagraph.playback.life.gaze import Gaze
 from metagraph.playback.plan import Plan
+from metagraph.playback.rigs import rigs_of
 from metagraph.speech.addressing import roles_of
 from metagraph.speech.drive import partner_points
 
@@ -66,7 +66,7 @@ def gaze_shares(conversation: Conversation, side: int, project: Project, plan: P
     points = partner_points(plan)
     if len(conversation.sides) < 3 or not points or not project.life.on:
         return ()
-    gaze = gaze_of(plan.life, project.life, body_of(project), project.points)
+    gaze = Gaze(plan.life, project.life, rigs_of(project).body, project.points)
     found: dict[Doing, list[int]] = {doing: [0, 0, 0] for doing in NAMES}
     roles, place = roles_of(conversation, side), 0
     step = max(STEP, conversation.length / MOST)

@@ -21,7 +21,8 @@ from metagraph.motion import rotation
 from metagraph.motion.character_mesh import Character
 from metagraph.motion.contact_solve import HAND, OBSTACLE, ContactRig
 from metagraph.motion.contact_spans import EASE, HANDS, ContactKey, ContactSpan
-from metagraph.playback.contacts import contact_rig, ends, nearest, parts_of
+from metagraph.playback.contacts import ends, nearest, parts_of
+from metagraph.playback.rigs import rigs_of
 
 Array = NDArray[Any]
 
@@ -56,7 +57,8 @@ def find_contacts(project: Project, action: Action) -> tuple[ContactSpan, ...]:
     """Return the contacts of the hands an action moves, in order; none where its clip is missing or the
     character has no arms.
     """
-    motion, rig = motion_of(project, action), contact_rig(project)
+    motion = motion_of(project, action)
+    rig = rigs_of(project).contacts if motion is not None else None
     if motion is None or rig is None:
         return ()
     start, end = project.span(action)

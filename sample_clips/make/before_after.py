@@ -22,8 +22,8 @@ from metagraph.formats.store import open_project
 from metagraph.graph.model import Action, ClipEntry, Layer, Project, Timing
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
+from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.plan import Cue, LayerPlan, Plan, Rest
-from metagraph.playback.player import pose_at
 from metagraph.suggest.find_contacts import find_contacts, measured
 from preview.camera import Camera
 from preview.character_file import figure_of
@@ -78,7 +78,7 @@ def played(project: Project, clip: Clip, times: Array, below: Clip | None = None
         rest = Rest("", action, 0.0, 0.0, 0.0)
         layers[where] = LayerPlan(where, cues=(cue,) if where == layer else (), rests=(rest,))
     end = clip.duration
-    return pose_at(Plan(0, end, layers), project, np.minimum(times, end - 1e-4), alive=False)
+    return Evaluator(Plan(0, end, layers), project).at(np.minimum(times, end - 1e-4), alive=False)
 
 
 def moving(pose: Pose) -> list[int]:

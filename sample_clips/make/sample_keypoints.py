@@ -22,8 +22,8 @@ from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.mimicry.keypoint_layouts import LAYOUTS
 from metagraph.mimicry.signatures import BodySignature
 from metagraph.motion.skeleton import Pose
+from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.plan import Plan
-from metagraph.playback.player import pose_at
 from metagraph.playback.running_plan import perform
 
 SAMPLE = Path(__file__).resolve().parents[1] / "sample.metagraph.yaml"
@@ -154,7 +154,7 @@ def world(project: Project, plan: Plan, times: Any, person: Mapping[str, float] 
     assert project.skeleton is not None
     names = project.skeleton.names
     longer = np.array([next((v for k, v in person.items() if k in name), 1.0) for name in names])
-    pose = pose_at(plan, project, times)
+    pose = Evaluator(plan, project).at(times)
     pose = Pose(
         pose.rotations, pose.translations * np.where(np.arange(len(names)) == 0, 1.0, longer)[:, None]
     )

@@ -25,10 +25,10 @@ from metagraph.motion import rotation
 from metagraph.motion.contact_solve import ContactRig, HandGoal
 from metagraph.motion.contact_spans import contact_key, contact_weight
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.contacts import contact_rig, depths, goals_at, solved
+from metagraph.playback.contacts import depths, goals_at, solved
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import pose_at
 from metagraph.suggest.find_contacts import find_contacts
+from tests.posing import contact_rig, pose_at
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / "sample.metagraph.yaml"
 SHARED = Path(__file__).resolve().parents[3] / "shared" / "data"

@@ -22,7 +22,7 @@ from metagraph.engines.export import export
 from metagraph.engines.reading import read_export
 from metagraph.formats.store import open_project
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import pose_at
+from tests.posing import pose_at
 
 ROOT = Path(__file__).resolve().parents[2]
 RUNTIMES = ROOT / "metagraph" / "engines" / "runtimes"

@@ -36,7 +36,6 @@ from metagraph.graph.requests import Say
 from metagraph.motion.character_mesh import Character
 from metagraph.playback.extend_performance import hear
 from metagraph.playback.life.alphabet import ALPHABET
-from metagraph.playback.life.evaluate import face_weights
 from metagraph.playback.life.graphemes import spelled
 from metagraph.playback.life.lips import mouth
 from metagraph.playback.life.mouth import MouthPiece
@@ -47,6 +46,7 @@ from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
 from metagraph.speech.phones import pieces_of
 from metagraph.speech.textgrid import read_textgrid
+from tests.posing import face_weights
 
 Array = NDArray[Any]
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_clips"

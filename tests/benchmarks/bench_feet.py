@@ -33,9 +33,8 @@ from metagraph.playback.foot_slides import (
 )
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import pose_at
-from metagraph.playback.weight import weight_of
 from tests.benchmarks.bench_weight import FPS, SAMPLE, STANDS, Watched, shared_project
+from tests.posing import pose_at, weight_of
 
 SETS = (
     "bandai-namco-1",

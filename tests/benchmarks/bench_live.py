@@ -152,7 +152,7 @@ def flood(seconds: float) -> None:
     from metagraph.live.relay import Relay
     from metagraph.live.server import Server
     from metagraph.live.wire import Batch, Result, exchange
-    from metagraph.playback.player import pose_at
+    from tests.posing import pose_at
 
     project = open_project(SAMPLE).project
     print(f"{os.cpu_count()} cores; {RATE} requests a second for {seconds:g} s\n")

@@ -22,7 +22,7 @@ from metagraph.mimicry.keypoint_layouts import Keypoints  # noqa: E402
 from metagraph.mimicry.mimic import Mimic  # noqa: E402
 from metagraph.mimicry.performing import mimic_performance  # noqa: E402
 from metagraph.playback.planner import make_plan  # noqa: E402
-from metagraph.playback.player import pose_at  # noqa: E402
+from tests.posing import pose_at  # noqa: E402
 
 FOLDER = ROOT / "sample_clips" / "keypoints"
 

@@ -31,7 +31,7 @@ from metagraph.playback.mood import MOODS
 from metagraph.playback.phases import phases
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import pose_at
+from tests.posing import pose_at
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / "sample.metagraph.yaml"
 STEPS = (-1.0, -0.5, 0.0, 0.5, 1.0)

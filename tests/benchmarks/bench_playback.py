@@ -26,7 +26,7 @@ from metagraph.playback.life.schedule import Schedule, schedule  # noqa: E402
 from metagraph.playback.life.track import LookAt, Speech, track_of  # noqa: E402
 from metagraph.playback.plan import Plan  # noqa: E402
 from metagraph.playback.planner import extend, make_plan  # noqa: E402
-from metagraph.playback.player import pose_at  # noqa: E402
+from tests.posing import pose_at  # noqa: E402
 
 
 def clock(work: Callable[[], object]) -> float:

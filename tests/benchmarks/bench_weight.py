@@ -26,8 +26,7 @@ from metagraph.motion import rotation
 from metagraph.playback.foot_slides import SIDES, WINDOW, clip_speeds, feet_joints, slide_speeds
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import pose_at
-from metagraph.playback.weight import weight_of
+from tests.posing import pose_at, weight_of
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / "sample.metagraph.yaml"
 SHARED = Path(__file__).resolve().parents[3] / "shared" / "data"

@@ -26,7 +26,7 @@ from metagraph.graph.model import Project
 from metagraph.graph.requests import Gesture
 from metagraph.playback.extend_performance import hear
 from metagraph.playback.plan import Plan
-from metagraph.playback.player import pose_at
+from tests.posing import pose_at
 
 STICK = Path(metagraph.__file__).parent / "engines" / "conformance" / "stick" / "stick.json"
 README = Path(metagraph.__file__).parent / "engines" / "runtimes" / "python" / "README.md"

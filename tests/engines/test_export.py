@@ -38,10 +38,11 @@ from metagraph.graph.model import LAYERS, Markov, Project
 from metagraph.graph.requests import Line
 from metagraph.motion.skeleton import unique_names
 from metagraph.playback import choice, hashing, markov
+from metagraph.playback.layers import ease
 from metagraph.playback.life.voice import silent
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import ease, pose_at
 from sample_clips.make.conformance_projects import stick
+from tests.posing import pose_at
 from tests.projects import clip, projects
 from tests.thorough import many
 

@@ -19,10 +19,10 @@ from metagraph.motion import rotation
 from metagraph.playback.extend_performance import hear, since
 from metagraph.playback.life.voice import voice_from_text
 from metagraph.playback.plan import Plan
-from metagraph.playback.player import pose_at
 from tests.engines.csharp_runtime import RUNTIME, STICK, Host, compiled, mono, needs_mono
 from tests.engines.mutants import PLAYED, share_of
 from tests.engines.requests_asked import ASKED, SENSELESS
+from tests.posing import pose_at
 
 pytestmark = needs_mono
 

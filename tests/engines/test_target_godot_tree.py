@@ -30,7 +30,7 @@ from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import pose_at
+from tests.posing import pose_at
 
 HERE = Path(__file__).parent
 ADDON = Path(engines.__file__).with_name("runtimes") / "godot" / "addons"

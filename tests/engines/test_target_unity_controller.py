@@ -25,7 +25,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import pose_at
+from tests.posing import pose_at
 
 Array = NDArray[Any]
 MIRROR = {4: np.array([1, -1, -1, 1]), 3: np.array([-1, 1, 1])}

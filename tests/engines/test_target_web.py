@@ -19,9 +19,9 @@ from metagraph.engines.targets import registry, web
 from metagraph.graph.model import Project
 from metagraph.playback.extend_performance import hear
 from metagraph.playback.plan import Plan
-from metagraph.playback.player import pose_at
 from tests.browsing import Browser
 from tests.engines.web_tools_kept import kept_web_tools
+from tests.posing import pose_at
 
 HERE = Path(__file__).parent
 SAMPLES = HERE.parents[1] / "sample_clips"

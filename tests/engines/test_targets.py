@@ -29,8 +29,8 @@ from metagraph.graph.requests import Nod, Performance, Say
 from metagraph.motion import rotation
 from metagraph.playback.bml import read_bml
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import pose_at
 from tests.engines.test_export import gltf, khronos
+from tests.posing import pose_at
 
 HERE = Path(__file__).parent
 MODULES = HERE.parent / "node_modules"

@@ -22,10 +22,10 @@ from metagraph.graph.model import Project
 from metagraph.playback import choice, hashing, markov, player, replan, sampling
 from metagraph.playback.life import evaluate, gaze, solve
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import pose_at
 from sample_clips.make import conformance
 from sample_clips.make.conformance_projects import sparse
 from tests.engines.mutants import PLAYED, folders_to_try
+from tests.posing import pose_at
 
 FOLDERS = sorted(path for path in Path(engines.__file__).with_name("conformance").iterdir() if path.is_dir())
 

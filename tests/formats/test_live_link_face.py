@@ -21,7 +21,7 @@ from metagraph.graph.face_takes import face_joints
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import pose_at
+from tests.posing import pose_at
 
 SAMPLES = Path(__file__).parents[2] / "sample_clips"
 HEADER = "Timecode,BlendShapeCount," + ",".join(n[0].upper() + n[1:] for n in ARKIT) + "," + ",".join(TURNS)

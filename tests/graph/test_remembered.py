@@ -12,9 +12,8 @@ from metagraph.graph import edits
 from metagraph.graph.face import find_face
 from metagraph.graph.model import Project
 from metagraph.graph.remembered import Remembered
-from metagraph.playback.composer import rig
-from metagraph.playback.life.body import body_of
 from metagraph.playback.phases import phases
+from tests.posing import body_of, rig
 
 
 @pytest.fixture

@@ -18,8 +18,8 @@ from metagraph.graph import anatomy, edits
 from metagraph.graph.model import Project
 from metagraph.live.live_session import LiveSession
 from metagraph.live.voice_detector import VoiceDetector
-from metagraph.playback.player import pose_at
 from tests.generation.makers import babble, rig, stance, untrained
+from tests.posing import pose_at
 
 TICK = 1 / 60
 

@@ -10,7 +10,7 @@ from metagraph.graph.requests import RequestError
 from metagraph.live.live_session import LiveSession
 from metagraph.live.messages import Poses
 from metagraph.live.pose_stream import HEADER, Stream, due, frame
-from metagraph.playback.player import pose_at
+from tests.posing import pose_at
 
 
 def test_streams_of_one_rate_get_the_same_bytes_once(sample: Project) -> None:
@@ -18,17 +18,17 @@ def test_streams_of_one_rate_get_the_same_bytes_once(sample: Project) -> None:
     streams = [(n, Stream.of(Poses(rate=30), sample, 0.01 * n)) for n in range(3)] + [
         (9, Stream.of(Poses(rate=30, format="binary"), sample, 0.0))
     ]
-    frames = due(0.1, session.plan, sample, streams)
+    frames = due(0.1, session.evaluator, streams)
     assert [f.clients for f in frames] == [(0, 1, 2), (9,)] and [f.binary for f in frames] == [False, True]
-    assert due(0.11, session.plan, sample, streams) == []
-    assert len(due(0.1 + 1 / 30, session.plan, sample, streams)) == 2
+    assert due(0.11, session.evaluator, streams) == []
+    assert len(due(0.1 + 1 / 30, session.evaluator, streams)) == 2
 
 
 def test_after_a_pause_one_pose_comes_not_all_that_were_missed(sample: Project) -> None:
     session = LiveSession(sample)
     streams = [(1, Stream.of(Poses(rate=60), sample, 0.0))]
-    assert len(due(5.0, session.plan, sample, streams)) == 1
-    assert due(5.001, session.plan, sample, streams) == []
+    assert len(due(5.0, session.evaluator, streams)) == 1
+    assert due(5.001, session.evaluator, streams) == []
 
 
 def test_joints_come_in_the_order_they_were_named(sample: Project) -> None:

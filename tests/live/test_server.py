@@ -27,7 +27,7 @@ from metagraph.live.osc_bytes import padded
 from metagraph.live.pose_stream import HEADER, MAGIC
 from metagraph.live.server import LiveError, Options, Server, checked, is_loopback
 from metagraph.live.wire import Batch, Ready, Result, exchange
-from metagraph.playback.player import pose_at
+from tests.posing import pose_at
 
 FREE = Options(port=0, osc=0)
 

@@ -12,23 +12,24 @@ from metagraph.formats.gltf import read_gltf_clips, write_glb
 from metagraph.formats.store import open_project
 from metagraph.graph.model import Project
 from metagraph.playback.bake import bake
+from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import pose_at
+from tests.posing import pose_at
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / "sample.metagraph.yaml"
 
 
 def test_a_project_without_clips_cannot_be_baked():
     with pytest.raises(ValueError, match="without clips"):
-        bake(Plan(1, 0.0), Project(), 1.0)
+        bake(Evaluator(Plan(1, 0.0), Project()), Project(), 1.0)
 
 
 @pytest.mark.parametrize("suffix", [".glb", ".bvh"])
 def test_a_baked_performance_read_back_has_its_joints_where_the_preview_has_them(tmp_path, suffix):
     project = open_project(SAMPLE).project
     plan = make_plan(project, 6.0)
-    clip = bake(plan, project, 6.0)
+    clip = bake(Evaluator(plan, project), project, 6.0)
     path = tmp_path / f"baked{suffix}"
     if suffix == ".bvh":
         write_bvh(clip, path)

@@ -10,7 +10,7 @@ import pytest
 from metagraph.graph import edits
 from metagraph.graph.model import PARTS, Project
 from metagraph.motion import rotation
-from metagraph.playback.composer import rig
+from tests.posing import rig
 
 
 @pytest.fixture

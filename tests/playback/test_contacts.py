@@ -17,10 +17,10 @@ from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.contact_solve import ContactPose, apart, capsule_ends, solve_contacts, spread
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.contacts import contact_rig, depths, goals_at, inside, nearest, pairs
+from metagraph.playback.contacts import depths, goals_at, inside, nearest, pairs
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import pose_at
+from tests.posing import contact_rig, pose_at
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / "sample.metagraph.yaml"
 TIMES = np.arange(0.0, 240.0, 0.41)

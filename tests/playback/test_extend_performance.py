@@ -15,9 +15,9 @@ from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.playback.extend_performance import answer, hear, since
 from metagraph.playback.plan import Cue, Plan
-from metagraph.playback.player import pose_at
 from metagraph.playback.running_plan import perform
 from tests import thorough
+from tests.posing import pose_at
 
 END = 30.0
 _SAMPLE: list[Project] = []

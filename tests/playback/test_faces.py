@@ -2,9 +2,8 @@ import numpy as np
 
 from app.project.files import SAMPLE
 from app.project.opening import open_whole
-from metagraph.playback.faces import faces_at
-from metagraph.playback.player import morphs_at
 from metagraph.playback.running_plan import asks_of, perform
+from tests.posing import faces_at, morphs_at
 
 
 def test_faces_in_a_row_are_those_made_one_by_one_to_the_bit():

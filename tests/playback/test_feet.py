@@ -12,9 +12,9 @@ from metagraph.graph import anatomy, edits
 from metagraph.graph.model import Project
 from metagraph.playback.plan import MetaRequest, Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import pose_at
-from metagraph.playback.weight import foot_rows_of, weight_of
+from metagraph.playback.weight import foot_rows_of
 from sample_clips.make.conformance_projects import stepping
+from tests.posing import pose_at, weight_of
 
 FPS = 60
 LEGS = [[f"{side}_{part}" for part in ("upper_leg", "lower_leg", "foot")] for side in ("left", "right")]
@@ -120,10 +120,10 @@ def test_a_pose_depends_on_plan_and_time_alone() -> None:
 
 def test_still_feet_need_one_row_and_feet_that_others_move_none() -> None:
     clips = {a.name: a.clip for a in project().graphs["body"].actions.values()}
-    assert len(foot_rows_of(project(), clips["far"])) == 1
-    own = foot_rows_of(project(), clips["of its own"])
+    assert len(foot_rows_of(weight_of(project()), project(), clips["far"])) == 1
+    own = foot_rows_of(weight_of(project()), project(), clips["of its own"])
     assert len(own) > 20
     assert 0.0 in {row[0] for row in own}
     moved = edits.set_weight(project(), "arms", "legs", 0.2)
     assert weight_of(moved).rig is not None
-    assert foot_rows_of(moved, clips["far"]) == ()
+    assert foot_rows_of(weight_of(moved), moved, clips["far"]) == ()

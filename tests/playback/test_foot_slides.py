@@ -20,7 +20,7 @@ from metagraph.playback.foot_slides import (
     worst_slide,
 )
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import pose_at
+from tests.posing import pose_at
 
 
 def moved(sample: Project, way) -> FeetSeen:

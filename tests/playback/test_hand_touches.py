@@ -10,10 +10,9 @@ import numpy as np
 import pytest
 
 from metagraph.graph.model import Project
-from metagraph.playback.contacts import contact_rig
 from metagraph.playback.hand_touches import MISSED, HandTouch, hand_touches, plan_of_clip
 from metagraph.playback.plan import Plan
-from metagraph.playback.player import pose_at
+from tests.posing import contact_rig, pose_at
 
 
 def seen(project: Project, plan: Plan, seconds: float) -> Any:

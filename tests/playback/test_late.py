@@ -150,7 +150,7 @@ def test_what_a_model_began_is_left_for_a_stroke(sample: Project) -> None:
 
 
 def test_poses_up_to_now_stay_when_something_is_left_early(sample: Project) -> None:
-    from metagraph.playback.player import pose_at
+    from tests.posing import pose_at
 
     plan = hear(sample, Plan(3, 0.0), 0.0, [], 60.0)
     cue = next(c for c in plan.layers["arms"].cues if c.action.kind == "fidget" and c.end - c.start > 2.0)

@@ -15,15 +15,8 @@ from metagraph.graph.manual import ANY
 from metagraph.graph.model import PARTS, Life, Project
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.manual_playback import (
-    Fire,
-    link_alone,
-    make_manual_plan,
-    manual_morphs_at,
-    manual_pose_at,
-    route,
-    state_alone,
-)
+from metagraph.playback.manual_playback import Fire, link_alone, make_manual_plan, route, state_alone
+from tests.posing import manual_morphs_at, manual_pose_at
 
 
 @pytest.fixture

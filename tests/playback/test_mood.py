@@ -36,9 +36,9 @@ from metagraph.playback.mood import (
 )
 from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import pose_at
 from metagraph.playback.running_plan import asks_of, perform
 from metagraph.playback.vigour import _speed_of, vigour, vigours
+from tests.posing import pose_at
 
 STEPS = (-1.0, -0.5, 0.0, 0.5, 1.0)
 

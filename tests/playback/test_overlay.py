@@ -13,9 +13,9 @@ from metagraph.graph.model import Project
 from metagraph.graph.touch import Touch
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.playback.overlay import BLEND, Overlay, clip_overlay, overlaid, reached
+from metagraph.playback.overlay import BLEND, Overlay, clip_overlay, reached
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import pose_at
+from tests.posing import overlaid, pose_at
 
 TIMES = np.linspace(0.0, 6.0, 181)
 

@@ -17,8 +17,8 @@ from metagraph.graph.model import Project
 from metagraph.playback import plan_head, planner, strand
 from metagraph.playback.plan import MetaRequest, Plan
 from metagraph.playback.planner import extend, make_plan
-from metagraph.playback.player import pose_at
 from metagraph.playback.strand import Strand
+from tests.posing import pose_at
 
 PROJECT = Project()
 

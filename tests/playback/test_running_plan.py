@@ -12,8 +12,8 @@ from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Project
 from metagraph.playback.extend_performance import answer, hear
 from metagraph.playback.plan import Plan
-from metagraph.playback.player import pose_at
 from metagraph.playback.running_plan import AHEAD, RunningPlan, perform
+from tests.posing import pose_at
 from tests.thorough import many
 
 LENGTH = 150.0

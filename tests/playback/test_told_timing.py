@@ -261,6 +261,6 @@ def test_every_moment_of_any_words_has_a_mouth(sample: Project, told: list[tuple
         words.append([text, at + pause, at + pause + length])
         at += pause + length
     plan = said(sample, words=words)
-    found = shown(plan, np.linspace(0.5, 12, 200))
+    found = shown(plan, np.linspace(0.5, at + 4, 200))
     assert np.isfinite(found).all() and (found >= 0).all() and (found.sum(1) <= 1 + 1e-6).all()
     assert found[-1].sum() == 0

@@ -18,7 +18,7 @@ from metagraph.graph.model import Project
 from metagraph.playback.phases import phases
 from metagraph.playback.plan import Cue, LayerPlan, MetaRequest, Plan
 from metagraph.playback.planner import extend, make_plan
-from metagraph.playback.player import pose_at
+from tests.posing import pose_at
 
 
 @pytest.fixture

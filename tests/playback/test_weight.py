@@ -20,8 +20,8 @@ from metagraph.motion.skeleton import Pose
 from metagraph.playback.follow_through import KNOTS, NUMBERS, OFFSET, STEP, driven, knot_before, knot_time
 from metagraph.playback.plan import MetaRequest, Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import pose_at
-from metagraph.playback.weight import rows_of, weight_of
+from metagraph.playback.weight import rows_of
+from tests.posing import pose_at, weight_of
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / "sample.metagraph.yaml"
 TIMES = np.arange(0.0, 40.0, 1 / 15)
@@ -75,7 +75,7 @@ def test_the_hips_go_against_the_arms() -> None:
     ahead = placed(True)[1][:, hips, 2] - placed(False)[1][:, hips, 2]
     cue = max(
         (c for c in found.layers["arms"].cues if c.end < 39),
-        key=lambda c: max(r[2] + r[5] for r in rows_of(project, c.action.clip)),
+        key=lambda c: max(r[2] + r[5] for r in rows_of(weight_of(project), project, c.action.clip)),
     )
     inside = np.flatnonzero((TIMES - cue.start > 0.3) & (TIMES - cue.end < 0))
     assert ahead[inside].min() < -0.005  # arms ahead, hips back
@@ -171,14 +171,20 @@ def test_collar_bones_rise_only_where_the_clip_leaves_them() -> None:
     lifted = replace(
         project, clips={**project.clips, entry.id: replace(entry, motion=replace(clip, rotations=rotations))}
     )
-    assert np.array(rows_of(lifted, entry.id))[:, 6].max() > np.array(rows_of(project, entry.id))[:, 6].max()
+    assert (
+        np.array(rows_of(weight_of(lifted), lifted, entry.id))[:, 6].max()
+        > np.array(rows_of(weight_of(project), project, entry.id))[:, 6].max()
+    )
     up = rotation.from_axis_angle(np.array([0.0, 0.0, 1.0]), np.radians(25))
     rotations = np.array(rotations)
     rotations[:, collar] = rotation.multiply(up, rotations[:, collar])
     own = replace(
         lifted, clips={**lifted.clips, entry.id: replace(entry, motion=replace(clip, rotations=rotations))}
     )
-    assert np.array(rows_of(own, entry.id))[:, 6].max() < np.array(rows_of(lifted, entry.id))[:, 6].max()
+    assert (
+        np.array(rows_of(weight_of(own), own, entry.id))[:, 6].max()
+        < np.array(rows_of(weight_of(lifted), lifted, entry.id))[:, 6].max()
+    )
 
 
 @pytest.mark.parametrize("role", ["hips", "left_foot", "right_lower_leg", "left_hand"])

@@ -14,15 +14,15 @@ from metagraph.graph.model import Project
 from metagraph.graph.seats import seat_of
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.playback.contacts import contact_rig, depths
+from metagraph.playback.contacts import depths
 from metagraph.playback.plan import MetaRequest
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import pose_at
 from sample_clips.make.catalogue import RECIPES, SEATED, catalogue
 from sample_clips.make.mannequin_rig import REACH, REST, SKELETON, at
 from sample_clips.make.measure import Measures, measure
 from sample_clips.make.recipe import animate
 from sample_clips.make.stance_clips import SEAT
+from tests.posing import contact_rig, pose_at
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_clips"
 ENTRIES = {entry.name: entry for entry in catalogue(SEATED)}

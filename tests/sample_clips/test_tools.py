@@ -11,13 +11,14 @@ import pytest
 
 from metagraph.formats.gltf import read_gltf_clips
 from metagraph.motion import rotation
-from metagraph.playback.contacts import contact_rig, depths
+from metagraph.playback.contacts import depths
 from sample_clips.make import before_after, ik, key_poses, motion_tracks, secondary
 from sample_clips.make.hands import SHAPES, finger_rotations
 from sample_clips.make.mannequin_rig import REST, SIDES, SKELETON, at
 from sample_clips.make.motion_tracks import Move, Step
 from sample_clips.make.recipe import Recipe, animate, go, home
 from sample_clips.make.stance_clips import BASE, HIP
+from tests.posing import contact_rig
 
 CLIPS = Path(__file__).resolve().parents[2] / "sample_clips" / "clips"
 

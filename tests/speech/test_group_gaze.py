@@ -14,10 +14,10 @@ from metagraph.graph.anatomy import base_pose
 from metagraph.graph.conversation import EVERYBODY, Conversation
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
-from metagraph.playback.player import pose_at
 from metagraph.speech.duet import duet
 from metagraph.speech.gaze_shares import GazeShare, gaze_shares, together
 from metagraph.speech.group_gaze import AT_ADDRESSEE, AT_SPEAKER, LEAST, looks_of
+from tests.posing import pose_at
 from tests.speech.group import group, made_up, said
 from tests.thorough import many
 

@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
-from metagraph.graph.face import SIDES, FaceRig, axes_of, find_face, made_of
+from metagraph.graph.face import CHANNELS, SIDES, FaceRig, axes_of, find_face
 from metagraph.graph.model import Project
-from metagraph.graph.remembered import Latest, Remembered
 from metagraph.motion import rotation
 from metagraph.motion.joint_map import known_roles
 from metagraph.motion.skeleton import Skeleton
@@ -113,31 +112,13 @@ class Body:
         )
 
 
-_known: Remembered[Body] = Remembered(made_of)
-
-
-def body_of(project: Project) -> Body:
-    """Return the body of a project with a skeleton; the same object as long as nothing it depends on
-    changes.
-    """
-    return _latest(project)
-
-
-def _of(project: Project) -> Body:
-    if isinstance(project.body, Body):
-        return project.body
-    return _known.of(project, project.base, lambda: _find(project))
-
-
-_latest = Latest(_of)
-
-
 def _vector(values: Any) -> Vector:
     x, y, z = (float(v) for v in values)
     return x, y, z
 
 
-def _find(project: Project) -> Body:
+def find_body(project: Project) -> Body:
+    """Return the body of a project with a skeleton."""
     skeleton = project.skeleton
     assert skeleton is not None
     roles = anatomy.roles(project)
@@ -235,3 +216,35 @@ def _eyes(
         )  # to the left is about up, upwards about the right
         out.append(EyeAt(place, looks[0], looks[1], looks[2], True, *turn, (x, y, z, w)))
     return out[0], out[1]
+
+
+def _lifeless() -> Body:
+    """Return a body of which nothing can live."""
+    axes: tuple[Vector, Vector, Vector] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    none: Vector = (0.0, 0.0, 0.0)
+    eye = EyeAt(none, *axes, False, none, none, (0.0, 0.0, 0.0, 0.0))
+    shapes, first = np.zeros((len(CHANNELS), 0, 3)), np.zeros(1, int)
+    face = FaceRig((), np.zeros(0, int), shapes, shapes, np.zeros(4), np.full(4, -1), np.zeros((4, 4)), {})
+    breath = ((axes[0], 0.0),)
+    return Body(
+        *axes,
+        first,
+        breath,
+        (0.0,),
+        (0.0,),
+        first,
+        first,
+        (),
+        (),
+        (),
+        0,
+        axes[2],
+        axes[2],
+        (eye, eye),
+        axes[2],
+        none,
+        face,
+    )
+
+
+LIFELESS = _lifeless()  # of a character of which nothing lives

@@ -33,9 +33,9 @@ from metagraph.graph.face_names import MOOD_FACE
 from metagraph.graph.life import Life
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.life.body import Body, body_of
+from metagraph.playback.life.body import Body
 from metagraph.playback.life.expressions import FaceShown, answer, settle, shown_face
-from metagraph.playback.life.gaze import Gaze, Moves, ease, gaze_of
+from metagraph.playback.life.gaze import Gaze, Moves, ease
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.lips import mouth
 from metagraph.playback.life.schedule import Schedule
@@ -60,83 +60,11 @@ _PRODUCT = np.array(
 _SIGNS = np.array([[1.0, -1, 1, 1], [1, 1, -1, 1], [-1, 1, 1, 1], [-1, -1, -1, 1]])
 
 
-def enliven(pose: Pose, project: Project, schedule: Schedule, track: Track, times: Array) -> Pose:
-    """Return composed poses `[N, J]` with breathing, gaze, lids and lips added at `times [N]`.
-
-    Any times in any order; each pose depends on its own time alone.
-    """
-    if not project.life.on or project.skeleton is None or not len(times):
-        return pose
-    body = body_of(project)
-    if body.empty:
-        return pose
-    found = _Found(body, project, schedule, track, np.asarray(times, np.float64), pose)
-    rotations = np.array(pose.rotations)
-    rotations[:, body.joints] = found.rotations()
-    translations = pose.translations
-    shifted = body.face.shifted
-    if len(shifted) and found.channels.any():
-        translations = np.array(translations)
-        translations[:, body.face.joints[shifted]] += _each(found.channels, body.face.shifts[:, shifted])
-    return Pose(rotations, translations)
-
-
 def lids_of(face: FaceRig) -> FaceLids:
     """Return a face's lids as `enlivened` takes them; where none is a joint, how far morph targets follow."""
     joints = [joint >= 0 for joint in face.lid_joints.tolist()]
     follows = face.follows.tolist() if any(joints) else [MORPH_FOLLOWS, MORPH_FOLLOWS, 0.0, 0.0]
     return FaceLids(joints, follows, face.shut_by.tolist())
-
-
-def _looking(body: Body, project: Project, schedule: Schedule) -> Gaze | None:
-    """Return the gaze of a body; None of one that looks at nothing."""
-    if not body.lookers or not schedule.targets:
-        return None
-    return gaze_of(schedule, project.life, body, project.points)
-
-
-def _dials(life: Life) -> LifeDials:
-    return LifeDials(life.gaze, 1 - life.stillness, life.head_share, life.lids)
-
-
-def _spoken(project: Project, track: Track, times: Array) -> Array:
-    """Return the face's channels `[N, C]` at times, the mouth's filled."""
-    life = project.life
-    out = np.zeros((len(times), len(CHANNELS)))
-    shown = mouth(track, project.voices, life.lip_smoothing, times) if life.lips > 0 else None
-    if shown is not None:
-        out[:, len(LIDS) + 2 :] = shown * life.lips
-    return out
-
-
-def face_weights(
-    project: Project,
-    schedule: Schedule,
-    track: Track,
-    seconds: float,
-    pose: Pose | None = None,
-    playing: Iterable[Playing] = (),
-) -> dict[str, float]:
-    """Return the morph target weights of the life layers at one time, 0..1.
-
-    pose: the composed pose `[J]`, before `enliven`, so that eyes made of morph targets hold while the head
-    moves; else the base pose. playing: what plays, which the face answers (`expressions.answer`).
-    """
-    if not project.life.on or project.skeleton is None:
-        return {}
-    body = body_of(project)
-    if not body.face.morphs:
-        return {}
-    whole = base_pose(project) if pose is None else pose
-    one = Pose(whole.rotations[None], whole.translations[None])
-    found = _Found(body, project, schedule, track, np.array([float(seconds)]), one)
-    look, life = found.faces[0], project.life
-    face = FaceShown()
-    shown_face(face, life, schedule.swells, schedule.emphases, look.bears, float(seconds))
-    for tags, start, end in playing:
-        answer(face, life, tags, start, end, float(seconds))
-    settle(face)
-    return _morphs(body.face, look, face, found.channels[0])
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,45 +79,105 @@ class _Look:
     bears: Bearing = UNMOVED
 
 
+@dataclass(frozen=True, slots=True)
 class _Found:
-    """What the life layers make of poses `[N, J]` at times `[N]`: `chain [N, c, 4]` as breathing has it,
-    `turns [N, M, 3]` of the body's joints but the face's, `channels [N, C]` of the face and `faces`.
+    """What the life layers make of poses `[N, J]`: chain `[N, c, 4]` as breathing has it, turns `[N, M, 3]`
+    of the body's joints but the face's, channels `[N, C]` of the face and faces.
     """
 
-    def __init__(
-        self, body: Body, project: Project, schedule: Schedule, track: Track, times: Array, pose: Pose
-    ) -> None:
-        self.body, self.pose = body, pose
+    chain: Array
+    turns: Array
+    channels: Array
+    faces: list[_Look]
+
+
+class LifeStage:
+    """Adds breathing, gaze, lids, lips and expressions to the composed poses of a plan."""
+
+    def __init__(self, project: Project, schedule: Schedule, track: Track, body: Body) -> None:
         life = project.life
-        gaze = _looking(body, project, schedule)
+        self._project, self._schedule, self._track, self.body = project, schedule, track, body
+        self._gaze = None
+        if body.lookers and schedule.targets:  # else it looks at nothing
+            self._gaze = Gaze(schedule, life, body, project.points)
+        self._lids = lids_of(body.face)
+        self._dials = LifeDials(life.gaze, 1 - life.stillness, life.head_share, life.lids)
+
+    def run(self, pose: Pose, times: Array) -> Pose:
+        """Return composed poses `[N, J]` with life added at `times [N]`, in any order; each depends on its
+        own time alone.
+        """
+        body, face = self.body, self.body.face
+        if not self._project.life.on or not len(times) or body.empty:
+            return pose
+        found = self._find(pose, times)
+        rotations, translations = np.array(pose.rotations), pose.translations
+        rotations[:, body.joints] = self._turned(pose, found)
+        if len(face.shifted) and found.channels.any():
+            translations = np.array(translations)
+            translations[:, face.joints[face.shifted]] += _each(found.channels, face.shifts[:, face.shifted])
+        return Pose(rotations, translations)
+
+    def morphs(
+        self, seconds: float, pose: Pose | None = None, playing: Iterable[Playing] = ()
+    ) -> dict[str, float]:
+        """Return the weights that life gives morph targets at one time, 0..1.
+
+        pose: the composed pose `[J]` before `run`, so that eyes made of morph targets hold while the head
+        moves; else the base pose. playing: what plays, which the face answers (`expressions.answer`).
+        """
+        life, schedule = self._project.life, self._schedule
+        if not life.on or not self.body.face.morphs:
+            return {}
+        whole = base_pose(self._project) if pose is None else pose
+        one = Pose(whole.rotations[None], whole.translations[None])
+        found = self._find(one, np.array([float(seconds)]))
+        look, face = found.faces[0], FaceShown()
+        shown_face(face, life, schedule.swells, schedule.emphases, look.bears, float(seconds))
+        for tags, start, end in playing:
+            answer(face, life, tags, start, end, float(seconds))
+        settle(face)
+        return _morphs(self.body.face, look, face, found.channels[0])
+
+    def _find(self, pose: Pose, times: Array) -> _Found:
+        """Return what happens to poses `[N, J]` at times `[N]`."""
+        body, gaze, life = self.body, self._gaze, self._project.life
         read = pose.rotations[:, body.read].tolist()
         places = pose.translations[:, body.chain].tolist()
-        lids, dials = lids_of(body.face), _dials(life)
-        self.channels = _spoken(project, track, times)
+        channels = self._spoken(times)
         chains: list[Any] = []
         turns: list[Any] = []
-        self.faces: list[_Look] = []
+        faces: list[_Look] = []
         for n, time in enumerate(times.tolist()):
-            now, bears = happening(schedule, life, time)
+            now, bears = happening(self._schedule, life, time)
             moves = gaze.at(time) if gaze is not None else NO_MOVES
             chain, turn, eyes, shut, own = enlivened(
-                body, lids, dials, now, read[n], places[n], moves, gaze is not None
+                body, self._lids, self._dials, now, read[n], places[n], moves, gaze is not None
             )
             chains.append(chain)
             turns.append(turn)
-            self.faces.append(_Look(now.blink, tuple(shut), tuple(eyes), bears))
-            self.channels[n, : len(LIDS) + 1] = (*own, now.blink)
-        self.chain = np.array(chains).reshape(len(times), len(body.chain), 4)
-        self.turns = np.array(turns).reshape(len(times), -1, 3)
+            faces.append(_Look(now.blink, tuple(shut), tuple(eyes), bears))
+            channels[n, : len(LIDS) + 1] = (*own, now.blink)
+        shaped = np.array(chains).reshape(len(times), len(body.chain), 4)
+        return _Found(shaped, np.array(turns).reshape(len(times), -1, 3), channels, faces)
 
-    def rotations(self) -> Array:
+    def _spoken(self, times: Array) -> Array:
+        """Return the face's channels `[N, C]` at times, the mouth's filled."""
+        project, out = self._project, np.zeros((len(times), len(CHANNELS)))
+        life = project.life
+        if life.lips > 0:
+            shown = mouth(self._track, project.voices, life.lip_smoothing, times)
+            if shown is not None:
+                out[:, len(LIDS) + 2 :] = shown * life.lips
+        return out
+
+    def _turned(self, pose: Pose, found: _Found) -> Array:
         """Return what the rotations of the body's joints become `[N, L, 4]`."""
-        body = self.body
-        local = np.asarray(self.pose.rotations[:, body.joints], np.float64)
-        local[:, : len(body.chain)] = self.chain
-        turns = self.turns
+        body, turns = self.body, found.turns
+        local = np.asarray(pose.rotations[:, body.joints], np.float64)
+        local[:, : len(body.chain)] = found.chain
         if len(body.face.joints):
-            turns = np.concatenate([turns, _each(self.channels, body.face.turns)], 1)
+            turns = np.concatenate([turns, _each(found.channels, body.face.turns)], 1)
         return _times(local, _turn(turns))
 
 

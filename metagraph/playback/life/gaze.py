@@ -14,11 +14,9 @@ faster than arrays of one, and any language can say the same.
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import acos, degrees, exp, hypot, inf, radians, sqrt
-from typing import Any
 
 from metagraph.graph.life import Life
 from metagraph.graph.requests import Point
@@ -175,20 +173,3 @@ def _between(a: tuple[float, ...], b: tuple[float, ...]) -> float:
     size = sqrt(sum(x * x for x in a) * sum(x * x for x in b))
     cosine = sum(x * y for x, y in zip(a, b, strict=True)) / max(size, 1e-12)
     return degrees(acos(min(1.0, max(-1.0, cosine))))
-
-
-_known: OrderedDict[tuple[int, ...], tuple[tuple[Any, ...], Gaze]] = (
-    OrderedDict()
-)  # with what the ids in the key belong to
-
-
-def gaze_of(schedule: Schedule, life: Life, body: Body, points: Mapping[str, Point]) -> Gaze:
-    """Return the gaze of a schedule; the same object as long as nothing it depends on changes."""
-    parts = (schedule.targets, schedule.aversions, schedule.saccades, life, body, points)
-    key = tuple(map(id, parts))
-    found = _known.get(key)
-    if found is None:
-        found = _known[key] = (parts, Gaze(schedule, life, body, points))
-        while len(_known) > 32:
-            _known.popitem(last=False)
-    return found[1]

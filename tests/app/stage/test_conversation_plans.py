@@ -345,8 +345,8 @@ def test_all_of_three_are_shown_whichever_of_them_is_looked_at(three: Path) -> N
 
 
 def test_what_three_do_is_kept_with_whom_they_look_at_and_plays_the_same(three: Path) -> None:
-    from metagraph.playback.player import pose_at
     from metagraph.playback.running_plan import perform
+    from tests.posing import pose_at
 
     project = open_project(three).project
     shown = ConversationPlans().show(project, "v9000", three.parent)

@@ -15,8 +15,8 @@ from metagraph.formats.imports import import_files
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import morphs_at
 from preview.figure import SkinnedFigure, StickFigure
+from tests.posing import morphs_at
 
 
 def test_a_figure_without_morphs_takes_no_weights(toy):

@@ -16,7 +16,7 @@ from app.stage.session import Session
 from metagraph.graph import edits, performance_edits
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Project
-from metagraph.playback.player import pose_at
+from tests.posing import pose_at
 
 
 @pytest.fixture(scope="module")

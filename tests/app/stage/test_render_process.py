@@ -52,8 +52,8 @@ def test_a_range_of_it_is_what_the_whole_has_there(qapp, talk, tmp_path):
 
 
 def test_motion_is_the_performance(qapp, talk, tmp_path):
-    from metagraph.playback.player import pose_at
     from metagraph.playback.running_plan import perform
+    from tests.posing import pose_at
 
     project, ident = talk
     write(

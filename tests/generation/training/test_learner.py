@@ -19,6 +19,7 @@ from metagraph.generation.train_plan import Settings, TrainingPlan  # noqa: E402
 from metagraph.generation.training.learner import FUTILE, Learner, TrainingError  # noqa: E402
 from metagraph.graph.model import Project  # noqa: E402
 from metagraph.playback.bake import bake  # noqa: E402
+from metagraph.playback.evaluator import Evaluator  # noqa: E402
 from metagraph.speech.drive import drive  # noqa: E402
 from tests.generation.makers import conversation, rig  # noqa: E402
 from tests.generation.training.planting import plan, stroke, take, toy, toy_sizes  # noqa: E402
@@ -96,7 +97,7 @@ def test_takes_shorter_than_a_crop_are_learned_from(takes: Any) -> None:
 
 def test_a_clip_of_ten_seconds_is_learned_by_heart(sample: Project) -> None:
     _, performed = drive(conversation(10.0), 0, sample)
-    one, other = take(10.0, 1, bake(performed, sample, 10.0, 25.0)), take(10.0, 2)
+    one, other = take(10.0, 1, bake(Evaluator(performed, sample), sample, 10.0, 25.0)), take(10.0, 2)
     sizes = msgspec.structs.replace(sizes_of("flow-vae"), code="autoencoder", dims=24, span=1)
     assert isinstance(sizes, FlowSizes)
     settings = Settings(loss="whitened", batch=8, frames=64, warm=30, rate=4e-3, kept=0.9, head=0.0)

@@ -18,13 +18,12 @@ from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.playback.life.evaluate import enliven, face_weights
 from metagraph.playback.life.lane import lane
 from metagraph.playback.life.schedule import Schedule, schedule
 from metagraph.playback.life.track import BlinkAt, LookAt, ModeFrom, Speech, Track, track_of
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import pose_at
 from tests import zoo
+from tests.posing import enliven, face_weights, pose_at
 from tests.thorough import many
 
 Array = np.ndarray[Any, Any]

@@ -10,12 +10,13 @@ import pytest
 
 from metagraph.graph.life import Life
 from metagraph.graph.model import Project
-from metagraph.playback.life.body import PARTNER_AWAY, body_of
-from metagraph.playback.life.gaze import ENDING, Gaze, Moves, ease, eye_time, gaze_of, head_time, settle
+from metagraph.playback.life.body import PARTNER_AWAY
+from metagraph.playback.life.gaze import ENDING, Gaze, Moves, ease, eye_time, head_time, settle
 from metagraph.playback.life.lane import lane
 from metagraph.playback.life.schedule import RECALL, Schedule, schedule
 from metagraph.playback.life.track import LookAt, PlaceFrom, Track, track_of
 from metagraph.playback.life.wanted import GazeTarget
+from tests.posing import body_of, gaze_of
 
 STEP = 1 / 240
 CALM = Life(saccades=0, aversion_rate=0)

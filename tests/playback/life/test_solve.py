@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.playback.life import solve
-from metagraph.playback.life.body import body_of
+from tests.posing import body_of
 
 angles = st.floats(-3.1, 3.1)
 quaternions = st.builds(

@@ -19,9 +19,9 @@ from metagraph.live.live_session import LiveSession
 from metagraph.playback.life.sympathy import Laugh, laughs_along, moods_taken_up, taken_up
 from metagraph.playback.mood import MOODS, Mood, MoodFrom, Moods, mood_at
 from metagraph.playback.plan import Plan
-from metagraph.playback.player import morphs_at
 from metagraph.speech.duet import duet
 from metagraph.speech.sympathies import laughs_of
+from tests.posing import morphs_at
 
 SAMPLES = Path(__file__).parents[3] / "sample_clips"
 HAPPY, ANGRY, SAD = (Mood(*MOODS[name]) for name in ("happy", "angry", "sad"))

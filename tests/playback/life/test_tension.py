@@ -12,7 +12,7 @@ from metagraph.graph.model import Project
 from metagraph.motion.joint_map import known_roles
 from metagraph.playback.mood import MOODS, Mood, bearing
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import pose_at
+from tests.posing import pose_at
 
 
 def standing(project: Project, valence: float, arousal: float) -> tuple[dict[str, int], Any]:

@@ -1,0 +1,154 @@
+"""The one evaluator: what a plan looks like at a time, or at many times at once.
+
+Preview, video, export and tests all come here, so scrubbing, live play and a baked file agree. A pose goes
+through the stages in turn: layers, weight and feet, life, contacts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.graph.model import LAYERS, Action, Project
+from metagraph.motion.skeleton import Pose
+from metagraph.playback.composer import playable
+from metagraph.playback.contacts import ContactStage
+from metagraph.playback.layers import LayersStage, cue_weight, loop_seconds
+from metagraph.playback.life.evaluate import LifeStage, Playing
+from metagraph.playback.overlay import Overlay, lay_over
+from metagraph.playback.plan import Plan
+from metagraph.playback.rigs import Rigs, rigs_of
+from metagraph.playback.weight import WeightStage
+
+Array = NDArray[Any]
+
+
+class Poses(Protocol):
+    """Whatever has a pose and a face at each time."""
+
+    def at(self, seconds: Any, /) -> Pose: ...
+    def morphs_at(self, seconds: float, /) -> dict[str, float]: ...
+    def faces_at(self, times: Array, /) -> list[dict[str, float]]: ...
+
+
+class Evaluator:
+    """A plan as poses and weights of face shapes. Made once per plan; it owns what it works out.
+
+    Times before 0 and after the plan's end rest in the first and last stance. Actions whose clip is missing
+    show their stance.
+    """
+
+    def __init__(self, plan: Plan, project: Project, rigs: Rigs | None = None) -> None:
+        """rigs: the project's, where they are known. Raises ValueError for a project without a skeleton."""
+        self.plan, self.project = plan, project
+        self.rigs = rigs if rigs is not None else rigs_of(project)
+        self._lives = project.life.on and plan.life.end > 0
+        self._layers = LayersStage(plan, project, self.rigs.composer)
+        self._weight = WeightStage(plan, project, self.rigs.weight)
+        self._life = LifeStage(project, plan.life, plan.track, self.rigs.body)
+        self._contacts = ContactStage(plan, project, self.rigs.contacts)
+        self._last: tuple[float, Pose] | None = None  # the latest pose at one time that life was added to
+
+    def at(self, seconds: Any, alive: bool = True, overlay: Overlay | None = None) -> Pose:
+        """Return the composed pose at `seconds`, a number or an array `[...]`: rotations `[..., J, 4]`,
+        translations `[..., J, 3]`.
+
+        alive: with life, as far as the project has it on. overlay: motion of as many times that takes the
+        place of the arms' and the head's layers.
+        """
+        at = np.asarray(seconds, np.float64)
+        times = at.reshape(-1)
+        pose = self._composed(times, overlay)
+        shown = None if overlay is None else 1 - overlay.weight * (1 - overlay.arms)
+        if alive and self._lives:
+            pose = self._weight.run(pose, times, shown)
+            if len(times) == 1 and overlay is None:  # its face is mostly asked for next
+                self._last = float(times[0]), _first(pose)
+            pose = self._life.run(pose, times)
+        pose = self._contacts.run(pose, times, shown)
+        shape = (*at.shape, len(self.rigs.composer.ground.skeleton))
+        return Pose(pose.rotations.reshape(*shape, 4), pose.translations.reshape(*shape, 3))
+
+    def follow(self, plan: Plan, project: Project) -> Evaluator:
+        """Return the evaluator of a plan: this one for the same plan, else a new one."""
+        if plan is self.plan and project is self.project:
+            return self
+        return Evaluator(plan, project, self.rigs if project is self.project else None)
+
+    def before_life(self, times: Array) -> Pose:
+        """Return the poses at `times [N]` that life is added to."""
+        return self._weight.run(self._layers.run(times), times)
+
+    def morphs_at(self, seconds: float, alive: bool = True, composed: Pose | None = None) -> dict[str, float]:
+        """Return morph target weights, 0..1, at one time: the layers' sums, and with `alive` life's on top.
+        composed: the pose `[J]` before life, where it is not the plan's alone.
+        """
+        out: dict[str, float] = {}
+        playing = self._play_morphs(seconds, out)
+        if alive and self._lives:
+            if self.rigs.body.face.morphs and composed is None:  # what the eyes hold against
+                composed = self._before_life_at(seconds)
+            add_life(out, self._life.morphs(seconds, composed, playing))
+        return {name: min(1.0, max(0.0, value)) for name, value in out.items()}
+
+    def faces_at(self, times: Array) -> list[dict[str, float]]:
+        """Return morph target weights, 0..1, at each of `times [N]`: to the bit what `morphs_at` gives."""
+        times = np.asarray(times, np.float64)
+        pose = self.before_life(times)
+        return [
+            self.morphs_at(float(time), composed=Pose(rotations, translations))
+            for time, rotations, translations in zip(times, pose.rotations, pose.translations, strict=True)
+        ]
+
+    def _composed(self, times: Array, overlay: Overlay | None) -> Pose:
+        if overlay is None or not overlay.weight.any():
+            return self._layers.run(times)
+        return lay_over(self.project, self.rigs.composer, self._layers.offsets(times), overlay)
+
+    def _before_life_at(self, seconds: float) -> Pose:
+        if self._last is not None and self._last[0] == seconds:
+            return self._last[1]
+        return _first(self.before_life(np.array([float(seconds)])))
+
+    def _play_morphs(self, seconds: float, out: dict[str, float]) -> list[Playing]:
+        """Add what clips show of morph targets at a time; return what plays."""
+        playing: list[Playing] = []
+        for layer in LAYERS:
+            of = self.plan.layers[layer]
+            cue = of.cue_at(seconds)
+            rest = next(
+                (r for r in reversed(of.rests) if r.fade_start <= seconds), of.rests[0] if of.rests else None
+            )
+            shares: list[tuple[Action, float, float]] = []
+            weight = 0.0
+            if cue is not None:
+                playing.append((cue.action.tags, cue.start, cue.end))
+                weight = float(cue_weight(cue, np.array([seconds]))[0])
+                shares.append((cue.action, float(cue.clip_seconds(seconds)), weight))
+            if rest is not None:
+                elapsed = np.array([seconds - rest.start])
+                at = float(loop_seconds(self.project, rest.action, elapsed)[0][0])
+                shares.append((rest.action, at, 1 - weight))
+            for action, at, share in shares:
+                motion = playable(self.project, action)
+                if motion is not None and share > 0:
+                    for name, value in motion.morphs_at(at).items():
+                        out[name] = out.get(name, 0.0) + share * value
+        return playing
+
+
+def _first(pose: Pose) -> Pose:
+    """Return the only pose of several, in memory of its own."""
+    return Pose(pose.rotations[0].copy(), pose.translations[0].copy())
+
+
+def add_life(out: dict[str, float], found: Mapping[str, float]) -> None:
+    """Add the life layers' morph target weights to what clips show: as far as that leaves them room, so that
+    a face that was made for a moment stays as it was made.
+    """
+    for name, value in found.items():
+        played = out.get(name, 0.0)
+        out[name] = played + value * (1 - min(1.0, max(0.0, played)))

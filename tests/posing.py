@@ -1,0 +1,103 @@
+"""Poses and rigs of plans and projects, asked for by plain calls: an evaluator is made for each plan, the
+latest are kept.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from metagraph.graph.life import Life
+from metagraph.graph.model import Project
+from metagraph.graph.requests import Point
+from metagraph.motion.contact_solve import ContactRig
+from metagraph.motion.skeleton import Pose
+from metagraph.playback.composer import ComposerRig
+from metagraph.playback.evaluator import Evaluator
+from metagraph.playback.life.body import Body
+from metagraph.playback.life.evaluate import LifeStage, Playing
+from metagraph.playback.life.gaze import Gaze
+from metagraph.playback.life.schedule import Schedule
+from metagraph.playback.life.track import Track
+from metagraph.playback.manual_playback import ManualEvaluator, ManualPlan
+from metagraph.playback.overlay import Overlay
+from metagraph.playback.plan import Plan
+from metagraph.playback.rigs import rigs_of
+from metagraph.playback.weight import Weight
+
+KEPT = 8
+_kept: list[Evaluator] = []
+
+
+def evaluator(plan: Plan, project: Project) -> Evaluator:
+    for known in _kept:
+        if known.plan is plan and known.project is project:
+            return known
+    _kept.insert(0, Evaluator(plan, project))
+    del _kept[KEPT:]
+    return _kept[0]
+
+
+def pose_at(plan: Plan, project: Project, seconds: Any, alive: bool = True) -> Pose:
+    return evaluator(plan, project).at(seconds, alive)
+
+
+def overlaid(plan: Plan, project: Project, seconds: Any, over: Overlay | None, alive: bool = True) -> Pose:
+    return evaluator(plan, project).at(seconds, alive, over)
+
+
+def morphs_at(
+    plan: Plan, project: Project, seconds: float, alive: bool = True, composed: Pose | None = None
+) -> dict[str, float]:
+    return evaluator(plan, project).morphs_at(seconds, alive, composed)
+
+
+def faces_at(plan: Plan, project: Project, times: np.ndarray) -> list[dict[str, float]]:
+    return evaluator(plan, project).faces_at(times)
+
+
+def manual_pose_at(plan: ManualPlan, project: Project, seconds: Any, alive: bool = True) -> Pose:
+    return ManualEvaluator(plan, project).at(seconds, alive)
+
+
+def manual_morphs_at(
+    plan: ManualPlan, project: Project, seconds: float, alive: bool = True
+) -> dict[str, float]:
+    return ManualEvaluator(plan, project).morphs_at(seconds, alive)
+
+
+def enliven(pose: Pose, project: Project, schedule: Schedule, track: Track, times: np.ndarray) -> Pose:
+    return LifeStage(project, schedule, track, body_of(project)).run(pose, np.asarray(times, float))
+
+
+def face_weights(
+    project: Project,
+    schedule: Schedule,
+    track: Track,
+    seconds: float,
+    pose: Pose | None = None,
+    playing: Iterable[Playing] = (),
+) -> dict[str, float]:
+    return LifeStage(project, schedule, track, body_of(project)).morphs(seconds, pose, playing)
+
+
+def gaze_of(schedule: Schedule, life: Life, body: Body, points: Mapping[str, Point]) -> Gaze:
+    return Gaze(schedule, life, body, points)
+
+
+def rig(project: Project) -> ComposerRig:
+    return rigs_of(project).composer
+
+
+def contact_rig(project: Project) -> ContactRig | None:
+    return rigs_of(project).contacts
+
+
+def weight_of(project: Project) -> Weight:
+    return rigs_of(project).weight
+
+
+def body_of(project: Project) -> Body:
+    return rigs_of(project).body
