@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from metagraph.formats.store import open_project, save_project
 from metagraph.graph import edits, manual_edits, manual_groups
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.manual import ANY, WHENS
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, PARTS, Markov, Project
 from metagraph.motion.clip import Clip
@@ -152,7 +153,7 @@ def _place(draw: Any, project: Project) -> Project:
             draw(st.sampled_from(stances)),
             draw(st.sampled_from(stances)),
         )
-    except edits.EditError:
+    except EditError:
         return project
 
 
@@ -219,7 +220,7 @@ def _move(draw: Any, project: Project) -> Project:
             draw(st.sampled_from(stances)),
             draw(st.sampled_from(stances)),
         )
-    except edits.EditError:
+    except EditError:
         return project
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from app.cli.command_output import opened, say, until_told_to_stop
-from metagraph.engines.export import ExportError
+from metagraph.engines.export_error import ExportError
 from metagraph.errors import FileError
 from metagraph.files import is_inside
 

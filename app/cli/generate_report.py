@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from metagraph.csv_text import csv_text
-from metagraph.formats.outputs import write_together
+from metagraph.formats.atomic import write_together
 from metagraph.generation import figures
 from metagraph.generation.evaluation import Judged
 from metagraph.generation.features import PARTNER, SELF

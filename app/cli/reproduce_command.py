@@ -52,7 +52,8 @@ def run(options: Namespace) -> int:
     from metagraph import __version__
     from metagraph.exhibits.exhibit import chosen
     from metagraph.exhibits.page import data_of, page, text_of
-    from metagraph.formats.outputs import claim, write_together
+    from metagraph.formats.atomic import write_together
+    from metagraph.formats.outputs import claim
 
     exhibits = chosen(options.exhibits)
     if options.list:

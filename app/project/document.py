@@ -28,7 +28,7 @@ from metagraph.formats.limits import refusal
 from metagraph.formats.locking import Lock, new_owner
 from metagraph.formats.new_file import Access, access_of
 from metagraph.formats.store import file_digest, moved
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.listing_edits import listed_otherwise
 from metagraph.graph.model import Project
 

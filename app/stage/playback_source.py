@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from metagraph.graph.edits import EditError, added_actions, place
+from metagraph.graph.edit_error import EditError
+from metagraph.graph.edits import added_actions, place
 from metagraph.graph.model import Action, Layer, Project
 from metagraph.graph.requests import AnyRequest
 from metagraph.motion.skeleton import Pose, Skeleton

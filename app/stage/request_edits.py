@@ -14,7 +14,7 @@ from app.stage.live_control import LiveControl
 from app.stage.session import Session
 from app.translation import tr, tr_error
 from metagraph.graph import performance_edits
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
 from metagraph.graph.request_text import Pasted, holds_requests, paste_requests, request_text
 from metagraph.graph.requests import AnyRequest

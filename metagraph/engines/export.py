@@ -12,6 +12,8 @@ import msgspec
 from metagraph.budgets import SOUND_FILE
 from metagraph.engines import contract as c
 from metagraph.engines.export_document import to_document, used_clips
+from metagraph.engines.export_error import ExportError
+from metagraph.engines.targets.placing import Staging
 from metagraph.errors import FileError
 from metagraph.file_names import file_stem, file_stems
 from metagraph.files import is_inside, read_file, unforeseen
@@ -36,10 +38,6 @@ Chosen = Callable[[Path], bool]
 def nothing_chosen(path: Path) -> bool:
     """Say of every file that the user did not choose it."""
     return False
-
-
-class ExportError(ValueError):
-    """The project cannot be exported; the message says what to mend first."""
 
 
 @dataclass(frozen=True)
@@ -68,8 +66,6 @@ def export(
     `character` is it, or its file. compress: pack the GLB, see `write_glb`. Raises ExportError while the
     project has errors, FileError when a file cannot be written.
     """
-    from metagraph.engines.targets.placing import Staging
-
     warnings = sound(project)
     place = Path(folder)
     with Staging(place) as staged:

@@ -19,14 +19,8 @@ from msgspec import UNSET, Meta, Struct, UnsetType
 from metagraph.budgets import TEXT_FILE
 from metagraph.errors import FileError
 from metagraph.files import read_file
-from metagraph.graph.edits import (
-    EditError,
-    add_stance,
-    added_actions,
-    move_actions,
-    place,
-    update_actions,
-)
+from metagraph.graph.edit_error import EditError
+from metagraph.graph.edits import add_stance, added_actions, move_actions, place, update_actions
 from metagraph.graph.model import Kind, Layer, Limb, Project
 from metagraph.wording import told
 

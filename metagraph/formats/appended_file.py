@@ -12,8 +12,8 @@ import sys
 from contextlib import suppress
 from pathlib import Path
 
-from metagraph.formats.atomic import replace_file, write_all
 from metagraph.formats.new_file import Access
+from metagraph.formats.replacing import replace_file, write_all
 
 Identity = tuple[int, int]  # of a file or folder: its device and number there
 

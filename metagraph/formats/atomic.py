@@ -8,16 +8,16 @@ import errno
 import os
 import re
 import time
-import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from pathlib import Path
 
 from metagraph.errors import FileError
-from metagraph.formats.locking import mark_is_gone, process_mark
-from metagraph.formats.new_file import Access, access_of, open_new
-from metagraph.formats.outputs import being_written
+from metagraph.formats.locking import mark_is_gone
+from metagraph.formats.new_file import Access
+from metagraph.formats.outputs import being_written, claim
+from metagraph.formats.replacing import replace_file, sync_folder
 
 FORSAKEN = 86_400.0  # seconds after which an unfinished file of a computer that cannot be asked is nobody's
 # Unfinished files. Those being written say by whom; the others are of before they did, or stay a moment.
@@ -52,6 +52,14 @@ def write_atomically(path: Path, content: bytes, like: Access | None = None) -> 
             later.append(path)
     except OSError as error:
         raise _unwritable(path, error) from None
+
+
+def write_together(folder: Path, files: dict[str, bytes]) -> list[Path]:
+    """Write files into a folder, or none of them where one must not be written. Raises FileError."""
+    claim(*(folder / name for name in files))
+    for name, content in files.items():
+        write_atomically(folder / name, content)
+    return [folder / name for name in files]
 
 
 def _unwritable(path: Path, error: OSError) -> FileError:
@@ -95,31 +103,6 @@ def _sync(path: Path) -> None:
         raise _unwritable(path, error) from None
 
 
-def replace_file(path: Path, content: bytes, sync: bool = True, like: Access | None = None) -> None:
-    """Put a file in the place of what is there, or leave that as it was. Raises OSError.
-
-    sync: wait until it is safely on the disk; before what is there goes. like: see `write_atomically`.
-    """
-    temporary: Path | None = path.with_name(unfinished())
-    assert temporary is not None
-    try:
-        handle = open_new(temporary, access_of(path) or like)
-        try:
-            write_all(handle, content)
-            if sync:
-                os.fsync(handle)
-        finally:
-            os.close(handle)
-        temporary.replace(path)
-        temporary = None
-    finally:
-        if temporary is not None:
-            with suppress(OSError):  # swept another time; why it was not written is to be told
-                temporary.unlink(missing_ok=True)
-    if sync:
-        sync_folder(path.parent)
-
-
 def append_line(path: Path, line: str) -> None:
     """Add a line to the end of a file, safely on the disk when it returns. A line that was cut off before it
     stays a line of its own. Raises OSError.
@@ -132,36 +115,7 @@ def append_line(path: Path, line: str) -> None:
         os.fsync(file.fileno())
 
 
-def write_all(handle: int, content: bytes) -> None:
-    """Write all of it, however little the system takes at once. Raises OSError."""
-    rest = memoryview(content)
-    while rest:
-        count = os.write(handle, rest)
-        if count <= 0:
-            raise OSError(errno.ENOSPC, "No space left on device")
-        rest = rest[count:]
-
-
-def sync_folder(folder: Path) -> None:
-    """Let the names in a folder survive a power cut, where the system can do that; the files are there
-    already.
-    """
-    if os.name == "nt":  # it has no handles of folders
-        return
-    with suppress(OSError):
-        handle = os.open(folder, os.O_RDONLY)
-        try:
-            os.fsync(handle)
-        finally:
-            os.close(handle)
-
-
 # --- what was left half-written
-
-
-def unfinished() -> str:
-    """Return a name for a file that is being written by this process."""
-    return f".saving-{process_mark()}-{uuid.uuid4().hex[:12]}"
 
 
 def sweep(folder: Path) -> list[Path]:

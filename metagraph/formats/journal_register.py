@@ -14,9 +14,9 @@ import msgspec
 
 from metagraph.errors import FileError
 from metagraph.formats.appended_file import identity_of
-from metagraph.formats.atomic import replace_file
 from metagraph.formats.fields import Data
 from metagraph.formats.new_file import PRIVATE
+from metagraph.formats.replacing import replace_file
 
 
 class KnownJournal(msgspec.Struct, frozen=True):

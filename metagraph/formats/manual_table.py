@@ -20,7 +20,7 @@ from metagraph.csv_text import csv_text, restored
 from metagraph.errors import FileError
 from metagraph.files import guarded, read_file
 from metagraph.graph import manual_groups
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.manual import ANY, WHENS, Alias, Link, Manual, State
 from metagraph.graph.manual_edits import add_link, link_refusal, machine, name_of, update_links
 from metagraph.graph.model import Layer, Project

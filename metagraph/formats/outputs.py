@@ -23,6 +23,7 @@ from metagraph.budgets import TEXT_FILE
 from metagraph.errors import FileError
 from metagraph.files import read_file
 from metagraph.formats.locking import holder, lock_path
+from metagraph.formats.replacing import replace_file
 from metagraph.user_folders import user_folder
 
 STAGED = ".exporting-"  # how folders begin in which an export is staged
@@ -130,8 +131,6 @@ class Outputs:
             return
         if any(part.startswith(STAGED) for part in whole.parts):
             return  # it is moved to its place later, where the export knows its own files
-        from metagraph.formats.atomic import replace_file
-
         with suppress(OSError):
             if stat.S_ISREG(whole.stat().st_mode):
                 self._notes.mkdir(parents=True, exist_ok=True)
@@ -272,16 +271,6 @@ def wrote(*paths: Path) -> None:
     if _now is not None:
         for path in paths:
             _now.wrote(path, whatever=True)
-
-
-def write_together(folder: Path, files: dict[str, bytes]) -> list[Path]:
-    """Write files into a folder, or none of them where one must not be written. Raises FileError."""
-    from metagraph.formats.atomic import write_atomically
-
-    claim(*(folder / name for name in files))
-    for name, content in files.items():
-        write_atomically(folder / name, content)
-    return [folder / name for name in files]
 
 
 def _beside(path: Path) -> list[Path]:

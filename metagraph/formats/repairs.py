@@ -12,7 +12,8 @@ from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.store import load_motions
 from metagraph.formats.takes import NAME, ONE_FRAME
 from metagraph.graph.clip_source import source_of, with_source
-from metagraph.graph.edits import EditError, add_clips, remove_clips
+from metagraph.graph.edit_error import EditError
+from metagraph.graph.edits import add_clips, remove_clips
 from metagraph.graph.model import ClipEntry, Project
 from metagraph.motion.adopt import SkeletonMismatchError, adopt
 from metagraph.motion.clip import Repair

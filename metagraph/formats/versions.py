@@ -13,8 +13,9 @@ from pathlib import Path
 from metagraph.budgets import TEXT_FILE
 from metagraph.errors import FileError
 from metagraph.files import read_file
-from metagraph.formats.atomic import sync_folder, unfinished, write_all, write_atomically
+from metagraph.formats.atomic import write_atomically
 from metagraph.formats.new_file import Access, access_of, open_new
+from metagraph.formats.replacing import sync_folder, unfinished, write_all
 from metagraph.formats.store import SUFFIX
 from metagraph.wording import Told, told
 

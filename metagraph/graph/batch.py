@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from metagraph.graph import edits
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Action, Project, Timing
 from metagraph.wording import told
 

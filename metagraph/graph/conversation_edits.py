@@ -28,7 +28,8 @@ from metagraph.graph.conversation import (
     Word,
     lists_of,
 )
-from metagraph.graph.edits import EditError, free_name
+from metagraph.graph.edit_error import EditError
+from metagraph.graph.edits import free_name
 from metagraph.graph.model import Project
 from metagraph.graph.timeline import without_timeline
 from metagraph.graph.vocabulary import joined, kinds_of_words, tokens

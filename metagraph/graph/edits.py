@@ -14,6 +14,7 @@ from typing import Any
 
 from metagraph.graph import ids
 from metagraph.graph.clip_source import with_source
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.face_takes import FACE_TAKE, face_joints
 from metagraph.graph.manual import without_clips
 from metagraph.graph.model import (
@@ -41,10 +42,6 @@ _LIMB_WORDS: tuple[tuple[Limb, str], ...] = (
     ("left", r"(?:lf|lt|left|l)"),
     ("right", r"(?:rt|right|r)"),
 )
-
-
-class EditError(ValueError):
-    """The edit cannot be done; the message says why."""
 
 
 def limb_of(name: str) -> Limb:

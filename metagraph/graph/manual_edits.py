@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from metagraph.graph import ids
-from metagraph.graph.edits import EditError, free_name, limb_of
+from metagraph.graph.edit_error import EditError
+from metagraph.graph.edits import free_name, limb_of
 from metagraph.graph.manual import ANY, Alias, Condition, Link, Manual, State, without
 from metagraph.graph.model import BasePose, Layer, Project
 from metagraph.wording import told

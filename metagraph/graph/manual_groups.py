@@ -11,7 +11,8 @@ from dataclasses import replace
 from typing import Any
 
 from metagraph.graph import ids
-from metagraph.graph.edits import EditError, free_name
+from metagraph.graph.edit_error import EditError
+from metagraph.graph.edits import free_name
 from metagraph.graph.manual import Alias, Link, Manual
 from metagraph.graph.manual_edits import HIGH, WIDE, machine, name_of
 from metagraph.graph.model import Layer, Project

@@ -10,7 +10,8 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
 from metagraph.graph import anatomy, ids
-from metagraph.graph.edits import EditError, free_name
+from metagraph.graph.edit_error import EditError
+from metagraph.graph.edits import free_name
 from metagraph.graph.model import Action, Limb, Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.features import pose_distance

@@ -11,7 +11,8 @@ from typing import Any
 import msgspec
 
 from metagraph.graph import ids
-from metagraph.graph.edits import EditError, free_name
+from metagraph.graph.edit_error import EditError
+from metagraph.graph.edits import free_name
 from metagraph.graph.model import Project
 from metagraph.graph.requests import LONGEST_NAME, AnyRequest, Line, Performance, Point, RequestError
 from metagraph.graph.timeline import without_timeline

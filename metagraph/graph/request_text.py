@@ -13,7 +13,7 @@ from typing import Any
 import msgspec
 
 from metagraph.graph import requests as a
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.performance_edits import asked_at, change_performance, move_requests
 from metagraph.wording import told

@@ -10,7 +10,7 @@ from typing import Any
 
 from metagraph.graph import anatomy
 from metagraph.graph.clip_source import course_of, source_of, with_source
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.manual import Manual
 from metagraph.graph.model import Action, BasePose, Project, Timing
 from metagraph.motion.clip import Clip

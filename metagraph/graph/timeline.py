@@ -13,6 +13,7 @@ from msgspec import Meta, Struct
 
 from metagraph.graph import ids
 from metagraph.graph import requests as a
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.requests import Seconds
 from metagraph.graph.words import LAYERS
 
@@ -70,8 +71,6 @@ def timeline_of(project: Project, key: str) -> Timeline:
 
 def change_timeline(project: Project, key: str, **changes: Any) -> Project:
     """Set what is noted; nothing but defaults is not kept. Raises EditError for values out of range."""
-    from metagraph.graph.edits import EditError
-
     before = timeline_of(project, key)
     if "markers" in changes:
         changes["markers"] = tuple(sorted(changes["markers"], key=lambda m: m.at))

@@ -17,7 +17,7 @@ from typing import Any
 
 from metagraph import __version__
 from metagraph.errors import FileError
-from metagraph.formats.outputs import write_together
+from metagraph.formats.atomic import write_together
 from metagraph.study.analysis import Results
 from metagraph.study.analysis_read import Data
 from metagraph.study.bids_phenotype import phenotype

@@ -12,7 +12,8 @@ from typing import Any
 
 from metagraph.formats.manual_table import filled, rows_of
 from metagraph.graph import manual_edits, manual_groups
-from metagraph.graph.edits import EditError, limb_of, remove_actions
+from metagraph.graph.edit_error import EditError
+from metagraph.graph.edits import limb_of, remove_actions
 from metagraph.graph.model import Layer, Project
 from metagraph.study.by_hand import Drawing, Way, Work, ways, works
 from metagraph.study.finding import Words

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
-from metagraph.formats.outputs import write_together
+from metagraph.formats.atomic import write_together
 from metagraph.study import plots
 from metagraph.study.analysis import ABOVE, BELOW, TITLES, Comparison, Measure, Results
 from metagraph.study.analysis_read import TOTALS

@@ -9,7 +9,7 @@ from typing import Any
 
 from metagraph.errors import error_words
 from metagraph.graph import edits
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import LAYERS, Kind, Layer, Project
 from metagraph.playback.phases import phases
 from metagraph.suggest.proposal import Place, Proposal, Proposals, Rest, plain

@@ -14,7 +14,7 @@ from statistics import median
 from typing import Any, Literal
 
 from metagraph.graph import edits
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, Layer, Project
 from metagraph.suggest.accept import Taken, accept
 from metagraph.suggest.details import timed

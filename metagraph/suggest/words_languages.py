@@ -1,5 +1,5 @@
 """The languages other than English that names are read in, each told in words of English: what a word of
-German means is what the English word it stands for means.
+German means is what the English word it stands for means. Their words are data (`words_files`).
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from itertools import permutations
 from types import MappingProxyType
 from typing import Final
 
+from metagraph.suggest.words_files import LanguageFile, listed, sources
 from metagraph.suggest.words_folded import is_run_together, plain, spellings
 
 # What stands for no word of English: nothing; what joins two stances only beside one ("a" of Spanish); and
@@ -26,33 +27,6 @@ _ENGLISH_TOO = frozenset((
 ))  # fmt: skip
 _SURE = 4  # Latin letters of a word from which on it may tell a language
 _ROOT = 4  # letters that are left where an ending goes
-
-
-@dataclass(frozen=True)
-class Source:
-    """What a module of words holds. words: lines "English = phrase, phrase". doubtful: words that say nothing
-    of the language they are in. endings: of words, blanks between. links: letters between the parts of a
-    compound.
-    """
-
-    name: str
-    words: str
-    doubtful: str = ""
-    endings: str = ""
-    links: str = ""
-    sides: str = ""  # the letters that stand for left and for right where names end
-    swaps: str = ""  # letters and what else they may be written as: simplified and traditional hanzi
-
-    @cached_property
-    def phrases(self) -> Mapping[str, str]:
-        """Phrase -> English, as people write it."""
-        out: dict[str, str] = {}
-        for line in self.words.strip().splitlines():
-            meaning, _, phrases = line.partition("=")
-            for phrase in phrases.split(","):
-                if phrase.strip():
-                    out.setdefault(" ".join(phrase.split()), " ".join(meaning.split()))
-        return MappingProxyType(out)
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,10 +64,9 @@ class Language:
         return max((len(k) for k in self.exact if is_run_together(k[0])), default=0)
 
 
-def _language(source: Source) -> Language:
+def _language(name: str, source: LanguageFile) -> Language:
     endings = tuple(sorted(set(map(plain, source.endings.split())), key=lambda e: (-len(e), e)))
-    bare = Language(source.name, {}, {}, frozenset(), endings, tuple(source.links.split()))
-    swaps = {pair[0]: pair[1] for pair in source.swaps.split()}
+    bare = Language(name, {}, {}, frozenset(), endings, tuple(source.links.split()))
     exact: dict[str, str] = {}
     turned: dict[str, str] = {}
     stemmed: dict[str, str] = {}
@@ -101,7 +74,7 @@ def _language(source: Source) -> Language:
     for phrase, meaning in source.phrases.items():
         for key in spellings(phrase) | (spellings(phrase.replace("を", "")) if "を" in phrase[1:] else set()):
             exact.setdefault(key, meaning)
-            if swaps and (other := "".join(swaps.get(c, c) for c in key)) != key:
+            if (other := "".join(source.swaps.get(c, c) for c in key)) != key:
                 exact.setdefault(other, meaning)
         parts = phrase.split()
         if (not phrase[0].isascii() and is_run_together(phrase[0])) or len(parts) > 4:
@@ -116,40 +89,16 @@ def _language(source: Source) -> Language:
                     stemmed.setdefault(text, meaning)
     for key, meaning in turned.items():
         exact.setdefault(key, meaning)
-    doubtful = frozenset(s for w in source.doubtful.split(",") if w.strip() for s in spellings(w))
+    doubtful = frozenset(s for w in listed(source.doubtful) for s in spellings(w))
     return Language(
-        source.name, exact, stemmed, doubtful | _ENGLISH_TOO, endings, bare.links, tuple(source.sides.split())
+        name, exact, stemmed, doubtful | _ENGLISH_TOO, endings, bare.links, tuple(source.sides.split())
     )
-
-
-@lru_cache(maxsize=1)
-def sources() -> tuple[Source, ...]:
-    """Return the words of every language, read when they are first asked for."""
-    from metagraph.suggest import (
-        words_chinese,
-        words_dutch,
-        words_french,
-        words_german,
-        words_italian,
-        words_japanese,
-        words_korean,
-        words_polish,
-        words_portuguese,
-        words_russian,
-        words_spanish,
-    )
-
-    modules = (
-        words_german, words_french, words_spanish, words_italian, words_portuguese, words_japanese,
-        words_chinese, words_dutch, words_polish, words_russian, words_korean,
-    )  # fmt: skip
-    return tuple(module.SOURCE for module in modules)
 
 
 @lru_cache(maxsize=1)
 def languages() -> tuple[Language, ...]:
     """Return every language, ready to look words up in."""
-    return tuple(map(_language, sources()))
+    return tuple(_language(name, source) for name, source in sources().items())
 
 
 @lru_cache(maxsize=1)
@@ -158,7 +107,7 @@ def synonyms() -> Mapping[str, str]:
     them.
     """
     out: dict[str, str] = {}
-    for source in sources():
+    for source in sources().values():
         for phrase, meaning in source.phrases.items():
             out.setdefault(phrase.lower(), meaning)
     return MappingProxyType(out)

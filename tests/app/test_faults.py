@@ -17,7 +17,7 @@ from app.shell.fault_dialog import FaultDialog, FaultTeller
 from metagraph.errors import FileError
 from metagraph.formats.locking import process_mark
 from metagraph.graph import edits
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from tests.failing_system import failing
 from tests.sittings import ended
 

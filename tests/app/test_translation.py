@@ -29,6 +29,7 @@ from metagraph.formats.imports import import_files
 from metagraph.formats.store import open_project
 from metagraph.graph import edits
 from metagraph.graph.check import check
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
 from metagraph.suggest.details import timed
 from metagraph.suggest.propose import propose
@@ -144,7 +145,7 @@ def test_what_checks_find_is_said_in_the_language_and_stays_english_for_programs
 
 def test_errors_are_said_in_the_language_as_far_as_they_know_their_templates(english: None) -> None:
     translation.choose("de")
-    with pytest.raises(edits.EditError) as caught:
+    with pytest.raises(EditError) as caught:
         edits.rename_clip(Project(), "c1", "x")
     assert tr_error(caught.value) == "dieser Clip ist nicht mehr im Projekt"
     assert str(caught.value) == "that clip is no longer in the project"
@@ -240,7 +241,7 @@ def test_what_was_said_is_known_in_english_for_logs(english: None) -> None:
     translation.choose("de")
     german = tr("Duplicate {clips}", clips=many(3, "clip"))
     assert german != "Duplicate 3 clips" == translation.in_english(german)
-    with pytest.raises(edits.EditError) as caught:
+    with pytest.raises(EditError) as caught:
         edits.rename_clip(Project(), "c1", "x")
     assert translation.in_english(tr_error(caught.value)) == "that clip is no longer in the project"
     assert translation.in_english("nobody said this") == "nobody said this"

@@ -23,8 +23,9 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from metagraph.engines.contract import FORMAT, schema
-from metagraph.engines.export import ExportError, export, schema_text
+from metagraph.engines.export import export, schema_text
 from metagraph.engines.export_document import to_document, used_clips
+from metagraph.engines.export_error import ExportError
 from metagraph.engines.export_rig import read_voices, voices_of
 from metagraph.engines.reading import read_export
 from metagraph.errors import FileError

@@ -11,7 +11,8 @@ from typing import Any
 
 import pytest
 
-from metagraph.engines.export import ExportError, export
+from metagraph.engines.export import export
+from metagraph.engines.export_error import ExportError
 from metagraph.engines.reading import read_export
 from metagraph.engines.targets import registry, web
 from metagraph.engines.vectors import check_vectors, every_case, write_vectors

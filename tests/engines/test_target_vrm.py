@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from metagraph.engines.export import ExportError
+from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets import registry
 from metagraph.engines.targets.vrm import META
 from metagraph.errors import FileError

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from metagraph.engines.engine_machine import animations, machines
-from metagraph.engines.export import ExportError
+from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets import registry
 from metagraph.engines.targets.target import Report
 from metagraph.formats.bvh import read_bvh

@@ -9,7 +9,7 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.formats import outputs as o
-from metagraph.formats.atomic import write_atomically
+from metagraph.formats.atomic import write_atomically, write_together
 from metagraph.formats.locking import Lock, new_owner
 from metagraph.formats.outputs import Outputs, writing
 
@@ -162,7 +162,7 @@ def test_pipes_and_devices_are_written_without_questions(tmp_path: Path) -> None
 def test_all_files_or_none_are_written_together(tmp_path: Path) -> None:
     (tmp_path / "b").write_bytes(b"work")
     with writing(Outputs()), pytest.raises(FileError):
-        o.write_together(tmp_path, {"a": b"1", "b": b"2"})
+        write_together(tmp_path, {"a": b"1", "b": b"2"})
     assert sorted(p.name for p in tmp_path.iterdir()) == ["b"]
 
 

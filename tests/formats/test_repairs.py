@@ -19,7 +19,7 @@ from metagraph.formats.repairs import Repaired, repairs_of, reread
 from metagraph.formats.store import open_project, save_project
 from metagraph.formats.takes import BIND_POSE, NAME, ONE_FRAME, UNIT, UP
 from metagraph.graph import edits
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip

@@ -248,7 +248,7 @@ def test_a_journal_that_cannot_be_read_and_one_kept_as_damaged_are_told(home: Pa
 
 
 def test_half_written_files_of_the_dead_are_told_and_those_of_the_living_are_not(home: Path) -> None:
-    from metagraph.formats.atomic import unfinished
+    from metagraph.formats.replacing import unfinished
 
     (home.parent / unfinished()).write_bytes(b"half")
     assert not verify_project(home).faults

@@ -12,7 +12,7 @@ from hypothesis import HealthCheck, given, settings
 
 from metagraph.graph import batch, edits
 from metagraph.graph.check import check
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
 from tests.projects import projects
 

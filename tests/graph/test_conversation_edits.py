@@ -21,7 +21,7 @@ from metagraph.graph.conversation import (
     lists_of,
     with_sides,
 )
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
 
 WORDS = (

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from metagraph.graph import edits
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import BasePose, ClipEntry, Limb, Markov, Project, Timing
 from metagraph.motion.clip import Clip
 

@@ -8,7 +8,7 @@ import pytest
 
 from metagraph.graph import edits
 from metagraph.graph import manual_edits as m
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.manual import ANY, Condition, Manual, links_expanded
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip

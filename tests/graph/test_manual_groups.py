@@ -8,7 +8,7 @@ import pytest
 
 from metagraph.graph import manual_edits as m
 from metagraph.graph import manual_groups as g
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.manual import ANY, Condition, Link, links_expanded, without
 from metagraph.graph.manual_check import check_manual
 from metagraph.graph.manual_timing import exit_moment

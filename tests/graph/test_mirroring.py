@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.gltf_writer import write_glb
 from metagraph.graph import edits
-from metagraph.graph.edits import EditError, add_clips
+from metagraph.graph.edit_error import EditError
+from metagraph.graph.edits import add_clips
 from metagraph.graph.mirroring import place_twins, twin_clips, twin_name
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip

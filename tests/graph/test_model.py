@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.graph import edits
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import KINDS, LAYERS, PARTS, REACH, Action, ClipEntry, MetaGraph, Project, Timing
 from metagraph.motion.contact_spans import ContactKey, ContactSpan
 
@@ -163,7 +164,7 @@ def test_after_any_edits_the_index_is_what_building_it_anew_gives_and_old_projec
     for step in steps:
         try:
             after = apply(project, step)
-        except edits.EditError:
+        except EditError:
             continue
         assert_derived_as_if_anew(after)
         history.append(after)

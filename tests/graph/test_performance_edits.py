@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from metagraph.graph import performance_edits
 from metagraph.graph import requests as a
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from metagraph.graph import performance_edits as edits
 from metagraph.graph import requests as a
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.request_text import holds_requests, paste_requests, request_text
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from metagraph.graph import edits
 from metagraph.graph.clip_source import course_of, source_of, with_source
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import BasePose
 from metagraph.graph.retiming import keep_hand, set_hold, set_kept, set_retime, set_speed
 from metagraph.motion.retime import Hold, Retime

@@ -9,7 +9,7 @@ from metagraph.formats.journal import changes
 from metagraph.graph import performance_edits as edits
 from metagraph.graph import requests as a
 from metagraph.graph import timeline as t
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
 
 pytestmark = pytest.mark.usefixtures("numbered_ids")

@@ -15,8 +15,9 @@ from hypothesis import strategies as st
 from metagraph.suggest.name_words import Patterns, learn, read_names
 from metagraph.suggest.words_cut import Token, tokens
 from metagraph.suggest.words_defaults import DEFAULTS
+from metagraph.suggest.words_files import LanguageFile, sources
 from metagraph.suggest.words_folded import folded, romaji, spellings
-from metagraph.suggest.words_languages import MARKS, languages, sources
+from metagraph.suggest.words_languages import MARKS, languages
 
 Row = tuple[str, str | None, str | None, str | None]
 SETS: dict[str, list[Row]] = {
@@ -292,8 +293,8 @@ def test_corrections_are_remembered_by_the_words_of_the_name() -> None:
 # --- the words
 
 
-@pytest.mark.parametrize("source", sources(), ids=lambda s: s.name)
-def test_every_word_stands_for_words_that_mean_something(source: Any) -> None:
+@pytest.mark.parametrize("source", sources().values(), ids=sources())
+def test_every_word_stands_for_words_that_mean_something(source: LanguageFile) -> None:
     known = {w for name, t in DEFAULTS.items() if name != "synonyms" for p in t for w in p.split()}
     known |= {"chest", "desk", "wall", "table", "bench", "side"}  # parts and places beside a word of posture
     for phrase, meaning in source.phrases.items():
@@ -313,10 +314,10 @@ def test_names_are_cut_where_writings_change() -> None:
     assert cut == ["座り", "pose", "02", "うなずき", "kopf", "schutteln"]
 
 
-def test_other_languages_are_loaded_when_names_are_first_read() -> None:
+def test_words_are_read_from_their_files_when_names_are_first_read() -> None:
     code = (
-        "import sys; import metagraph.suggest.name_words; "
-        "sys.exit(any(m.endswith('words_german') for m in sys.modules))"
+        "import sys; import metagraph.suggest.name_words; from metagraph.suggest import words_files; "
+        "sys.exit(words_files.sources.cache_info().currsize or words_files.english.cache_info().currsize)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False, timeout=300).returncode == 0
 

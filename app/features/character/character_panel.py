@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLabel, QToolButton, QVBo
 from app.features.character.directing import Directing
 from app.features.character.looking import Looking, mask_marks
 from app.features.character.no_mesh import NoMesh
-from app.features.character.over_view import Overlays
+from app.features.character.overlays import Overlays
 from app.features.character.panes import Panes
 from app.features.character.reference import Reference, ReferenceBar, ReferencePicture
 from app.look import icons

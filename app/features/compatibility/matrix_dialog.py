@@ -47,6 +47,7 @@ from app.stage.session import Session
 from app.translation import tr, tr_error, tr_told
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph import edits
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import KINDS, Action, Project
 
 
@@ -329,7 +330,7 @@ class MatrixDialog(QDialog):
             before = document.project
             try:
                 document.edit(tr("Place 1 clip"), placed)
-            except edits.EditError as error:
+            except EditError as error:
                 failures.append(tr_error(error))
                 return
             action = _newest(before, document.project)

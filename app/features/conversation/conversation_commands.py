@@ -17,7 +17,7 @@ from app.translation import tr, tr_error
 from metagraph.errors import FileError
 from metagraph.graph import conversation_edits
 from metagraph.graph.conversation import MOST_SPEAKERS, Conversation
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
 
 if TYPE_CHECKING:

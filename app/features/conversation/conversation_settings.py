@@ -29,7 +29,7 @@ from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.graph import conversation_edits
 from metagraph.graph.conversation import SPOKEN, Conversation, Rates, side_name
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
 from metagraph.speech.gaze_shares import together
 

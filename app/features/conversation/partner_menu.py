@@ -16,7 +16,7 @@ from app.translation import tr, tr_error
 from metagraph.formats.store import SUFFIX, relative
 from metagraph.graph.conversation import Conversation, side_name
 from metagraph.graph.conversation_edits import change_side
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 
 BODIES = (".glb", ".gltf")
 MOST = 24  # files of a kind that a menu offers; all others are chosen in the dialog

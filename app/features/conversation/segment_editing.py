@@ -18,7 +18,7 @@ from app.stage.session import Session
 from app.translation import tr, tr_error
 from metagraph.graph import conversation_edits
 from metagraph.graph.conversation import SPOKEN, Conversation, Segment, Sound
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
 
 NEW = 0.6  # seconds of a segment that is added by key

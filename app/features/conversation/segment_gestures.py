@@ -12,7 +12,7 @@ from app.project.document import Edit
 from app.translation import tr
 from app.widgets.gesture import Gesture, PressDrag, Reason
 from metagraph.graph import conversation_edits
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 
 CATCH = 3.0  # pixels the mouse must move for a press to become a drag
 

@@ -30,7 +30,7 @@ from app.translation import tr, tr_error
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph import batch
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 
 TITLES = {
     "blends": tr("Blend in and out"),

@@ -18,6 +18,7 @@ from app.stage.session import Session
 from app.translation import tr, tr_error
 from app.widgets.vocabulary import word
 from metagraph.graph import edits
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.listing_edits import shifted
 from metagraph.graph.model import KINDS, Action, Kind
 
@@ -59,7 +60,7 @@ class GraphActs(QObject):
         )
         try:
             self.document.edit(words, lambda p: perform(p, layer, drop, load))
-        except edits.EditError as error:
+        except EditError as error:
             self.refused.emit(tr_error(error))
             return
         made = tuple(a.id for a in self.document.project.actions() if a.id not in before) or load.actions
@@ -104,7 +105,7 @@ class GraphActs(QObject):
         chosen = self.session.selection.actions
         try:
             self.document.edit(tr("Move actions"), lambda p: edits.to_stance(p, chosen, stance))
-        except edits.EditError as error:
+        except EditError as error:
             self.refused.emit(tr_error(error))
 
     def end_selection_in(self, stance: str) -> None:
@@ -114,7 +115,7 @@ class GraphActs(QObject):
         """Let transitions end in another stance, in one step."""
         try:
             self.document.edit(tr("Change end stance"), lambda p: edits.set_ends(p, actions, stance))
-        except edits.EditError as error:
+        except EditError as error:
             self.refused.emit(tr_error(error))
 
     def show_clip(self) -> None:

@@ -9,6 +9,7 @@ from app.features.graph.graph_drops import Drop
 from app.features.graph.graph_layout import GraphHit
 from app.translation import tr, tr_error
 from metagraph.graph import edits
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ def repoint_at(project: Project, actions: Sequence[str], hit: GraphHit) -> Drop:
         return Drop(False, tr("already ends in *{name}*", name=stance.name), "transition", None, stance.id)
     try:
         edits.set_ends(project, actions, stance.id)
-    except edits.EditError as error:
+    except EditError as error:
         return Drop(False, tr_error(error), "transition", None, stance.id)
     words = (
         tr("let go and this transition ends in *{name}*", name=stance.name)

@@ -28,7 +28,7 @@ from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, Slider
 from app.widgets.request_menu import MODE_WORDS, MOOD_WORDS
 from metagraph.graph import performance_edits
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.life import DIALS, MANNER_DIALS, MANNERS, Dial, Life, manner, with_life
 from metagraph.graph.model import MODES, Mode, Project
 from metagraph.graph.words import FEELINGS

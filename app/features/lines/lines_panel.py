@@ -40,7 +40,7 @@ from app.translation import tr, tr_error, tr_told
 from app.widgets.flow import Flow
 from app.widgets.making import make_widget
 from metagraph.graph import performance_edits
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Line, Say
 from metagraph.playback.line_lengths import spoken_seconds

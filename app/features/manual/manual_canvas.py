@@ -40,7 +40,7 @@ from app.translation import tr, tr_error
 from app.widgets.gesture import Hand
 from app.widgets.mime import load_of
 from metagraph.graph import manual_edits
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.manual import ANY
 from metagraph.graph.model import Layer, Project
 

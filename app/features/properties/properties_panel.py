@@ -16,7 +16,7 @@ from app.features.properties.page_form import ANY
 from app.project.document import Document
 from app.stage.session import Session
 from app.translation import tr_error
-from metagraph.graph import edits
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Action, Project
 
 if TYPE_CHECKING:
@@ -168,7 +168,7 @@ class PropertiesPanel(QScrollArea):
     def _try(self, text: str, function: Callable[[Project], Project], merge: str | None = None) -> bool:
         try:
             self.document.edit(text, function, merge)
-        except edits.EditError as error:
+        except EditError as error:
             self.document.failed.emit(tr_error(error))
             self.show_selection()
             return False

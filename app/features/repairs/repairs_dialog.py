@@ -26,7 +26,7 @@ from app.widgets.making import make_widget
 from app.widgets.tree_items import items_below, top_items
 from metagraph.formats.repairs import Repaired, Reread, repairs_of, reread
 from metagraph.formats.takes import BIND_POSE, LONE_FRAME, NAME, ONE_FRAME, UNIT, UP
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 
 PLACE = Qt.ItemDataRole.UserRole
 TITLES = {

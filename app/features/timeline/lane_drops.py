@@ -29,6 +29,7 @@ from app.widgets.lane_geometry import lane_at
 from app.widgets.lane_paint import badge
 from app.widgets.mime import load_of
 from metagraph.graph import edits
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import LAYERS, Action, Layer, Project
 from metagraph.graph.requests import Play
 
@@ -165,7 +166,7 @@ class LaneDrops(QObject):
         requests = self.lanes.performance.requests
         try:
             project, asked = asked_for(self.document.project, drop, load)
-        except edits.EditError as error:
+        except EditError as error:
             self.importing.told.emit(tr_error(error))
             return
         if project is not self.document.project:

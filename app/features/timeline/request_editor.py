@@ -25,7 +25,7 @@ from app.translation import tr, tr_error, tr_noop
 from app.widgets.lane_geometry import outcome
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
 from app.widgets.request_menu import MODE_WORDS, MOOD_WORDS, mood_words, request_words
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import LAYERS, LIMBS, MODES, Project
 from metagraph.graph.timeline import lane_of
 from metagraph.graph.words import FEELINGS

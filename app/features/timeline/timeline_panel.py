@@ -38,7 +38,7 @@ from app.widgets.sentence import Sentence
 from metagraph.graph import edits, performance_edits
 from metagraph.graph.conversation import side_name
 from metagraph.graph.conversation_edits import change_conversation
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.requests import Performance as KeptPerformance
 from metagraph.graph.words import FEELINGS

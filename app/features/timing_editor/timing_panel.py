@@ -32,7 +32,7 @@ from app.widgets.more_button import MoreButton
 from app.widgets.one_stop import OneStop
 from app.widgets.restyling import set_sheet
 from app.widgets.sentence import Sentence
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.motion.retime import SPEEDS
 from metagraph.playback.speed_curves import joints_offered
 

@@ -17,7 +17,8 @@ from metagraph.formats.gltf_writer import write_glb
 from metagraph.formats.imports import Loaded
 from metagraph.formats.store import relative
 from metagraph.formats.takes import REPAIRS
-from metagraph.graph.edits import EditError, add_clips
+from metagraph.graph.edit_error import EditError
+from metagraph.graph.edits import add_clips
 from metagraph.graph.mirroring import TwinClip, mirrored_clips, place_twins, twin_clips
 from metagraph.graph.model import Project
 from metagraph.motion.adopt import adopt

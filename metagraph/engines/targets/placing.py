@@ -20,7 +20,7 @@ from pathlib import Path
 import msgspec
 
 from metagraph.budgets import TEXT_FILE
-from metagraph.engines.export import ExportError
+from metagraph.engines.export_error import ExportError
 from metagraph.errors import FileError
 from metagraph.files import is_file, is_inside, read_file
 from metagraph.formats.atomic import FORSAKEN, write_atomically

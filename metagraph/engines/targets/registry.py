@@ -8,7 +8,8 @@ from functools import cache
 from importlib import import_module
 from pathlib import Path
 
-from metagraph.engines.export import Chosen, ExportError, nothing_chosen, sound, stem_of
+from metagraph.engines.export import Chosen, nothing_chosen, sound, stem_of
+from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets.placing import Staging
 from metagraph.engines.targets.placing import place as move
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Report, Tell

@@ -15,7 +15,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from metagraph.engines.export import ExportError
+from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
 from metagraph.errors import FileError

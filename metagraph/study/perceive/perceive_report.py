@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from metagraph.formats.outputs import write_together
+from metagraph.formats.atomic import write_together
 from metagraph.study.figure_files import standalone
 from metagraph.study.perceive.perceive_analysis import Compared, PerceiveResults
 from metagraph.study.perceive.perceive_figures import figures

@@ -17,7 +17,7 @@ from metagraph.formats.journal_records import read_records
 from metagraph.formats.recovery import read_journal, recover
 from metagraph.formats.store import SUFFIX, read_project, save_project
 from metagraph.graph import edits
-from metagraph.graph.edits import EditError
+from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
 
 
