@@ -4,6 +4,7 @@ and out to their stances.
 
 from __future__ import annotations
 
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,7 @@ Array = NDArray[Any]
 Sample = tuple[Array, Array]
 
 _RESTING, _ENTERING, _FULL, _LEAVING = range(4)  # a cue's phases
+Met = tuple[int, bool, int, int]  # the place of the rest, whether it fades in, that of the cue, its phase
 
 
 class LayersStage:
@@ -50,32 +52,46 @@ class _LayerStage:
     def __init__(self, plan: LayerPlan, project: Project, ground: Ground, reach: Reach) -> None:
         self._plan, self._project, self._ground, self._reach = plan, project, ground, reach
         self._scales = anatomy.scales(project)[:, reach.joints]
+        self._lately: tuple[float, float, Met] = (
+            inf,
+            inf,
+            (0, False, 0, 0),
+        )  # from when until when, what is met
 
     def offsets(self, times: Array) -> Sample:
         """Return the layer's offsets at `times [N]`."""
-        plan = self._plan
-        current = np.maximum(plan.fade_starts.searchsorted(times, "right") - 1, 0)
-        fading = (plan.fade_ends[current] > times) & (current > 0)
-        playing = plan.starts.searchsorted(times, "right") - 1
-        phase = np.zeros(len(times), np.int64)
-        if plan.cues:
-            on = (playing >= 0) & (times < plan.ends[playing])
-            entering, leaving = times < plan.full_from[playing], times >= plan.full_to[playing]
-            phase = np.where(on, np.where(entering, _ENTERING, np.where(leaving, _LEAVING, _FULL)), _RESTING)
-        # Times that meet the same rest, cue and phase are worked out together.
-        group = ((current * 2 + fading) * (len(plan.cues) + 1) + playing + 1) * 4 + phase
-        firsts = [0] if (group == group[0]).all() else np.unique(group, return_index=True)[1].tolist()
-        if len(firsts) == 1:
-            return self._together(times, int(current[0]), bool(fading[0]), int(playing[0]), int(phase[0]))
+        if len(times) == 1:
+            return self._together(times, *self._meets(float(times[0])))
+        alike: dict[Met, list[int]] = {}  # what is met -> places among the times
+        for n, time in enumerate(times.tolist()):
+            alike.setdefault(self._meets(time), []).append(n)
+        if len(alike) == 1:
+            return self._together(times, *next(iter(alike)))
         count = len(self._reach.joints)
         out = np.empty((len(times), count, 4), np.float32), np.empty((len(times), count, 3), np.float32)
-        for k in firsts:
-            here = np.flatnonzero(group == group[k])
-            found = self._together(
-                times[here], int(current[k]), bool(fading[k]), int(playing[k]), int(phase[k])
-            )
-            out[0][here], out[1][here] = found
+        for met, here in alike.items():
+            out[0][here], out[1][here] = self._together(times[here], *met)
         return out
+
+    def _meets(self, time: float) -> Met:
+        """Return what a time meets."""
+        begin, until, met = self._lately
+        if begin <= time < until:
+            return met
+        plan = self._plan
+        current = max(int(plan.fade_starts.searchsorted(time, "right")) - 1, 0)
+        playing = int(plan.starts.searchsorted(time, "right")) - 1
+        edges = [plan.fade_ends[current], *plan.fade_starts[current + 1 : current + 2]]
+        edges += plan.starts[playing + 1 : playing + 2].tolist()
+        phase = _RESTING
+        if playing >= 0:
+            ends = plan.full_from[playing], plan.full_to[playing], plan.ends[playing]
+            edges += ends
+            if time < ends[2]:
+                phase = _ENTERING if time < ends[0] else _LEAVING if time >= ends[1] else _FULL
+        met = current, current > 0 and bool(plan.fade_ends[current] > time), playing, phase
+        self._lately = time, min((edge for edge in edges if edge > time), default=inf), met
+        return met
 
     def _together(self, times: Array, current: int, fading: bool, playing: int, phase: int) -> Sample:
         """Return offsets at `times [N]` that all meet the same rest and the same phase of the same cue."""
