@@ -98,14 +98,13 @@ class EditingFeature(Feature):
         self.shell.show("history")
 
 
-Does = EditingFeature
 COMMANDS = (
     Command(
         "history",
         MENU,
         "history",
         tr_noop("&History"),
-        Does.show_history,
+        EditingFeature.show_history,
         tip=tr_noop("What was done, step by step; a click goes back to it"),
     ),
     Command(
@@ -113,22 +112,29 @@ COMMANDS = (
         MENU,
         "selection",
         tr_noop("&Remove"),
-        Does.remove,
+        EditingFeature.remove,
         (Standard.Delete,),
-        enabled=Does.can_remove,
+        enabled=EditingFeature.can_remove,
         study=True,
     ),
     Command(
-        "rename", MENU, "selection", tr_noop("Re&name…"), Does.rename, ("F2",), study=True, menus=("action",)
+        "rename",
+        MENU,
+        "selection",
+        tr_noop("Re&name…"),
+        EditingFeature.rename,
+        ("F2",),
+        study=True,
+        menus=("action",),
     ),
     Command(
         "copy",
         MENU,
         "properties",
         tr_noop("&Copy properties"),
-        Does.copy,
+        EditingFeature.copy,
         (Standard.Copy,),
-        enabled=Does.can_copy,
+        enabled=EditingFeature.can_copy,
         study=True,
         menus=("action",),
     ),
@@ -137,10 +143,10 @@ COMMANDS = (
         MENU,
         "properties",
         tr_noop("&Paste properties…"),
-        Does.paste,
+        EditingFeature.paste,
         (Standard.Paste,),
         tip=tr_noop("Give the selected actions what another one has"),
-        enabled=Does.can_paste,
+        enabled=EditingFeature.can_paste,
         study=True,
         menus=("action",),
     ),
@@ -149,7 +155,7 @@ COMMANDS = (
         MENU,
         "properties",
         tr_noop("Replace c&lip…"),
-        Does.replace_clip,
+        EditingFeature.replace_clip,
         tip=tr_noop("Another clip, the same settings"),
         enabled=actions_selected,
         when="meta",
@@ -157,6 +163,12 @@ COMMANDS = (
         menus=("action",),
     ),
     Command(
-        "select_all", MENU, "find", tr_noop("Select &all"), Does.select_all, (Standard.SelectAll,), study=True
+        "select_all",
+        MENU,
+        "find",
+        tr_noop("Select &all"),
+        EditingFeature.select_all,
+        (Standard.SelectAll,),
+        study=True,
     ),
 )

@@ -112,14 +112,13 @@ def _layer_text(feature: GraphFeature, layer: Layer) -> str:
     return tr("{layer} layer", layer=titled(layer))
 
 
-Does = GraphFeature
 COMMANDS = (
     Command(
         "new_stance",
         MENU,
         "author",
         tr_noop("&New stance…"),
-        Does.new_stance,
+        GraphFeature.new_stance,
         ("Ctrl+Shift+N",),
         when="meta",
         study=True,
@@ -130,7 +129,7 @@ COMMANDS = (
             MENU,
             "label",
             partial(_label_text, number=number, kind=kind),
-            partial(Does.label, kind=kind),
+            partial(GraphFeature.label, kind=kind),
             (str(number),),
             enabled=any_of(clips_selected, actions_selected),
             when="meta",
@@ -144,7 +143,7 @@ COMMANDS = (
         MENU,
         "label",
         tr_noop("List earlier in its node"),
-        Does.list_earlier,
+        GraphFeature.list_earlier,
         ("Alt+Up",),
         tip=tr_noop("Move the selected actions a place earlier in their node; what plays does not change"),
         enabled=actions_selected,
@@ -156,7 +155,7 @@ COMMANDS = (
         MENU,
         "label",
         tr_noop("List later in its node"),
-        Does.list_later,
+        GraphFeature.list_later,
         ("Alt+Down",),
         tip=tr_noop("Move the selected actions a place later in their node; what plays does not change"),
         enabled=actions_selected,
@@ -169,9 +168,9 @@ COMMANDS = (
             MENU,
             "layers",
             partial(_layer_text, layer=layer),
-            partial(Does.show_layer, layer=layer),
+            partial(GraphFeature.show_layer, layer=layer),
             (LAYER_KEYS[layer],),
-            checked=partial(Does.shows_layer, layer=layer),
+            checked=partial(GraphFeature.shows_layer, layer=layer),
             study=True,
         )
         for layer in LAYERS
@@ -181,11 +180,11 @@ COMMANDS = (
             f"stance_{number}",
             MENU,
             "stances",
-            partial(Does.stance_name, number=number),
-            partial(Does.choose_stance, number=number),
+            partial(GraphFeature.stance_name, number=number),
+            partial(GraphFeature.choose_stance, number=number),
             (f"Ctrl+{number}",),
-            enabled=partial(Does.has_stance, number=number),
-            visible=partial(Does.has_stance, number=number),
+            enabled=partial(GraphFeature.has_stance, number=number),
+            visible=partial(GraphFeature.has_stance, number=number),
             when="meta",
             study=True,
         )

@@ -98,15 +98,16 @@ class LibraryFeature(Feature):
         return self.panel.rows.listing.group == group
 
 
-Does = LibraryFeature
 COMMANDS = (
-    Command("find", "&Edit", "find", tr_noop("&Find clip"), Does.find, (Standard.Find,), study=True),
+    Command(
+        "find", "&Edit", "find", tr_noop("&Find clip"), LibraryFeature.find, (Standard.Find,), study=True
+    ),
     Command(
         "favourite",
         MENU,
         "favourites",
         tr_noop("&Favourite"),
-        Does.favour,
+        LibraryFeature.favour,
         ("Ctrl+Shift+6",),
         tip=tr_noop("Put a heart on the selected clips, or take it away"),
         enabled=clips_selected,
@@ -116,7 +117,7 @@ COMMANDS = (
         MENU,
         "files",
         tr_noop("&Duplicate"),
-        Does.duplicate,
+        LibraryFeature.duplicate,
         ("Ctrl+Shift+D",),
         tip=tr_noop("List the selected clips once more, each to be timed for itself"),
         enabled=clips_selected,
@@ -126,7 +127,7 @@ COMMANDS = (
         MENU,
         "files",
         tr_noop("&Reveal in folder"),
-        Does.reveal,
+        LibraryFeature.reveal,
         tip=tr_noop("Show the file of the first selected clip where it lies"),
         enabled=clips_selected,
     ),
@@ -136,8 +137,8 @@ COMMANDS = (
             MENU,
             "groups",
             GROUP_BY[key],
-            partial(Does.group_by, group=key),
-            checked=partial(Does.groups_by, group=key),
+            partial(LibraryFeature.group_by, group=key),
+            checked=partial(LibraryFeature.groups_by, group=key),
         )
         for key in GROUPS
     ),

@@ -100,14 +100,13 @@ def stance_in_view(feature: TakingFeature) -> bool:
     return bool(feature.session.place.stance())
 
 
-Does = TakingFeature
 COMMANDS = (
     Command(
         "import_project",
         "&File",
         "import",
         tr_noop("Import &project…"),
-        Does.ask_project,
+        TakingFeature.ask_project,
         tip=tr_noop("Stances and actions of another project, with their clips"),
     ),
     Command(
@@ -115,7 +114,7 @@ COMMANDS = (
         "&Edit",
         "properties",
         tr_noop("Copy to an&other project"),
-        Does.copy,
+        TakingFeature.copy,
         ("Ctrl+Alt+C",),
         tip=tr_noop("The selected actions, or else the stance in view with all that is placed on it"),
         enabled=any_of(actions_selected, stance_in_view),
@@ -127,7 +126,7 @@ COMMANDS = (
         "&Edit",
         "properties",
         tr_noop("Paste &from another project…"),
-        Does.paste,
+        TakingFeature.paste,
         ("Ctrl+Alt+V",),
         tip=tr_noop("What was copied in another window, with its clips"),
         when="meta",
