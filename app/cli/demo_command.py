@@ -7,7 +7,7 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from app.cli.command_output import opened, performance_arguments, staged
-from app.cli.render_command import draw_to, figure_of, sound_of
+from app.cli.render_command import Shot, draw_to, figure_of, sound_of
 from app.stage.playback_source import Shown
 from metagraph.formats.store import SUFFIX
 from metagraph.graph.expand import size
@@ -48,10 +48,11 @@ def run(options: Namespace) -> int:
         print(f"planned {made.end:g} s: {cues} actions on {len(LAYERS)} layers")
     shown = Shown(project, made, made.end)
     seen = [(figure_of(project, folder), shown)]
-    draw_to(sheet, seen, made.end, (960, 540), 30, 24, "dark")
+    draw_to(sheet, seen, Shot(made.end, (960, 540), 30, 24, "dark"))
     if not quiet:
         print(f"contact sheet  {sheet.resolve()}", flush=True)
-    draw_to(video, seen, made.end, (640, 360), 30, 0, "dark", sound_of(shown, folder, made.end))
+    shot = Shot(made.end, (640, 360), 30, 0, "dark")
+    draw_to(video, seen, shot, sound_of(shown, folder, made.end))
     if not quiet:
         print(f"video          {video.resolve()}", flush=True)
     exported = write_export(project, out, character=folder / project.character if project.character else None)

@@ -13,6 +13,7 @@ from app.cli.outputs import ProjectOutput
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.generation.stored import Model, ModelCard
+    from metagraph.generation.take_files import Speech
     from metagraph.motion.clip import Clip
 
 OUT = (".bvh", ".glb")
@@ -94,51 +95,73 @@ def heard_of(options: Namespace, tracks: int) -> Heard:
     """Return what is heard. Raises FileError, ValueError."""
     import numpy as np
 
-    from app.cli.language_options import speaking_of
-    from metagraph.errors import FileError
-    from metagraph.formats.conversations import SOUNDS
-    from metagraph.formats.transcript_words import SUFFIXES as TRANSCRIPTS
-    from metagraph.generation.features import RATE, conversation_activity, frames_of
-    from metagraph.generation.loudness import loudness
-    from metagraph.generation.sampler import heard_activity
-    from metagraph.generation.take_files import Speech, TakeFiles, read_speech
+    from metagraph.generation.features import frames_of
 
     paths: list[Path] = options.speech or []
     if len(paths) > 2 or len(options.words or ()) > 2:
         raise ValueError("a conversation of two has one or two sounds, and at most two files with words")
-    speech: Speech
-    if not paths:
-        from metagraph.generation.planted_speech import converse
-
-        spoken = converse(min(options.minutes, 3.0) * 60, options.seed, 1, "planted speech")
-        samples = spoken.samples[::-1] if options.side == 2 else spoken.samples
-        speech, name = Speech(samples, (0.0, 0.0), spoken.conversation), "planted speech"
-    else:
-        for path in paths:
-            if not path.is_file():
-                raise FileError(path, "there is no such sound", remedy="Check where the speech is.")
-            if path.suffix.lower() not in SOUNDS:
-                raise FileError(path, "is no sound", remedy=f"Sounds are {', '.join(SOUNDS)} files.")
-        words = options.words
-        if words is None:
-            near = [
-                p
-                for p in sorted(paths[0].parent.glob("*"))
-                if p.suffix.lower() in {s.lower() for s in TRANSCRIPTS} and p.stem == paths[0].stem
-            ]
-            words = near[:1]
-        sounds = (
-            tuple(reversed(paths)) if options.side == 2 and len(paths) == 2 and not words else tuple(paths)
-        )
-        files = TakeFiles(
-            paths[0], sounds, tuple(words), options.side - 1 if len(sounds) == 1 or words else 0
-        )
-        speech, name = read_speech(files, speaking_of(options)), paths[0].stem
+    speech, name = _read_speech(options, paths) if paths else _planted_speech(options)
     for note in speech.notes:
         print(f"note: {note}", file=sys.stderr)
     samples = np.atleast_2d(speech.samples)
+    _check(speech, samples, str(paths[0]) if paths else name)
+    activity = _activity(options, speech, samples, frames_of(samples.shape[1]))
+    if options.activity is not None:
+        activity = as_role(activity, options.activity)
+    if tracks == 2 and len(samples) == 1:
+        samples = np.concatenate([samples, np.zeros_like(samples)])
+    return Heard(samples, activity, name)
+
+
+def _planted_speech(options: Namespace) -> tuple[Speech, str]:
+    """Return speech that was made up, with its name."""
+    from metagraph.generation.planted_speech import converse
+    from metagraph.generation.take_files import Speech
+
+    name = "planted speech"
+    spoken = converse(min(options.minutes, 3.0) * 60, options.seed, 1, name)
+    samples = spoken.samples[::-1] if options.side == 2 else spoken.samples
+    return Speech(samples, (0.0, 0.0), spoken.conversation), name
+
+
+def _read_speech(options: Namespace, paths: list[Path]) -> tuple[Speech, str]:
+    """Return the speech of files, with its name. Raises FileError."""
+    from app.cli.language_options import speaking_of
+    from metagraph.errors import FileError
+    from metagraph.formats.conversations import SOUNDS
+    from metagraph.generation.take_files import TakeFiles, read_speech
+
+    for path in paths:
+        if not path.is_file():
+            raise FileError(path, "there is no such sound", remedy="Check where the speech is.")
+        if path.suffix.lower() not in SOUNDS:
+            raise FileError(path, "is no sound", remedy=f"Sounds are {', '.join(SOUNDS)} files.")
+    words = _words_beside(paths[0]) if options.words is None else options.words
+    swapped = options.side == 2 and len(paths) == 2 and not words
+    sounds = tuple(reversed(paths)) if swapped else tuple(paths)
+    side = options.side - 1 if len(sounds) == 1 or words else 0
+    files = TakeFiles(paths[0], sounds, tuple(words), side)
+    return read_speech(files, speaking_of(options)), paths[0].stem
+
+
+def _words_beside(sound: Path) -> list[Path]:
+    """Return the transcript that has a sound's name, if there is one."""
+    from metagraph.formats.transcript_words import SUFFIXES
+
+    known = {s.lower() for s in SUFFIXES}
+    beside = sorted(sound.parent.glob("*"))
+    return [p for p in beside if p.suffix.lower() in known and p.stem == sound.stem][:1]
+
+
+def _check(speech: Speech, samples: Any, place: str) -> None:
+    """Raise FileError where a sound cannot be used; tell where it is cut off."""
+    import numpy as np
+
+    from metagraph.errors import FileError
+    from metagraph.generation.features import RATE
+    from metagraph.generation.loudness import loudness
+
     seconds = samples.shape[1] / RATE
-    place = str(paths[0]) if paths else name
     if not np.isfinite(samples).all():
         raise FileError(place, "holds a sample that is not a number", remedy="Export it anew.")
     if seconds < LEAST:
@@ -148,20 +171,20 @@ def heard_of(options: Namespace, tracks: int) -> Heard:
     if max(speech.clipped, default=0.0) > 1e-4:
         share = 100 * max(speech.clipped)
         print(f"note: {share:.2g} % of the sound is cut off at full scale: record it softer", file=sys.stderr)
-    count = frames_of(samples.shape[1])
-    if speech.conversation is not None:
-        activity = conversation_activity(speech.conversation, options.side - 1, count)
-        if not speech.conversation.sides[options.side - 1].segments:
-            print(f"note: side {options.side} says nothing: it listens", file=sys.stderr)
-    else:
-        activity = heard_activity(samples)
+
+
+def _activity(options: Namespace, speech: Speech, samples: Any, frames: int) -> Any:
+    """Return who speaks when: `[T, 4]`, of the words where there are any, else of the sound."""
+    from metagraph.generation.features import conversation_activity
+    from metagraph.generation.sampler import heard_activity
+
+    if speech.conversation is None:
         if len(samples) == 1:
             print("note: one voice only: it is its own, and the partner never speaks", file=sys.stderr)
-    if options.activity is not None:
-        activity = as_role(activity, options.activity)
-    if tracks == 2 and len(samples) == 1:
-        samples = np.concatenate([samples, np.zeros_like(samples)])
-    return Heard(samples, activity, name)
+        return heard_activity(samples)
+    if not speech.conversation.sides[options.side - 1].segments:
+        print(f"note: side {options.side} says nothing: it listens", file=sys.stderr)
+    return conversation_activity(speech.conversation, options.side - 1, frames)
 
 
 def as_role(activity: Any, role: str) -> Any:

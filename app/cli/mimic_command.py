@@ -184,14 +184,14 @@ def _write(
 
         write_atomically(out, msgspec.json.format(msgspec.json.encode(kept), indent=1))
         return out
-    from app.cli.render_command import MOTION, bake_to, draw_to, figure_of
+    from app.cli.render_command import MOTION, Shot, bake_to, draw_to, figure_of
     from app.stage.playback_source import Shown
 
     folder, shown = options.project.resolve().parent, Shown(project, made, kept.length)
     if out.suffix in MOTION:
         bake_to(out, shown, kept.length, 30.0, folder)
     else:
-        draw_to(out, [(figure_of(project, folder), shown)], kept.length, size, 30.0, 24, "dark")
+        draw_to(out, [(figure_of(project, folder), shown)], Shot(kept.length, size, 30.0, 24, "dark"))
     return out
 
 

@@ -20,6 +20,9 @@ if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.graph.conversation import Segment
     from metagraph.motion.clip import Clip
     from metagraph.synthesis.graph import MotionGraph, Threshold
+    from metagraph.synthesis.path_quality import PathQuality
+    from metagraph.synthesis.prosody_costs import SpokenTake
+    from metagraph.synthesis.relaxing import Answer
     from metagraph.synthesis.states import States
 
 OUT = (".bvh", ".glb")
@@ -31,7 +34,9 @@ def arguments(parser: ArgumentParser) -> None:
     actions = parser.add_subparsers(dest="action", metavar="action", required=True)
 
     def action(name: str, words: str, run: Any, speech: bool | None = False) -> ArgumentParser:
-        out = actions.add_parser(name, help=words, description=words[:1].upper() + words[1:] + ".")
+        out: ArgumentParser = actions.add_parser(
+            name, help=words, description=words[:1].upper() + words[1:] + "."
+        )
         out.add_argument(
             "takes",
             type=Path,
@@ -44,49 +49,52 @@ def arguments(parser: ArgumentParser) -> None:
         out.set_defaults(run=run)
         return out
 
-    def graph(out: ArgumentParser, k: bool = True) -> None:
-        if k:
-            out.add_argument(
-                "--k",
-                type=int,
-                default=3,
-                help="a transition may cost what frames so many apart differ by (default: 3)",
-            )
-        out.add_argument(
-            "--level",
-            type=float,
-            default=0.95,
-            help="share of those it may be as dear as, 0 to 1 (default: 0.95)",
-        )
-        out.add_argument(
-            "--keys",
-            type=float,
-            default=0.2225,
-            help="share of frames transitions may leave and enter (default: 0.2225)",
-        )
-        out.add_argument(
-            "--most", type=int, help="keep only so many of the cheapest transitions of a frame (default: all)"
-        )
-
     built = action("build", "build the graph of takes, and tell what is in it", build, speech=None)
-    graph(built)
+    _graph_options(built)
     built.add_argument(
         "--keep",
         type=Path,
         metavar="FOLDER",
         help="keep what is finished there, to take up again after an end",
     )
-    graph(
-        action(
-            "table",
-            "compare graphs for k = 2, 3 and 4, before and after their loose parts are cut away",
-            table,
-            speech=None,
-        ),
-        k=False,
+    words = "compare graphs for k = 2, 3 and 4, before and after their loose parts are cut away"
+    _graph_options(action("table", words, table, speech=None), k=False)
+    _synthesize_options(action("synthesize", "make motion that goes with speech", synthesize, speech=True))
+    words = "hold out each take, search the others for its speech, and count what is found"
+    _evaluate_options(action("evaluate", words, evaluate, speech=True))
+    words = "count how often hands and head move with what is said"
+    action("co-occurrence", words, co_occurrence, speech=True)
+
+
+def _graph_options(out: ArgumentParser, k: bool = True) -> None:
+    """Add what the transitions of a graph may cost, and where they are."""
+    if k:
+        out.add_argument(
+            "--k",
+            type=int,
+            default=3,
+            help="a transition may cost what frames so many apart differ by (default: 3)",
+        )
+    out.add_argument(
+        "--level",
+        type=float,
+        default=0.95,
+        help="share of those it may be as dear as, 0 to 1 (default: 0.95)",
     )
-    made = action("synthesize", "make motion that goes with speech", synthesize, speech=True)
-    graph(made)
+    out.add_argument(
+        "--keys",
+        type=float,
+        default=0.2225,
+        help="share of frames transitions may leave and enter (default: 0.2225)",
+    )
+    out.add_argument(
+        "--most", type=int, help="keep only so many of the cheapest transitions of a frame (default: all)"
+    )
+
+
+def _synthesize_options(made: ArgumentParser) -> None:
+    """Add for which speech motion is made, and how it is searched."""
+    _graph_options(made)
     wanted = made.add_mutually_exclusive_group(required=True)
     wanted.add_argument(
         "--take",
@@ -133,13 +141,11 @@ def arguments(parser: ArgumentParser) -> None:
     made.add_argument("--seed", type=int, default=1, help="another path of the greedy search (default: 1)")
     made.add_argument("-o", "--out", type=Path, required=True, help="a .bvh or .glb file")
     soft_options(made)
-    tried = action(
-        "evaluate",
-        "hold out each take, search the others for its speech, and count what is found",
-        evaluate,
-        speech=True,
-    )
-    graph(tried)
+
+
+def _evaluate_options(tried: ArgumentParser) -> None:
+    """Add which searches are tried, and how."""
+    _graph_options(tried)
     tried.add_argument("-o", "--out", type=Path, help="write each case to a .csv file")
     tried.add_argument(
         "--search", action="append", choices=("exact", "greedy"), help="only this search (default: both)"
@@ -152,9 +158,6 @@ def arguments(parser: ArgumentParser) -> None:
     )
     tried.add_argument("--seed", type=int, default=1, help="other paths of the greedy search (default: 1)")
     soft_options(tried)
-    action(
-        "co-occurrence", "count how often hands and head move with what is said", co_occurrence, speech=True
-    )
 
 
 def run(options: Namespace) -> int:
@@ -334,7 +337,6 @@ def table(options: Namespace) -> int:
 def synthesize(options: Namespace) -> int:
     """Write motion that goes with speech."""
     from app.cli.command_output import say
-    from metagraph.errors import FileError
     from metagraph.graph.conversation import SOUNDS
     from metagraph.synthesis.assemble import assemble
     from metagraph.synthesis.constraints import changes, heard
@@ -343,7 +345,7 @@ def synthesize(options: Namespace) -> int:
     from metagraph.synthesis.path_quality import quality
     from metagraph.synthesis.relaxing import Constraints, answer
     from metagraph.synthesis.ruled_search import FREE, JUMP_RULES
-    from metagraph.synthesis.search_evaluation import WINDOW, cut
+    from metagraph.synthesis.search_evaluation import cut
     from metagraph.synthesis.soft_constraints import SoftMaterial, soft_report
     from metagraph.synthesis.states import key_states
 
@@ -356,39 +358,14 @@ def synthesize(options: Namespace) -> int:
     clips, spoken, names = paired(options)
     if options.again is not None:
         return _again(options, clips, [one.segments for one in spoken])
-    if options.take is not None:
-        number = (
-            names.index(options.take)
-            if options.take in names
-            else int(options.take) - 1
-            if options.take.isdecimal()
-            else -1
-        )
-        if not 0 <= number < len(names):
-            raise ValueError(
-                f"there is no take '{options.take}'; there are {', '.join(names[:10])}, or say 1 to "
-                f"{len(names)}"
-            )
-        new = spoken.pop(number)
-        clips.pop(number)
-        names.pop(number)
+    held_out = _take_number(options.take, names) if options.take is not None else None
+    if held_out is None:
+        new = _speech_of_file(options, needs_sound=bool(wish.loudness))
     else:
-        sound, transcript = (
-            beside(options, what).get(options.new.stem) for what in ("sounds", "transcripts")
-        )
-        if wish.loudness and sound is None:
-            raise ValueError(f"no sound for {options.new.name}: --sounds has none that is called so")
-        new = read_spoken(options.new, options.side, sound, transcript)
+        new = spoken.pop(held_out)
+        clips.pop(held_out)
+    seconds = _seconds(options, new)
     speech = [one.segments for one in spoken]
-    end = max((s.end for s in new.segments), default=0.0)
-    if options.start < 0 or (options.start >= end and options.seconds is None):
-        place = options.new or Path(options.take)
-        raise FileError(
-            place, f"its speech lasts from 0 to {end:.1f} s", "", "Let --start lie within, or give --seconds."
-        )
-    seconds = min(WINDOW, end - options.start) if options.seconds is None else options.seconds
-    if not 0 < seconds <= 3600:
-        raise ValueError("--seconds is more than 0 and at most 3600")
     states = _states(clips)
     keys = key_states(states, options.keys, changes(states, speech))
     graph = build_graph(states, threshold(states, options.k, options.level), keys, options.most)
@@ -425,6 +402,58 @@ def synthesize(options: Namespace) -> int:
         "out": str(options.out),
         "seconds": seconds,
         "frames": clip.frames,
+        **_path_facts(found, states, looks),
+    }
+    if wish.asks:
+        data["beside"] = told.data()
+    say(
+        options,
+        f"{options.out}: {seconds:.1f} s with {len(path.jumps)} transitions, cost {path.cost:.3g}, of "
+        f"{data['takes']} takes; {looks.words()}" + (f"\n{told.told()}" if told.told() else ""),
+        data,
+    )
+    return 0
+
+
+def _take_number(take: str, names: list[str]) -> int:
+    """Return the place of a take among all, by name or number from 1. Raises ValueError."""
+    place = names.index(take) if take in names else int(take) - 1 if take.isdecimal() else -1
+    if not 0 <= place < len(names):
+        raise ValueError(
+            f"there is no take '{take}'; there are {', '.join(names[:10])}, or say 1 to {len(names)}"
+        )
+    return place
+
+
+def _speech_of_file(options: Namespace, needs_sound: bool) -> SpokenTake:
+    """Return the speech of the file that was named as new. Raises ValueError."""
+    sound, transcript = (beside(options, what).get(options.new.stem) for what in ("sounds", "transcripts"))
+    if needs_sound and sound is None:
+        raise ValueError(f"no sound for {options.new.name}: --sounds has none that is called so")
+    return read_spoken(options.new, options.side, sound, transcript)
+
+
+def _seconds(options: Namespace, new: SpokenTake) -> float:
+    """Return how long the motion is to be. Raises FileError, ValueError."""
+    from metagraph.errors import FileError
+    from metagraph.synthesis.search_evaluation import WINDOW
+
+    end = max((s.end for s in new.segments), default=0.0)
+    if options.start < 0 or (options.start >= end and options.seconds is None):
+        place = options.new or Path(options.take)
+        raise FileError(
+            place, f"its speech lasts from 0 to {end:.1f} s", "", "Let --start lie within, or give --seconds."
+        )
+    seconds: float = min(WINDOW, end - options.start) if options.seconds is None else options.seconds
+    if not 0 < seconds <= 3600:
+        raise ValueError("--seconds is more than 0 and at most 3600")
+    return seconds
+
+
+def _path_facts(found: Answer, states: States, looks: PathQuality) -> dict[str, Any]:
+    """Return what there is to tell a program about the path that was found."""
+    path = found.path
+    return {
         "transitions": len(path.jumps),
         "cost": path.cost,
         "price": path.price,
@@ -437,15 +466,6 @@ def synthesize(options: Namespace) -> int:
         "rest_of_takes": looks.source,
         "stands_still": looks.stands_still,
     }
-    if wish.asks:
-        data["beside"] = told.data()
-    say(
-        options,
-        f"{options.out}: {seconds:.1f} s with {len(path.jumps)} transitions, cost {path.cost:.3g}, of "
-        f"{data['takes']} takes; {looks.words()}" + (f"\n{told.told()}" if told.told() else ""),
-        data,
-    )
-    return 0
 
 
 def _write(path: Path, clip: Clip) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from argparse import ArgumentParser, BooleanOptionalAction, Namespace
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -235,24 +236,31 @@ def run(options: Namespace) -> int:
         seen = [(figure_of(one.project, one.folder or folder), one) for one in shown.everyone]
         heard = options.out.suffix == ".mp4"
         sound = sound_of(shown, folder, options.seconds, options.start) if heard else None
-        draw_to(
-            options.out,
-            seen,
-            options.seconds,
-            size,
-            options.fps,
-            options.frames,
-            look_of(options.theme, options.light, options.background),
-            sound,
-            options.progress,
-            options.start,
-            _direction(project, options, shown, folder, seen),
-        )
+        look = look_of(options.theme, options.light, options.background)
+        direction = _direction(project, options, shown, folder, seen)
+        shot = Shot(options.seconds, size, options.fps, options.frames, look, options.start, direction)
+        draw_to(options.out, seen, shot, sound, options.progress)
     say(options, f"{options.out}", {"written": str(options.out)})
     return 0
 
 
 Direction = tuple["tuple[Cut, ...]", "tuple[Caption, ...]"]  # where the camera cuts to, what is to be read
+
+
+@dataclass(frozen=True)
+class Shot:
+    """How a performance is filmed: for how many seconds, in how many pixels, at how many frames a second of a
+    video or with how many pictures of a contact sheet. start: the second it begins at. direction: its cuts
+    and captions.
+    """
+
+    seconds: float
+    size: tuple[int, int]
+    fps: float
+    frames: int
+    look: Theme | str
+    start: float = 0.0
+    direction: Direction = ((), ())
 
 
 def _direction(
@@ -327,38 +335,31 @@ def sound_of(shown: Shown, folder: Path, seconds: float, start: float = 0.0) -> 
 def draw_to(
     out: Path,
     seen: Sequence[Seen],
-    seconds: float,
-    size: tuple[int, int],
-    fps: float,
-    frames: int,
-    look: Theme | str,
+    shot: Shot,
     sound: tuple[np.ndarray, int] | None = None,
     progress: bool = False,
-    start: float = 0.0,
-    direction: Direction = ((), ()),
 ) -> None:
-    """Write a contact sheet (.png) or a video (.mp4), with its sound, from a second on. direction: its cuts
-    and captions.
-    """
+    """Write a contact sheet (.png) or a video (.mp4), with its sound."""
+    width, height = shot.size
     out.parent.mkdir(parents=True, exist_ok=True)
     if out.suffix == ".mp4":
         from preview.video import write_video
 
-        times = start + np.arange(max(1, round(seconds * fps))) / fps
+        times = shot.start + np.arange(max(1, round(shot.seconds * shot.fps))) / shot.fps
 
         def told(count: int) -> None:
             if progress:
                 print(f"{count}/{len(times)}", file=sys.stderr, flush=True)
 
-        into = np.empty((size[1], size[0], 4), np.uint8)
-        drawn = directed(seen, times, size, look, direction, into)
-        write_video(out, drawn, fps, size, told, sound=sound)
+        into = np.empty((height, width, 4), np.uint8)
+        drawn = directed(seen, times, shot.size, shot.look, shot.direction, into)
+        write_video(out, drawn, shot.fps, shot.size, told, sound=sound)
     elif out.suffix == ".png":
         from preview.sheet import contact_sheet, write_png
 
-        times = start + np.linspace(0, seconds, max(2, frames))
-        small = (max(16, size[0] * 2 * min(len(seen), 2) // 9), max(16, size[1] * 5 // 9))
-        images = list(directed(seen, times, small, look, direction))
+        times = shot.start + np.linspace(0, shot.seconds, max(2, shot.frames))
+        small = (max(16, width * 2 * min(len(seen), 2) // 9), max(16, height * 5 // 9))
+        images = list(directed(seen, times, small, shot.look, shot.direction))
         labels = [
             f"{t:.2f} s  {', '.join(filter(None, (_doing(shown, t) for _, shown in seen)))}".rstrip()
             for t in times

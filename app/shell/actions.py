@@ -19,7 +19,7 @@ from app.translation import tr, tr_noop
 from app.widgets.soon import Soon
 
 Standard = QKeySequence.StandardKey
-Words = str | Callable[[], str]
+Words = str | Callable[..., str]
 
 # The menus with their groups, in order; a line is drawn between groups. A group that is not named here comes
 # last in its menu.
@@ -45,24 +45,25 @@ class Command:
     enabled, checked: asked whenever something changed. visible: whether it is in its menu. text may be asked
     for, too. when: the mode in which it can be used. study: whether it is offered to who works on a study's
     task; "labels": where the study allows proposals. menus: the context menus it is in, "action" or "clip" or
-    another's. fill: fills a submenu that is shown instead.
+    another's. fill: fills a submenu that is shown instead. In a table (`app/shell/command_table.py`) all
+    functions take the feature first.
     """
 
     id: str
     menu: str
     group: str
     text: Words
-    run: Callable[[], object] = lambda: None
+    run: Callable[..., object] = lambda *_: None
     keys: tuple[str | QKeySequence.StandardKey, ...] = ()
     tip: str = ""
     icon: str = ""
-    enabled: Callable[[], bool] | None = None
-    checked: Callable[[], bool] | None = None
-    visible: Callable[[], bool] | None = None
+    enabled: Callable[..., bool] | None = None
+    checked: Callable[..., bool] | None = None
+    visible: Callable[..., bool] | None = None
     when: Literal["any", "meta", "manual"] = "any"
     study: Literal[False, True, "labels"] = False
     menus: tuple[str, ...] = ()
-    fill: Callable[[QMenu], object] | None = None
+    fill: Callable[..., object] | None = None
 
     @property
     def words(self) -> str:

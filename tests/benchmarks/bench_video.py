@@ -15,7 +15,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from app.cli.render_command import draw_to, figure_of  # noqa: E402
+from app.cli.render_command import Shot, draw_to, figure_of  # noqa: E402
 from app.project.files import SAMPLE  # noqa: E402
 from app.project.opening import open_whole  # noqa: E402
 from app.stage.playback_source import Shown  # noqa: E402
@@ -32,7 +32,7 @@ def main(seconds: float = 10.0, rounds: int = 3) -> None:
     with tempfile.TemporaryDirectory() as folder:
         for _ in range(rounds):
             wall, busy = time.perf_counter(), time.process_time()
-            draw_to(Path(folder) / "video.mp4", seen, seconds, SIZE, RATE, 0, "dark")
+            draw_to(Path(folder) / "video.mp4", seen, Shot(seconds, SIZE, RATE, 0, "dark"))
             walls.append(time.perf_counter() - wall)
             used.append(time.process_time() - busy)
     print(

@@ -65,6 +65,28 @@ class PreviewPanel(QWidget):
         self.composed = Scene()  # what was drawn last
         self._last: tuple[Figure, np.ndarray, np.ndarray] | None = None
         self._marks: dict[int, tuple[float, float, float]] = {}  # of joints, as drawn last
+        self._make_view(choose, may_choose)
+        self.overlays = Overlays(self)
+        self.looking = Looking(self)
+        self.directing = Directing(self)
+        self.frames = 0
+        self.view.painted.connect(self._painted)
+        self._lay_out()
+        self._clock = QElapsedTimer()
+        self._clock.start()
+        self._timer = QTimer(self)
+        self._timer.setTimerType(Qt.TimerType.PreciseTimer)
+        self._timer.timeout.connect(self._tick)
+        self._follow()
+        self._restyle()
+        self._show_state()
+        self._run_or_rest()
+        self.overlays.begin()
+
+    # --- building
+
+    def _make_view(self, choose: Callable[[], object], may_choose: Callable[[], bool]) -> None:
+        """Make the view and what lies over it."""
         self.view = make_view(self._scene, self)
         self.view.frame_wanted.connect(self.frame_all)
         self.view.setToolTip(MOUSE)
@@ -79,14 +101,11 @@ class PreviewPanel(QWidget):
         self.no_mesh = NoMesh(self.view, choose, may_choose)
         self.mesh_button: QToolButton | None = None  # who makes the panel gives it
         self.watch_button = MoreButton(
-            session.look, tr("What is shown"), tr("What is shown, and how"), self.view, "eye"
+            self.session.look, tr("What is shown"), tr("What is shown, and how"), self.view, "eye"
         )
         self.watch_button.setProperty("over", True)
-        self.overlays = Overlays(self)
-        self.looking = Looking(self)
-        self.directing = Directing(self)
-        self.frames = 0
-        self.view.painted.connect(self._painted)
+
+    def _lay_out(self) -> None:
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(0)
@@ -111,11 +130,10 @@ class PreviewPanel(QWidget):
         layout.addLayout(self._row)
         self._lines = self._captions()
         layout.addLayout(self._lines)
-        self._clock = QElapsedTimer()
-        self._clock.start()
-        self._timer = QTimer(self)
-        self._timer.setTimerType(Qt.TimerType.PreciseTimer)
-        self._timer.timeout.connect(self._tick)
+
+    def _follow(self) -> None:
+        """Draw again, and show anew, what changes."""
+        session, performance = self.session, self.performance
         session.transport.moved.connect(lambda _: self.view.update())
         session.transport.playing_changed.connect(self._show_state)
         session.transport.playing_changed.connect(self._run_or_rest)
@@ -127,13 +145,7 @@ class PreviewPanel(QWidget):
         session.onion.changed.connect(self.view.update)
         performance.changed.connect(self.view.update)
         performance.document.changed.connect(self._edited)
-        figures.changed.connect(self.view.update)
-        self._restyle()
-        self._show_state()
-        self._run_or_rest()
-        self.overlays.begin()
-
-    # --- building
+        self.figures.changed.connect(self.view.update)
 
     def _transport(self) -> QHBoxLayout:
         row = QHBoxLayout()

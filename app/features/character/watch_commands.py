@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,12 +12,12 @@ from PySide6.QtWidgets import QFileDialog, QMenu
 
 from app.project.jobs import Job
 from app.shell.actions import Command
+from app.shell.command_table import Feature
 from app.shell.context import Shell
-from app.stage.watch import MOST_GHOSTS, SPACINGS, Watch
-from app.translation import tr, tr_error
+from app.stage.watch import MOST_GHOSTS, SPACINGS, Watch, Watched
+from app.translation import tr, tr_error, tr_noop
 
 if TYPE_CHECKING:
-    from app.features.character.character_panel import PreviewPanel
     from app.features.character.reference import Reference
 
 SHOWN = (
@@ -30,137 +30,204 @@ SHOWN = (
 )
 GHOSTS = 2  # before and after, where onion skin is turned on by its key
 AHEAD = 120.0  # seconds that are searched for a slide
+VIEW = "&View"
 PART = 240  # samples between two looks at whether to stop
 
 
-def watch_commands(shell: Shell, preview: Callable[[], PreviewPanel]) -> tuple[Command, ...]:
-    """Return the commands of the menu View."""
-    watch, view = shell.stage.session.watch, "&View"
+class WatchFeature(Feature):
+    """Does the commands of this module."""
 
-    def onion() -> None:
-        on = watch.now.before or watch.now.after
-        watch.set(before=0 if on else GHOSTS, after=0 if on else GHOSTS)
+    def __init__(self, shell: Shell) -> None:
+        super().__init__(shell)
+        self.watch = self.session.watch
 
-    return (
-        Command(
-            "feet",
-            view,
-            "watch",
-            tr("Marks of the fee&t"),
-            lambda: watch.set(feet=not watch.now.feet),
-            ("Shift+G",),
-            checked=lambda: watch.now.feet,
-            tip=tr("Which foot is held (square), steps (diamond), is lifted (circle), and slides (triangle)"),
-            study=True,
+    @property
+    def reference(self) -> Reference:
+        found: Reference = self.shell.panel("character").reference
+        return found
+
+    @property
+    def now(self) -> Watched:
+        return self.watch.now
+
+    def toggle_feet(self) -> None:
+        self.watch.set(feet=not self.now.feet)
+
+    def marks_feet(self) -> bool:
+        return self.now.feet
+
+    def toggle_hands(self) -> None:
+        self.watch.set(hands=not self.now.hands)
+
+    def marks_hands(self) -> bool:
+        return self.now.hands
+
+    def go_to_next_slide(self) -> None:
+        next_slide(self.shell)
+
+    def toggle_stance(self) -> None:
+        self.watch.set(stance=not self.now.stance)
+
+    def shows_stance(self) -> bool:
+        return self.now.stance
+
+    def toggle_onion_skin(self) -> None:
+        ghosts = 0 if self.shows_onion_skin() else GHOSTS
+        self.watch.set(before=ghosts, after=ghosts)
+
+    def shows_onion_skin(self) -> bool:
+        return bool(self.now.before or self.now.after)
+
+    def toggle_four_views(self) -> None:
+        self.watch.set(panes=1 if self.shows_four_views() else 4)
+
+    def shows_four_views(self) -> bool:
+        return self.now.panes == 4
+
+    def toggle_two_views(self) -> None:
+        self.watch.set(panes=1 if self.shows_two_views() else 2)
+
+    def shows_two_views(self) -> bool:
+        return self.now.panes == 2
+
+    def choose_reference(self) -> None:
+        choose_reference(self.shell, self.reference)
+
+    def close_reference(self) -> None:
+        self.reference.close()
+
+    def has_reference(self) -> bool:
+        return self.reference.path is not None
+
+    def fill_lights(self, menu: QMenu) -> None:
+        fill_choice(self.shell, menu, "light")
+
+    def fill_backgrounds(self, menu: QMenu) -> None:
+        fill_choice(self.shell, menu, "background")
+
+    def use_next_light(self) -> None:
+        next_light(self.watch)
+
+    def fill_onion_skin(self, menu: QMenu) -> None:
+        fill_onion(self.shell, menu)
+
+
+WATCH_COMMANDS = (
+    Command(
+        "feet",
+        VIEW,
+        "watch",
+        tr_noop("Marks of the fee&t"),
+        WatchFeature.toggle_feet,
+        ("Shift+G",),
+        checked=WatchFeature.marks_feet,
+        tip=tr_noop(
+            "Which foot is held (square), steps (diamond), is lifted (circle), and slides (triangle)"
         ),
-        Command(
-            "hands_touch",
-            view,
-            "watch",
-            tr("&Contacts of the hands"),
-            lambda: watch.set(hands=not watch.now.hands),
-            ("Shift+J",),
-            checked=lambda: watch.now.hands,
-            tip=tr("Where hands are kept: there (square), on the way (diamond), not reached (triangle)"),
-            study=True,
-        ),
-        Command(
-            "next_slide",
-            view,
-            "watch",
-            tr("Next foot that sl&ides"),
-            lambda: next_slide(shell),
-            ("Ctrl+Shift+G",),
-            tip=tr("Go to where a foot that stands slides next"),
-            study=True,
-        ),
-        Command(
-            "stance_ghost",
-            view,
-            "watch",
-            tr("Ghost of the &stance"),
-            lambda: watch.set(stance=not watch.now.stance),
-            ("Shift+B",),
-            checked=lambda: watch.now.stance,
-            tip=tr("How the character would stand without what it plays"),
-            study=True,
-        ),
-        Command(
-            "onion",
-            view,
-            "watch",
-            tr("&Onion skin"),
-            onion,
-            ("Shift+O",),
-            checked=lambda: bool(watch.now.before or watch.now.after),
-            tip=tr("Ghosts of moments before now, dark, and after it, light"),
-            study=True,
-        ),
-        Command(
-            "four_views",
-            view,
-            "watch",
-            tr("Four &views"),
-            lambda: watch.set(panes=1 if watch.now.panes == 4 else 4),
-            ("Ctrl+Alt+Q",),
-            checked=lambda: watch.now.panes == 4,
-            tip=tr("As it was, and three sides beside it, at one time"),
-            study=True,
-        ),
-        Command(
-            "two_views",
-            view,
-            "watch",
-            tr("T&wo views"),
-            lambda: watch.set(panes=1 if watch.now.panes == 2 else 2),
-            ("Ctrl+Alt+W",),
-            checked=lambda: watch.now.panes == 2,
-            tip=tr("As it was, and one side beside it, at one time"),
-            study=True,
-        ),
-        Command(
-            "reference",
-            view,
-            "watch",
-            tr("Reference vi&deo…"),
-            lambda: choose_reference(shell, preview().reference),
-            ("Ctrl+Alt+R",),
-            tip=tr("A video or a picture to compare with, beside the character or behind it"),
-        ),
-        Command(
-            "no_reference",
-            view,
-            "watch",
-            tr("Close the reference video"),
-            lambda: preview().reference.close(),
-            enabled=lambda: preview().reference.path is not None,
-        ),
-        Command("light", view, "watch", tr("Li&ght"), fill=lambda m: fill_choice(shell, m, "light")),
-        Command(
-            "background",
-            view,
-            "watch",
-            tr("Back&ground"),
-            fill=lambda m: fill_choice(shell, m, "background"),
-        ),
-        Command(
-            "next_light",
-            view,
-            "watch",
-            tr("Ne&xt light"),
-            lambda: next_light(watch),
-            ("Shift+L",),
-            tip=tr("Studio, day, evening, rim, flat"),
-            study=True,
-        ),
-        Command(
-            "onion_skin",
-            view,
-            "watch",
-            tr("Onion skin: ghosts and spac&ing"),
-            fill=lambda m: fill_onion(shell, m),
-        ),
-    )
+        study=True,
+    ),
+    Command(
+        "hands_touch",
+        VIEW,
+        "watch",
+        tr_noop("&Contacts of the hands"),
+        WatchFeature.toggle_hands,
+        ("Shift+J",),
+        checked=WatchFeature.marks_hands,
+        tip=tr_noop("Where hands are kept: there (square), on the way (diamond), not reached (triangle)"),
+        study=True,
+    ),
+    Command(
+        "next_slide",
+        VIEW,
+        "watch",
+        tr_noop("Next foot that sl&ides"),
+        WatchFeature.go_to_next_slide,
+        ("Ctrl+Shift+G",),
+        tip=tr_noop("Go to where a foot that stands slides next"),
+        study=True,
+    ),
+    Command(
+        "stance_ghost",
+        VIEW,
+        "watch",
+        tr_noop("Ghost of the &stance"),
+        WatchFeature.toggle_stance,
+        ("Shift+B",),
+        checked=WatchFeature.shows_stance,
+        tip=tr_noop("How the character would stand without what it plays"),
+        study=True,
+    ),
+    Command(
+        "onion",
+        VIEW,
+        "watch",
+        tr_noop("&Onion skin"),
+        WatchFeature.toggle_onion_skin,
+        ("Shift+O",),
+        checked=WatchFeature.shows_onion_skin,
+        tip=tr_noop("Ghosts of moments before now, dark, and after it, light"),
+        study=True,
+    ),
+    Command(
+        "four_views",
+        VIEW,
+        "watch",
+        tr_noop("Four &views"),
+        WatchFeature.toggle_four_views,
+        ("Ctrl+Alt+Q",),
+        checked=WatchFeature.shows_four_views,
+        tip=tr_noop("As it was, and three sides beside it, at one time"),
+        study=True,
+    ),
+    Command(
+        "two_views",
+        VIEW,
+        "watch",
+        tr_noop("T&wo views"),
+        WatchFeature.toggle_two_views,
+        ("Ctrl+Alt+W",),
+        checked=WatchFeature.shows_two_views,
+        tip=tr_noop("As it was, and one side beside it, at one time"),
+        study=True,
+    ),
+    Command(
+        "reference",
+        VIEW,
+        "watch",
+        tr_noop("Reference vi&deo…"),
+        WatchFeature.choose_reference,
+        ("Ctrl+Alt+R",),
+        tip=tr_noop("A video or a picture to compare with, beside the character or behind it"),
+    ),
+    Command(
+        "no_reference",
+        VIEW,
+        "watch",
+        tr_noop("Close the reference video"),
+        WatchFeature.close_reference,
+        enabled=WatchFeature.has_reference,
+    ),
+    Command("light", VIEW, "watch", tr_noop("Li&ght"), fill=WatchFeature.fill_lights),
+    Command("background", VIEW, "watch", tr_noop("Back&ground"), fill=WatchFeature.fill_backgrounds),
+    Command(
+        "next_light",
+        VIEW,
+        "watch",
+        tr_noop("Ne&xt light"),
+        WatchFeature.use_next_light,
+        ("Shift+L",),
+        tip=tr_noop("Studio, day, evening, rim, flat"),
+        study=True,
+    ),
+    Command(
+        "onion_skin",
+        VIEW,
+        "watch",
+        tr_noop("Onion skin: ghosts and spac&ing"),
+        fill=WatchFeature.fill_onion_skin,
+    ),
+)
 
 
 def choose_reference(shell: Shell, reference: Reference) -> None:

@@ -83,6 +83,22 @@ class MatrixDialog(QDialog):
             self.which.addItem(text, key)
         self.which.activated.connect(self._narrow)
         self.model = MatrixModel(self)
+        self._make_table()
+        self._make_words()
+        close = QPushButton(tr("Close"), self)
+        close.clicked.connect(self.close)
+        self.go.setAutoDefault(False)
+        close.setAutoDefault(False)
+        self._lay_out(close)
+        for signal in (session.place.layer_changed, compatibility.changed):
+            signal.connect(self.refresh)
+        compatibility.compared.connect(self._compared)
+        document.changed.connect(self._follow)
+        session.look.changed.connect(self.table.viewport().update)
+        self.refresh()
+        self._show_current()
+
+    def _make_table(self) -> None:
         self.table = QTableView(self)
         self.table.setTabKeyNavigation(False)  # Tab leaves it, arrows go about in it
         self.table.setModel(self.model)
@@ -92,7 +108,7 @@ class MatrixDialog(QDialog):
         header.setSortIndicatorShown(True)
         header.setSortIndicator(USES, Qt.SortOrder.AscendingOrder)
         header.sortIndicatorChanged.connect(self._sort)
-        self.table.setItemDelegate(Marks(session, self))
+        self.table.setItemDelegate(Marks(self.session, self))
         self.table.setItemDelegateForColumn(CLIP, QStyledItemDelegate(self.table))
         self.table.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
         self.table.setShowGrid(False)
@@ -110,6 +126,9 @@ class MatrixDialog(QDialog):
         self.table.doubleClicked.connect(lambda _: self.place())
         self.table.activated.connect(self._play)
         self.table.selectionModel().currentChanged.connect(lambda *_: self._show_current())
+
+    def _make_words(self) -> None:
+        """Make what is said of a place in the table, and what can be done there."""
         self.words = QLabel(self, wordWrap=True)
         self.words.setMinimumHeight(56)
         self.words.setAlignment(Qt.AlignmentFlag.AlignTop)
@@ -122,18 +141,6 @@ class MatrixDialog(QDialog):
         self.go = QPushButton(self)
         self.go.clicked.connect(self.place)
         strengthen(self.go)
-        close = QPushButton(tr("Close"), self)
-        close.clicked.connect(self.close)
-        self.go.setAutoDefault(False)
-        close.setAutoDefault(False)
-        self._lay_out(close)
-        for signal in (session.place.layer_changed, compatibility.changed):
-            signal.connect(self.refresh)
-        compatibility.compared.connect(self._compared)
-        document.changed.connect(self._follow)
-        session.look.changed.connect(self.table.viewport().update)
-        self.refresh()
-        self._show_current()
 
     def _lay_out(self, close: QPushButton) -> None:
         box = QVBoxLayout(self)

@@ -52,59 +52,8 @@ class SidesDialog(SettingDialog):
         grid.setHorizontalSpacing(10)
         grid.setVerticalSpacing(8)
         grid.setColumnStretch(1, 1)
-        for side, of in enumerate(self.conversation.sides):
-            top, ordinal = ROWS * side, ORDINALS[side]
-            grid.addWidget(
-                caption(tr("{ordinal} speaker", ordinal=ordinal.capitalize()), inside), top, 0, 1, 3
-            )
-            name, sound, channel, mover, body = (
-                QLineEdit(of.name, inside),
-                QLineEdit(of.audio or "", inside),
-                ComboBox(inside),
-                QLineEdit(of.project or "", inside),
-                QLineEdit(of.character or "", inside),
-            )
-            mover.setToolTip(tr("The project whose graph and character move this one"))
-            body.setToolTip(
-                tr("The GLB this one is drawn with; any whose joints have the names of the skeleton's")
-            )
-            mover.setClearButtonEnabled(True)
-            body.setClearButtonEnabled(True)
-            for row, (words, widget, empty) in enumerate(
-                (
-                    (tr("Name"), name, tr("Speaker {number}", number=side + 1)),
-                    (tr("Sound"), sound, tr("No sound")),
-                    (tr("Channel"), channel, ""),
-                    (tr("Moved by"), mover, tr("This project")),
-                    (tr("Character"), body, tr("That project's")),
-                ),
-                top + 1,
-            ):
-                widget.setAccessibleName(tr("{what} of the {ordinal} speaker", what=words, ordinal=ordinal))
-                grid.addWidget(QLabel(words, inside), row, 0)
-                grid.addWidget(widget, row, 1)
-                if isinstance(widget, QLineEdit):
-                    widget.setPlaceholderText(empty)
-            for row, tip, choose in (
-                (top + 2, tr("Choose a sound file"), self.choose),
-                (top + 4, tr("Choose a project"), self.choose_project),
-                (top + 5, tr("Choose a character"), self.choose_character),
-            ):
-                button = make_widget(QToolButton, inside, text=tr("Choose…"), toolTip=tip)
-                button.clicked.connect(lambda _=False, side=side, choose=choose: choose(side))
-                grid.addWidget(button, row, 2)
-            grid.addWidget(QLabel(tr("Stands"), inside), top + 6, 0)
-            grid.addLayout(self._place_row(inside, side), top + 6, 1)
-            grid.setRowMinimumHeight(top + 7, 6)
-            self.names.append(name)
-            self.sounds.append(sound)
-            self.channels.append(channel)
-            self.movers.append(mover)
-            self.bodies.append(body)
-            self._show_channels(side, of.channel)
-            sound.editingFinished.connect(
-                lambda side=side: self._show_channels(side, self.channels[side].currentData())
-            )
+        for side in range(count):
+            self._add_side(grid, inside, side)
         layout.addWidget(inside if count == 2 else Tall(inside, 520, self), 1)
         between = tr("the two") if count == 2 else tr("neighbours in the circle")
         self.distance = DoubleSpinBox(
@@ -122,6 +71,59 @@ class SidesDialog(SettingDialog):
         row_of.addWidget(self.distance)
         row_of.addStretch(1)
         layout.addLayout(row_of)
+
+    def _add_side(self, grid: QGridLayout, inside: QWidget, side: int) -> None:
+        """Add the fields of one who talks."""
+        of, top, ordinal = self.conversation.sides[side], ROWS * side, ORDINALS[side]
+        grid.addWidget(caption(tr("{ordinal} speaker", ordinal=ordinal.capitalize()), inside), top, 0, 1, 3)
+        name, sound, channel, mover, body = (
+            QLineEdit(of.name, inside),
+            QLineEdit(of.audio or "", inside),
+            ComboBox(inside),
+            QLineEdit(of.project or "", inside),
+            QLineEdit(of.character or "", inside),
+        )
+        mover.setToolTip(tr("The project whose graph and character move this one"))
+        body.setToolTip(
+            tr("The GLB this one is drawn with; any whose joints have the names of the skeleton's")
+        )
+        mover.setClearButtonEnabled(True)
+        body.setClearButtonEnabled(True)
+        for row, (words, widget, empty) in enumerate(
+            (
+                (tr("Name"), name, tr("Speaker {number}", number=side + 1)),
+                (tr("Sound"), sound, tr("No sound")),
+                (tr("Channel"), channel, ""),
+                (tr("Moved by"), mover, tr("This project")),
+                (tr("Character"), body, tr("That project's")),
+            ),
+            top + 1,
+        ):
+            widget.setAccessibleName(tr("{what} of the {ordinal} speaker", what=words, ordinal=ordinal))
+            grid.addWidget(QLabel(words, inside), row, 0)
+            grid.addWidget(widget, row, 1)
+            if isinstance(widget, QLineEdit):
+                widget.setPlaceholderText(empty)
+        for row, tip, choose in (
+            (top + 2, tr("Choose a sound file"), self.choose),
+            (top + 4, tr("Choose a project"), self.choose_project),
+            (top + 5, tr("Choose a character"), self.choose_character),
+        ):
+            button = make_widget(QToolButton, inside, text=tr("Choose…"), toolTip=tip)
+            button.clicked.connect(lambda _=False, side=side, choose=choose: choose(side))
+            grid.addWidget(button, row, 2)
+        grid.addWidget(QLabel(tr("Stands"), inside), top + 6, 0)
+        grid.addLayout(self._place_row(inside, side), top + 6, 1)
+        grid.setRowMinimumHeight(top + 7, 6)
+        self.names.append(name)
+        self.sounds.append(sound)
+        self.channels.append(channel)
+        self.movers.append(mover)
+        self.bodies.append(body)
+        self._show_channels(side, of.channel)
+        sound.editingFinished.connect(
+            lambda side=side: self._show_channels(side, self.channels[side].currentData())
+        )
 
     def _place_row(self, parent: QWidget, side: int) -> QHBoxLayout:
         """A place of one's own: to the right, and towards the viewer."""

@@ -137,25 +137,30 @@ def _without_name(words: str, name: str) -> str:
 # --- motion
 
 
+@dataclass(frozen=True)
+class Speaker:
+    """Who is moved: a side of one of a project's conversations, which lies in a folder."""
+
+    project: Project
+    conversation: str
+    side: int
+    folder: Path
+
+
 def side_motion(
-    model: Model,
-    named: str,
-    project: Project,
-    ident: str,
-    side: int,
-    folder: Path,
-    chance: Chance,
-    progress: Progress,
-    cancelled: Cancelled,
+    model: Model, named: str, speaker: Speaker, chance: Chance, progress: Progress, cancelled: Cancelled
 ) -> tuple[Loaded, tuple[str, ...]]:
     """Make the motion of one side of a conversation and keep it as a file; return what `add_clips` takes, and
     what there is to know. Raises what `performing.side_clip` raises.
     """
     from metagraph.generation.performing import side_clip
 
-    talk = project.conversations[ident]
+    project, side, folder = speaker.project, speaker.side, speaker.folder
+    talk = project.conversations[speaker.conversation]
     name = tr("{talk} {side} by {model}", talk=talk.name, side=talk.sides[side].name or side + 1, model=named)
-    clip, notes = side_clip(model, project, ident, side, folder, chance, name, progress, cancelled)
+    clip, notes = side_clip(
+        model, project, speaker.conversation, side, folder, chance, name, progress, cancelled
+    )
     if cancelled():
         raise CancelledError
     taken = {e.name for e in project.clips.values()}

@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 
 from app.features.generation.generation_jobs import (
     UNCUT,
+    Speaker,
     about,
     cut_pieces,
     first_stance,
@@ -309,9 +310,8 @@ class UsePage(Page):
         def work(job: Job) -> Any:
             from metagraph.generation.stored import read_model
 
-            return side_motion(
-                read_model(path), named, project, ident, side, folder, chance, job.tell, lambda: job.cancelled
-            )
+            speaker = Speaker(project, ident, side, folder)
+            return side_motion(read_model(path), named, speaker, chance, job.tell, lambda: job.cancelled)
 
         def done(made: Any) -> None:
             loaded, notes = made

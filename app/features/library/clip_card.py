@@ -5,6 +5,7 @@ put on it.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 from PySide6.QtCore import QRect, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QPen
@@ -18,6 +19,17 @@ from app.look.shortening import fitted, fitting
 from app.look.theme import KIND_MARKS, Theme
 from app.translation import tr
 from metagraph.graph.model import ClipEntry, Kind
+
+
+@dataclass(frozen=True)
+class ClipInk:
+    """What all clips of a list are drawn with. side: pixels of a picture."""
+
+    facts: ClipFacts
+    pictures: ClipPictures
+    names: ClipNames
+    side: int
+    look: Theme
 
 
 def kinds_of(facts: ClipFacts, entry: ClipEntry) -> list[Kind]:
@@ -61,24 +73,15 @@ def draw_picture(
 
 
 def draw_card(
-    painter: QPainter,
-    place: QRect,
-    entry: ClipEntry,
-    row: int,
-    facts: ClipFacts,
-    pictures: ClipPictures,
-    names: ClipNames,
-    side: int,
-    look: Theme,
-    lit: bool,
-    chosen: bool,
+    painter: QPainter, place: QRect, entry: ClipEntry, row: int, ink: ClipInk, lit: bool, chosen: bool
 ) -> None:
-    """Draw a clip in its place. side: of its picture. lit: selected or pointed at. chosen: selected."""
+    """Draw a clip in its place. lit: selected or pointed at. chosen: selected."""
+    facts, names, look = ink.facts, ink.names, ink.look
     rect = place.adjusted(4, 4, -4, -4)
     painter.setBrush(QColor(look.hover if lit else look.field))
     painter.setPen(QPen(QColor(look.text if chosen else look.line), 1.6 if chosen else 1))
     painter.drawRoundedRect(rect, 6, 6)
-    draw_picture(painter, picture_of("cards", side, place), pictures, entry, look)
+    draw_picture(painter, picture_of("cards", ink.side, place), ink.pictures, entry, look)
     draw_stripe(painter, rect, facts, entry, look)
     font = QFont(painter.font())
     font.setPixelSize(12)

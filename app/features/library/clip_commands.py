@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
+
+from PySide6.QtWidgets import QApplication
 
 from app.features.library.clip_columns import stars
 from app.features.library.clip_groups import GROUPS
@@ -12,127 +13,182 @@ from app.features.library.library_bar import BUTTONS
 from app.features.library.library_panel import LibraryPanel
 from app.look.domain_words import COLOR_LABELS
 from app.look.plural import many
-from app.shell.actions import Command
-from app.shell.context import Shell
-from app.translation import tr
+from app.project.importing import Importing
+from app.shell.actions import Command, Standard
+from app.shell.command_table import Feature, bound, clips_selected
+from app.stage.problem_watch import ProblemWatch
+from app.translation import tr, tr_noop
 from metagraph.graph.clip_mark import COLORS, STARS
 
 MENU = "C&lips"
-
-
-SHOW_AS = {"cards": tr("Show as cards"), "columns": tr("Show as columns")}
+SHOW_AS: dict[Style, str] = {"cards": tr_noop("Show as cards"), "columns": tr_noop("Show as columns")}
 GROUP_BY = {
-    "none": tr("No groups"),
-    "folder": tr("Group by folder"),
-    "stance": tr("Group by stance"),
-    "tag": tr("Group by tag"),
-    "layer": tr("Group by layer"),
-    "kind": tr("Group by kind"),
+    "none": tr_noop("No groups"),
+    "folder": tr_noop("Group by folder"),
+    "stance": tr_noop("Group by stance"),
+    "tag": tr_noop("Group by tag"),
+    "layer": tr_noop("Group by layer"),
+    "kind": tr_noop("Group by kind"),
 }
 
 
-def commands(shell: Shell, library: Callable[[], LibraryPanel]) -> tuple[Command, ...]:
-    """Return them. library: the panel, made where it was not yet."""
-    selection = shell.stage.session.selection
-    some = lambda: bool(selection.clips)  # noqa: E731
+class LibraryFeature(Feature):
+    """Makes the panel of the clips, and does the commands of this module."""
 
-    def act(name: str, *more: object) -> None:
-        getattr(library().acts, name)(selection.clips, *more)
+    @property
+    def panel(self) -> LibraryPanel:
+        found: LibraryPanel = self.shell.panel("library")
+        return found
 
-    def show_as(style: Style) -> None:
-        library().show_as(style)
-
-    def shown_as(style: Style) -> bool:
-        return library().list.style_of == style
-
-    def group_by(group: str) -> None:
-        library().group_by(group)
-
-    def grouped_by(group: str) -> bool:
-        return library().rows.listing.group == group
-
-    rating = (
-        Command(
-            f"rate_{n}",
-            MENU,
-            "rating",
-            f"&{n}  {stars(n)}" if n else tr("&0  No stars"),
-            partial(act, "mark", "rating", n),
-            (f"Ctrl+Shift+{n}",),
-            tip=tr("Give the selected clips {stars}", stars=many(n, "star")),
-            enabled=some,
+    def make_panel(self) -> LibraryPanel:
+        shell, importing = self.shell, self.shell.services[Importing]
+        problems = shell.services[ProblemWatch]
+        panel = LibraryPanel(
+            self.document, self.session, shell.stage.thumbnails, shell.widget, lambda: problems.problems
         )
-        for n in range(STARS + 1)
-    )
-    labels = (
-        Command(
-            f"color_{color or 'none'}",
-            MENU,
-            "labels",
-            COLOR_LABELS[color] if color else tr("No label"),
-            partial(act, "mark", "color", color),
-            tip=tr("Put this label on the selected clips")
-            if color
-            else tr("Take labels off the selected clips"),
-            enabled=some,
-        )
-        for color in (*COLORS, "")
-    )
-    views = (
-        Command(
-            f"clips_as_{style}",
-            MENU,
-            "view",
-            SHOW_AS[style],
-            partial(show_as, style),
-            tip=tip,
-            checked=partial(shown_as, style),
-        )
-        for style, (_, _, tip) in BUTTONS.items()
-    )
-    groups = (
+        problems.changed.connect(panel.problems_changed)
+        panel.acts.row_actions = shell.actions.of_menu("clip")
+        panel.acts.label_actions = shell.actions.of_menu("clip label")
+        panel.import_wanted.connect(importing.ask_import_folder)
+        panel.files_dropped.connect(lambda paths: importing.import_paths(list(paths)))
+        return panel
+
+    @property
+    def clips(self) -> tuple[str, ...]:
+        """The selected clips."""
+        return self.session.selection.clips
+
+    def has_focus(self) -> bool:
+        return self.panel.isAncestorOf(QApplication.focusWidget() or self.shell.widget)
+
+    def find(self) -> None:
+        self.panel.search.setFocus()
+
+    def select_all(self) -> None:
+        self.panel.list.selectAll()
+
+    def remove(self) -> None:
+        self.panel.acts.remove(self.clips)
+
+    def rename(self) -> None:
+        self.panel.acts.rename(self.clips[0])
+
+    def mark(self, field: str, value: object) -> None:
+        self.panel.acts.mark(self.clips, field, value)
+
+    def favour(self) -> None:
+        self.panel.acts.favour(self.clips)
+
+    def duplicate(self) -> None:
+        self.panel.acts.duplicate(self.clips)
+
+    def reveal(self) -> None:
+        self.panel.acts.reveal(self.clips[0])
+
+    def show_as(self, style: Style) -> None:
+        self.panel.show_as(style)
+
+    def shows_as(self, style: Style) -> bool:
+        return self.panel.list.style_of == style
+
+    def group_by(self, group: str) -> None:
+        self.panel.group_by(group)
+
+    def groups_by(self, group: str) -> bool:
+        return self.panel.rows.listing.group == group
+
+
+COMMANDS = (
+    Command(
+        "find", "&Edit", "find", tr_noop("&Find clip"), LibraryFeature.find, (Standard.Find,), study=True
+    ),
+    Command(
+        "favourite",
+        MENU,
+        "favourites",
+        tr_noop("&Favourite"),
+        LibraryFeature.favour,
+        ("Ctrl+Shift+6",),
+        tip=tr_noop("Put a heart on the selected clips, or take it away"),
+        enabled=clips_selected,
+    ),
+    Command(
+        "duplicate_clips",
+        MENU,
+        "files",
+        tr_noop("&Duplicate"),
+        LibraryFeature.duplicate,
+        ("Ctrl+Shift+D",),
+        tip=tr_noop("List the selected clips once more, each to be timed for itself"),
+        enabled=clips_selected,
+    ),
+    Command(
+        "reveal_clip",
+        MENU,
+        "files",
+        tr_noop("&Reveal in folder"),
+        LibraryFeature.reveal,
+        tip=tr_noop("Show the file of the first selected clip where it lies"),
+        enabled=clips_selected,
+    ),
+    *(
         Command(
             f"group_{key}",
             MENU,
             "groups",
             GROUP_BY[key],
-            partial(group_by, key),
-            checked=partial(grouped_by, key),
+            partial(LibraryFeature.group_by, group=key),
+            checked=partial(LibraryFeature.groups_by, group=key),
         )
         for key in GROUPS
-    )
+    ),
+)
+
+
+def commands(library: LibraryFeature) -> tuple[Command, ...]:
+    """Return all of them."""
     return (
-        *rating,
-        *labels,
-        Command(
-            "favourite",
-            MENU,
-            "favourites",
-            tr("&Favourite"),
-            partial(act, "favour"),
-            ("Ctrl+Shift+6",),
-            tip=tr("Put a heart on the selected clips, or take it away"),
-            enabled=some,
-        ),
-        Command(
-            "duplicate_clips",
-            MENU,
-            "files",
-            tr("&Duplicate"),
-            partial(act, "duplicate"),
-            ("Ctrl+Shift+D",),
-            tip=tr("List the selected clips once more, each to be timed for itself"),
-            enabled=some,
-        ),
-        Command(
-            "reveal_clip",
-            MENU,
-            "files",
-            tr("&Reveal in folder"),
-            lambda: library().acts.reveal(selection.clips[0]),
-            tip=tr("Show the file of the first selected clip where it lies"),
-            enabled=some,
-        ),
-        *views,
-        *groups,
+        *bound(COMMANDS, library),
+        *(_rating(library, number) for number in range(STARS + 1)),
+        *(_label(library, color) for color in (*COLORS, "")),
+        *(_view(library, style) for style in BUTTONS),
+    )
+
+
+def _rating(library: LibraryFeature, number: int) -> Command:
+    return Command(
+        f"rate_{number}",
+        MENU,
+        "rating",
+        f"&{number}  {stars(number)}" if number else tr("&0  No stars"),
+        partial(library.mark, "rating", number),
+        (f"Ctrl+Shift+{number}",),
+        tip=tr("Give the selected clips {stars}", stars=many(number, "star")),
+        enabled=partial(clips_selected, library),
+    )
+
+
+def _label(library: LibraryFeature, color: str) -> Command:
+    on, off = tr("Put this label on the selected clips"), tr("Take labels off the selected clips")
+    return Command(
+        f"color_{color or 'none'}",
+        MENU,
+        "labels",
+        COLOR_LABELS[color] if color else tr("No label"),
+        partial(library.mark, "color", color),
+        tip=on if color else off,
+        enabled=partial(clips_selected, library),
+    )
+
+
+def _view(library: LibraryFeature, style: Style) -> Command:
+    _, _, tip = BUTTONS[style]
+    return Command(
+        f"clips_as_{style}",
+        MENU,
+        "view",
+        tr(SHOW_AS[style]),
+        partial(library.show_as, style),
+        tip=tip,
+        checked=partial(library.shows_as, style),
     )

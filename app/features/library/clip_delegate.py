@@ -6,7 +6,7 @@ from PySide6.QtCore import QRect, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 from PySide6.QtWidgets import QStyle, QStyledItemDelegate, QStyleOptionViewItem
 
-from app.features.library.clip_card import draw_card
+from app.features.library.clip_card import ClipInk, draw_card
 from app.features.library.clip_facts import ClipFacts
 from app.features.library.clip_header import ClipHeader
 from app.features.library.clip_layout import Section
@@ -49,17 +49,15 @@ class ClipDelegate(QStyledItemDelegate):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
         painter.setFont(option.font)
-        more = self.facts, self.pictures
+        ink = ClipInk(self.facts, self.pictures, self.names, self.side, look)
         if not in_lines(self.style_of, self.side):
-            draw_card(
-                painter, option.rect, entry, index.row(), *more, self.names, self.side, look, lit, chosen
-            )
+            draw_card(painter, option.rect, entry, index.row(), ink, lit, chosen)
         else:
             draw_back(painter, option.rect, look, lit, chosen)
             if self.style_of == "columns" and self._header is not None:
-                draw_columns(painter, option.rect, entry, *more, self.names, self._header, self.side, look)
+                draw_columns(painter, option.rect, entry, self._header, ink)
             else:
-                draw_line(painter, option.rect, entry, index.row(), *more, self.names, self.side, look)
+                draw_line(painter, option.rect, entry, index.row(), ink)
         if state & QStyle.StateFlag.State_HasFocus:
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.setPen(QPen(QColor(look.dim), 1, Qt.PenStyle.DashLine))

@@ -6,12 +6,9 @@ from PySide6.QtCore import QRect, Qt
 from PySide6.QtGui import QColor, QPainter
 
 from app.features.library.clip_badges import HEART, PENCIL, TAG, draw_label
-from app.features.library.clip_card import draw_kinds, draw_picture, draw_stripe, kinds_of
+from app.features.library.clip_card import ClipInk, draw_kinds, draw_picture, draw_stripe, kinds_of
 from app.features.library.clip_columns import COLUMNS
-from app.features.library.clip_facts import ClipFacts
 from app.features.library.clip_header import PLACES, ClipHeader
-from app.features.library.clip_names import ClipNames
-from app.features.library.clip_pictures import ClipPictures
 from app.features.library.clip_sizes import picture_of
 from app.look.shortening import fitted
 from app.look.theme import KIND_MARKS, Theme
@@ -29,21 +26,12 @@ def draw_back(painter: QPainter, rect: QRect, look: Theme, lit: bool, chosen: bo
         painter.drawRoundedRect(rect.adjusted(1, 1, -2, -1), 4, 4)
 
 
-def draw_line(
-    painter: QPainter,
-    rect: QRect,
-    entry: ClipEntry,
-    row: int,
-    facts: ClipFacts,
-    pictures: ClipPictures,
-    names: ClipNames,
-    side: int,
-    look: Theme,
-) -> None:
+def draw_line(painter: QPainter, rect: QRect, entry: ClipEntry, row: int, ink: ClipInk) -> None:
     """Draw a clip in a line: picture, name, and at its end what is on it, its length and its kinds."""
-    box = picture_of("cards", side, rect)
+    facts, names, look = ink.facts, ink.names, ink.look
+    box = picture_of("cards", ink.side, rect)
     draw_stripe(painter, rect.adjusted(0, -3, 0, 3), facts, entry, look)
-    draw_picture(painter, box, pictures, entry, look, small=True)
+    draw_picture(painter, box, ink.pictures, entry, look, small=True)
     mark = facts.mark(entry)
     line = QRect(box.right() + 8, rect.top(), rect.right() - box.right() - 16, rect.height())
     wide = painter.fontMetrics().horizontalAdvance
@@ -67,20 +55,11 @@ def draw_line(
         painter.drawText(QRect(line.left(), line.top(), room, line.height()), MIDDLE, shown)
 
 
-def draw_columns(
-    painter: QPainter,
-    rect: QRect,
-    entry: ClipEntry,
-    facts: ClipFacts,
-    pictures: ClipPictures,
-    names: ClipNames,
-    header: ClipHeader,
-    side: int,
-    look: Theme,
-) -> None:
+def draw_columns(painter: QPainter, rect: QRect, entry: ClipEntry, header: ClipHeader, ink: ClipInk) -> None:
     """Draw what stands in the columns of a clip, each cut where it has no room: at its end, names in their
     middle.
     """
+    facts, look = ink.facts, ink.look
     metrics = painter.fontMetrics()
     name = PLACES["name"]
     for n, column in enumerate(COLUMNS):
@@ -91,8 +70,8 @@ def draw_columns(
         if n == name:
             within = QRect(left, rect.top(), width, rect.height())
             draw_stripe(painter, within.adjusted(0, -3, 0, 3), facts, entry, look)
-            box = picture_of("columns", side, within)
-            draw_picture(painter, box, pictures, entry, look, small=True)
+            box = picture_of("columns", ink.side, within)
+            draw_picture(painter, box, ink.pictures, entry, look, small=True)
             cell.setLeft(box.right() + 8)
         if column.id == "color" and facts.mark(entry).color:
             draw_label(
@@ -105,7 +84,7 @@ def draw_columns(
                 painter.setPen(look.kind(kind))
                 painter.drawText(cell, MIDDLE, KIND_MARKS[kind])
                 cell.setLeft(cell.left() + 16)
-        words = " ".join(names.of(entry)).strip() if n == name else column.words(facts, entry)
+        words = " ".join(ink.names.of(entry)).strip() if n == name else column.words(facts, entry)
         if not words or cell.width() < 8:
             continue
         painter.setPen(QColor(look.text if column.id in ("name", "rating", "favourite") else look.dim))

@@ -49,6 +49,12 @@ class Wishes(QFrame):
         title = QLabel(tr("New motion"), self)
         title.setProperty("heading", True)
         box.addWidget(title)
+        for row in (self._search_row(), self._sounds_row(), self._soft_row()):
+            box.addLayout(row)
+        self.fill()
+
+    def _search_row(self) -> QHBoxLayout:
+        """Return what it goes with, for how long, and how it is searched."""
         row = QHBoxLayout()
         self.speech = ComboBox(self)
         self.speech.setAccessibleName(tr("Goes with"))
@@ -84,7 +90,10 @@ class Wishes(QFrame):
             row.addWidget(field)
             row.addSpacing(6)
         row.addStretch(1)
-        box.addLayout(row)
+        return row
+
+    def _sounds_row(self) -> QHBoxLayout:
+        """Return what is met of what is heard, and for whom."""
         row = QHBoxLayout()
         row.addWidget(QLabel(tr("Meets"), self))
         self.kinds: dict[Sound, QCheckBox] = {}
@@ -114,7 +123,10 @@ class Wishes(QFrame):
         row.addSpacing(8)
         row.addWidget(self.whole)
         row.addStretch(1)
-        box.addLayout(row)
+        return row
+
+    def _soft_row(self) -> QHBoxLayout:
+        """Return what is only wished for, and the button that begins."""
         row = QHBoxLayout()
         self.soft = SoftWishes(self)
         row.addWidget(self.soft, 1)
@@ -123,8 +135,7 @@ class Wishes(QFrame):
         self.soft.wanted.connect(self.go.click)
         strengthen(self.go)
         row.addWidget(self.go)
-        box.addLayout(row)
-        self.fill()
+        return row
 
     def _seconds(self, name: str, least: float, value: float) -> QDoubleSpinBox:
         out = DoubleSpinBox(self, minimum=least, maximum=3600, decimals=1, value=value, suffix=" s")

@@ -52,6 +52,23 @@ class ActionPage(Halves):
         upper = QVBoxLayout(first)
         upper.setContentsMargins(0, 0, 0, 0)
         upper.setSpacing(8)
+        self._add_head(upper, page)
+        self.plot = TimingPlot(document, session, page)
+        self.plot.changed.connect(
+            lambda fields: self._set(tr("Change timing"), merge="timing", timing=fields)
+        )
+        self.plot.finished.connect(document.finish_merging)
+        upper.addWidget(self.plot)
+        self.form = form_in(box)
+        self._add_timing(page)
+        self._add_choices(page)
+        self.trouble = QLabel(page, wordWrap=True)
+        box.addWidget(self.trouble)
+        box.addStretch(1)
+        self.turned.connect(self.plot.set_large)
+
+    def _add_head(self, upper: QVBoxLayout, page: QWidget) -> None:
+        """Add its name and kind."""
         head = QHBoxLayout()
         self.name = Field(page, tr("Name of the action"), tr("Name"))
         self.name.editingFinished.connect(self._rename)
@@ -63,27 +80,23 @@ class ActionPage(Halves):
         self.timing.clicked.connect(self.time_wanted)
         head.addWidget(self.timing)
         upper.addLayout(head)
-        self.plot = TimingPlot(document, session, page)
-        self.plot.changed.connect(
-            lambda fields: self._set(tr("Change timing"), merge="timing", timing=fields)
-        )
-        self.plot.finished.connect(document.finish_merging)
-        upper.addWidget(self.plot)
-        form = form_in(box)
 
-        def pair(title: str, *fields: QWidget) -> QWidget:
-            row = QWidget(page)
-            line = QHBoxLayout(row)
-            line.setContentsMargins(0, 0, 0, 0)
-            for field in fields:
-                line.addWidget(field, 1)
-            form.addRow(title, row)
-            return row
+    def _add_pair(self, page: QWidget, title: str, *fields: QWidget) -> QWidget:
+        """Add fields in one row; return it."""
+        row = QWidget(page)
+        line = QHBoxLayout(row)
+        line.setContentsMargins(0, 0, 0, 0)
+        for field in fields:
+            line.addWidget(field, 1)
+        self.form.addRow(title, row)
+        return row
 
+    def _add_timing(self, page: QWidget) -> None:
+        """Add when it starts, blends, ends, and may be left."""
         self.start, self.end = Seconds(page, tr("Start in the clip")), Seconds(page, tr("End in the clip"))
         self.blend_in, self.blend_out = Seconds(page, tr("Blend in")), Seconds(page, tr("Blend out"))
-        pair(tr("Start, end"), self.start, self.end)
-        self.blend_row = pair(tr("Blend in, out"), self.blend_in, self.blend_out)
+        self._add_pair(page, tr("Start, end"), self.start, self.end)
+        self.blend_row = self._add_pair(page, tr("Blend in, out"), self.blend_in, self.blend_out)
         self.start.valueChanged.connect(lambda v: self._timing("start", v))
         self.end.valueChanged.connect(lambda v: self._timing("end", v))
         self.blend_in.valueChanged.connect(lambda v: self._timing("blend_in", v))
@@ -94,37 +107,35 @@ class ActionPage(Halves):
         self.leave.clicked.connect(self._leave)
         self.earliest = Seconds(page, tr("Earliest exit: from here on the action may be left"))
         self.earliest.valueChanged.connect(lambda v: self._timing("earliest_exit", v))
-        self.leave_row = pair(tr("Exit"), self.leave, self.earliest)
+        self.leave_row = self._add_pair(page, tr("Exit"), self.leave, self.earliest)
+
+    def _add_choices(self, page: QWidget) -> None:
+        """Add by what it is chosen, from where it leads where, and what it moves."""
         self.limb = LimbRow(page, "stance")
         self.limb.chosen.connect(lambda n: self._set(tr("Change limb"), limb=LIMBS[n]))
-        form.addRow(tr("Limb"), self.limb)
+        self.form.addRow(tr("Limb"), self.limb)
         self.tags = Field(
             page, tr("Words apart by commas; requests can ask for them: positive, negative, ..."), tr("Tags")
         )
         self.tags.editingFinished.connect(self._retag)
-        form.addRow(tr("Tags"), self.tags)
+        self.form.addRow(tr("Tags"), self.tags)
         self.likelihood = Seconds(
             page, tr("Likelihood against the others of its node; 1 is usual"), 100, "", 0.1
         )
         self.likelihood.valueChanged.connect(self._likely)
-        form.addRow(tr("Likelihood"), self.likelihood)
-        self.variation = ActionRows(form, page)
+        self.form.addRow(tr("Likelihood"), self.likelihood)
+        self.variation = ActionRows(self.form, page)
         self.variation.changed.connect(lambda text, fields: self._set(text, **fields))
         self.stance = Chooser(page, toolTip=tr("The stance it starts from"))
         self.stance.activated.connect(self._restance)
-        form.addRow(tr("Stance"), self.stance)
+        self.form.addRow(tr("Stance"), self.stance)
         self.ends = Chooser(page, toolTip=tr("The stance it ends in"))
         self.ends.activated.connect(self._reend)
-        form.addRow(tr("Ends in"), self.ends)
-        self.form = form
+        self.form.addRow(tr("Ends in"), self.ends)
         self.joints = make_widget(QPushButton, page, toolTip=tr("Let it move only some joints"))
         self.joints.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # after a click the space bar still plays
         self.joints.clicked.connect(self._mask)
-        form.addRow(tr("Joints"), self.joints)
-        self.trouble = QLabel(page, wordWrap=True)
-        box.addWidget(self.trouble)
-        box.addStretch(1)
-        self.turned.connect(self.plot.set_large)
+        self.form.addRow(tr("Joints"), self.joints)
 
     def show_actions(self, actions: Sequence[Action]) -> None:
         """Show what actions have in common."""

@@ -69,28 +69,39 @@ class RenderDialog(QDialog):
         )
         self.setMinimumWidth(520)
         layout = QVBoxLayout(self)
-        form = QFormLayout()
-        layout.addLayout(form)
+        self.form = QFormLayout()
+        layout.addLayout(self.form)
+        self._add_file(kept.name if kept is not None else performance.document.project.name)
+        self._add_part(kept.length if kept is not None else min(30.0, performance.length))
+        self._add_pictures()
+        self._add_looks()
+        self._add_end(layout)
+        self._suffixed()
+
+    def _add_file(self, name: str) -> None:
+        """Add what kind of file is written, and where. name: of the file."""
         self.kind = ComboBox(self)
         for suffix, words in SUFFIXES.items():
             self.kind.addItem(words, suffix)
         self.kind.activated.connect(lambda _: self._suffixed())
-        form.addRow(tr("As"), self.kind)
+        self.form.addRow(tr("As"), self.kind)
         row = QHBoxLayout()
-        folder = performance.document.folder or Path.home()
-        name = kept.name if kept is not None else performance.document.project.name
+        folder = self.performance.document.folder or Path.home()
         self.file = QLineEdit(str(folder / f"{name}.mp4"), self)
         self.file.setAccessibleName(tr("File"))
         browse = QPushButton(tr("Choose…"), self, autoDefault=False)
         browse.clicked.connect(self._browse)
         row.addWidget(self.file, 1)
         row.addWidget(browse)
-        form.addRow(tr("File"), row)
+        self.form.addRow(tr("File"), row)
+
+    def _add_part(self, length: float) -> None:
+        """Add how much is written. length: in seconds."""
         self.seconds = DoubleSpinBox(self, minimum=0.1, maximum=3600, decimals=1, suffix=" s")
-        self.seconds.setValue(kept.length if kept is not None else min(30.0, performance.length))
+        self.seconds.setValue(length)
         self.part = ComboBox(self, toolTip=tr("All of it, or what is between in and out on the timeline"))
         self.part.addItem(tr("All, from the beginning"), None)
-        self.range = performance.timeline.range
+        self.range = self.performance.timeline.range
         if self.range is not None:
             self.part.addItem(
                 tr("The range, {start:.2f} to {end:.2f} s", start=self.range[0], end=self.range[1]),
@@ -98,35 +109,44 @@ class RenderDialog(QDialog):
             )
             self.part.setCurrentIndex(1)
         self.part.activated.connect(lambda _: self._suffixed())
-        form.addRow(tr("What"), self.part)
-        form.addRow(tr("Length"), self.seconds)
+        self.form.addRow(tr("What"), self.part)
+        self.form.addRow(tr("Length"), self.seconds)
+
+    def _add_pictures(self) -> None:
+        """Add how large and how many they are."""
         self.size_box = ComboBox(self)
         for width, height in SIZES:
             self.size_box.addItem(f"{width} × {height}", (width, height))
         self.size_box.setCurrentIndex(int(str(QSettings().value("render/size", 2))))
-        form.addRow(tr("Size"), self.size_box)
+        self.form.addRow(tr("Size"), self.size_box)
         self.fps = ComboBox(self)
         for fps in (24.0, 25.0, 30.0, 60.0):
             self.fps.addItem(tr("{fps:g} a second", fps=fps), fps)
         self.fps.setCurrentIndex(2)
-        form.addRow(tr("Pictures"), self.fps)
+        self.form.addRow(tr("Pictures"), self.fps)
+
+    def _add_looks(self) -> None:
+        """Add what is seen beside the character."""
+        watched = self.session.watch.now
         self.light, self.background = ComboBox(self), ComboBox(self)
         for box, choices, now in (
-            (self.light, LIGHTS, session.watch.now.light),
-            (self.background, BACKDROPS, session.watch.now.background),
+            (self.light, LIGHTS, watched.light),
+            (self.background, BACKDROPS, watched.background),
         ):
             for name in choices:
                 box.addItem(tr(words_of(name)), name)
             box.setCurrentIndex(box.findData(now))
-        form.addRow(tr("Light"), self.light)
-        form.addRow(tr("Background"), self.background)
+        self.form.addRow(tr("Light"), self.light)
+        self.form.addRow(tr("Background"), self.background)
         self.captions = QCheckBox(tr("Words of who speaks, at the bottom"), self)
-        self.captions.setChecked(performance.timeline.now.captions)
-        form.addRow(tr("Captions"), self.captions)
+        self.captions.setChecked(self.performance.timeline.now.captions)
+        self.form.addRow(tr("Captions"), self.captions)
         self.cuts = QCheckBox(tr("Cut as the camera lane says"), self)
         self.cuts.setChecked(True)
-        form.addRow(tr("Camera"), self.cuts)
-        self.form = form
+        self.form.addRow(tr("Camera"), self.cuts)
+
+    def _add_end(self, layout: QVBoxLayout) -> None:
+        """Add what is said of it, and the buttons."""
         self.words = QLabel(self, wordWrap=True)
         self.words.setProperty("dim", True)
         layout.addWidget(self.words)
@@ -142,7 +162,6 @@ class RenderDialog(QDialog):
         self.buttons.accepted.connect(self._write)
         self.buttons.rejected.connect(self.reject)
         layout.addWidget(self.buttons)
-        self._suffixed()
 
     def _suffixed(self) -> None:
         """Show what belongs to the chosen kind of file."""

@@ -49,31 +49,51 @@ class LaneKeys:
 
     def press(self, event: QKeyEvent) -> bool:
         """Do what a key does; False for one that does nothing here."""
-        view, key, held = self.view, event.key(), event.modifiers()
-        chosen, requests = view.session.onstage.requests, view.performance.requests
-        can, timeline = requests.editable, view.performance.timeline
-        x = min(max(LEFT, view.scale().x(view.session.transport.seconds)), view.width())
-        if key == Key.Key_Escape and view.break_off():
+        key, held = Key(event.key()), event.modifiers()
+        if key == Key.Key_Escape and self._leave():
             return True
-        if key == Key.Key_Escape and chosen:
-            view.session.onstage.select_requests(())
-        elif key == Key.Key_Escape and timeline.marker is not None:
-            timeline.select(None)
-        elif view.hand.gesture is not None:
+        if self.view.hand.gesture is not None:
             return key != Key.Key_Shift  # what is held is not edited by keys as well
-        elif chosen and can and key in (Key.Key_Left, Key.Key_Right):
-            self._nudge(Key(key), held)
-        elif chosen and can and key == Key.Key_D and held & Held.ControlModifier:
+        return self._edit(key, held) or self._mark(key, held) or self._cut(key, held) or self._look(key)
+
+    def _leave(self) -> bool:
+        """Break off what is held, or select no request or marker."""
+        view, timeline = self.view, self.view.performance.timeline
+        if view.break_off():
+            return True
+        if view.session.onstage.requests:
+            view.session.onstage.select_requests(())
+        elif timeline.marker is not None:
+            timeline.select(None)
+        else:
+            return False
+        return True
+
+    def _edit(self, key: Qt.Key, held: Qt.KeyboardModifier) -> bool:
+        """Edit the selected requests, or paste some."""
+        view, requests = self.view, self.view.performance.requests
+        chosen = view.session.onstage.requests
+        can = bool(chosen) and requests.editable
+        if can and key in (Key.Key_Left, Key.Key_Right):
+            self._nudge(key, held)
+        elif can and key == Key.Key_D and held & Held.ControlModifier:
             requests.copy(chosen, FAR)
         elif held == Held.ControlModifier and key == Key.Key_V:
             requests.paste()
-        elif chosen and can and held == Held.ControlModifier and key in (Key.Key_C, Key.Key_X):
+        elif can and held == Held.ControlModifier and key in (Key.Key_C, Key.Key_X):
             requests.to_clipboard(chosen, key == Key.Key_X)
-        elif chosen and can and key == Key.Key_Delete and held == Held.ShiftModifier:
+        elif can and key == Key.Key_Delete and held == Held.ShiftModifier:
             requests.close_up(chosen, view.performance.shown.plan)
         elif chosen and key in (Key.Key_Return, Key.Key_Enter):
             view.edit(chosen[0])
-        elif key == Key.Key_M and held == Held.NoModifier:
+        else:
+            return False
+        return True
+
+    def _mark(self, key: Qt.Key, held: Qt.KeyboardModifier) -> bool:
+        """Add a marker, choose a request, or move the selected marker."""
+        view, timeline = self.view, self.view.performance.timeline
+        if key == Key.Key_M and held == Held.NoModifier:
             if view.session.transport.show == "plan":
                 timeline.add_marker()
             else:
@@ -86,13 +106,29 @@ class LaneKeys:
             by = FAR if held & Held.ShiftModifier else NUDGE
             marker = timeline.selected
             timeline.move_marker(marker.id, marker.at + (by if key == Key.Key_Right else -by), "nudge")
-        elif held == Held.NoModifier and key == Key.Key_0 and view.cameras.talk is not None:
-            view.cameras.remove_seen()
-        elif held == Held.NoModifier and Key.Key_1 <= key <= Key.Key_9 and view.cameras.talk is not None:
-            view.cameras.key(key - Key.Key_0)
-        elif key == Key.Key_Insert:
+        else:
+            return False
+        return True
+
+    def _cut(self, key: Qt.Key, held: Qt.KeyboardModifier) -> bool:
+        """Cut the camera of a conversation."""
+        cameras = self.view.cameras
+        digit = held == Held.NoModifier and Key.Key_0 <= key <= Key.Key_9
+        if not digit or cameras.talk is None:
+            return False
+        if key == Key.Key_0:
+            cameras.remove_seen()
+        else:
+            cameras.key(key - Key.Key_0)
+        return True
+
+    def _look(self, key: Qt.Key) -> bool:
+        """Ask for something here, zoom, or turn a page."""
+        view = self.view
+        if key == Key.Key_Insert:
             view.ask_here()
         elif key in (Key.Key_Plus, Key.Key_Equal, Key.Key_Minus):
+            x = min(max(LEFT, view.scale().x(view.session.transport.seconds)), view.width())
             view.zoom(1 / ZOOM if key == Key.Key_Minus else ZOOM, x)
         elif key == Key.Key_Backslash:
             view.zoom_all()

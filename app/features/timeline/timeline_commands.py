@@ -1,180 +1,331 @@
-"""The timeline's commands: the range, markers, what is seen of it, snapping and ripple."""
+"""The timeline's commands: the range, markers, what is seen of it, snapping, ripple and live."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from PySide6.QtCore import QSettings
+from PySide6.QtWidgets import QWidget
 
+from app.project.importing import Importing
 from app.shell.actions import Command
+from app.shell.command_table import Feature, all_of, has_skeleton
 from app.shell.context import Shell
-from app.translation import tr
+from app.translation import tr_noop
+
+TALLER = 1.3
 
 
-def commands(shell: Shell) -> tuple[Command, ...]:
-    session, performance = shell.stage.session, shell.stage.performance
-    noted = performance.timeline
+class TimelineFeature(Feature):
+    """Makes the panel of the performance, and does the commands of this module."""
 
-    def there() -> bool:
-        return shell.document.project.skeleton is not None
+    def __init__(self, shell: Shell) -> None:
+        super().__init__(shell)
+        self.noted, self.requests = self.performance.timeline, self.performance.requests
+        self.live, self.transport = self.performance.live, self.session.transport
 
-    def performing() -> bool:
-        """Whether the timeline is a performance's, and no clip's or action's that is looked at alone."""
-        return there() and session.transport.show == "plan"
+    @property
+    def panel(self) -> Any:
+        return self.shell.panel("timeline")
 
-    def panel() -> Any:
-        shell.show("timeline")
-        return shell.panel("timeline")
+    def make_panel(self) -> QWidget:
+        from app.features.timeline.lane_drops import LaneDrops
+        from app.features.timeline.timeline_panel import TimelinePanel
 
-    def press(switch: str) -> Callable[[], object]:
-        return lambda: getattr(shell.panel("timeline"), switch).toggle()
+        shell = self.shell
+        panel = TimelinePanel(self.document, self.session, self.performance, shell.jobs, shell.widget)
+        LaneDrops(panel.lanes, shell.services[Importing])
+        return panel
 
-    def move(step: int) -> Callable[[], object]:
-        return lambda: noted.jump(step)
+    def show_panel(self) -> Any:
+        self.shell.show("timeline")
+        return self.panel
 
-    def command(
-        ident: str, group: str, text: str, run: Callable[[], object], keys: tuple[str, ...], **more: Any
-    ) -> Command:
-        return Command(ident, "&Play", group, text, run, keys, when="meta", **{"enabled": there, **more})
+    # --- range and markers
 
-    def taller(by: float) -> Callable[[], object]:
-        """Return what makes the lane of the layer that is edited taller."""
+    def begin_range(self) -> None:
+        self.noted.set_in()
 
-        def size() -> None:
-            titles, lane = panel().lanes.titles, session.place.layer
-            titles.size(lane, titles.view.sizes.factor(lane) * by)
+    def end_range(self) -> None:
+        self.noted.set_out()
 
-        return size
+    def clear_range(self) -> None:
+        self.noted.clear_range()
 
-    def automatic() -> None:
-        talk = shell.document.project.conversations.get(performance.conversation or "")
+    def add_marker(self) -> None:
+        self.noted.add_marker()
+
+    def go_to_next_marker(self) -> None:
+        self.noted.jump(1)
+
+    def go_to_previous_marker(self) -> None:
+        self.noted.jump(-1)
+
+    def remove_marker(self) -> None:
+        self.noted.remove_marker(str(self.noted.marker))
+
+    def rename_marker(self) -> None:
+        self.panel.lanes.ruler.rename(str(self.noted.marker))
+
+    # --- lanes
+
+    def zoom_all(self) -> None:
+        self.show_panel().lanes.zoom_all()
+
+    def zoom_selection(self) -> None:
+        self.show_panel().lanes.zoom_selection()
+
+    def toggle_snapping(self) -> None:
+        self.panel.magnet.toggle()
+
+    def toggle_ripple(self) -> None:
+        self.panel.ripple.toggle()
+
+    def ripples(self) -> bool:
+        return self.requests.ripple
+
+    def toggle_lock(self) -> None:
+        self.noted.lock(self.session.place.layer, not self.is_locked())
+
+    def is_locked(self) -> bool:
+        """Whether the requests of the layer that is edited are locked."""
+        return self.session.place.layer in self.noted.now.locked
+
+    def size_lane(self, factor: float) -> None:
+        """Make the lane of the layer that is edited taller or lower."""
+        titles, lane = self.show_panel().lanes.titles, self.session.place.layer
+        titles.size(lane, titles.view.sizes.factor(lane) * factor)
+
+    # --- what plays
+
+    def cut_automatically(self) -> None:
+        talk = self.document.project.conversations.get(self.performance.conversation or "")
         if talk is not None:
-            noted.automatic(talk)
-            shell.show("timeline")
+            self.noted.automatic(talk)
+            self.shell.show("timeline")
 
-    def snaps() -> bool:
-        return QSettings().value("timeline/magnet", "true") != "false"
+    def toggle_captions(self) -> None:
+        self.noted.show_captions(not self.shows_captions())
 
-    tip = tr("What is between in and out is played again and again, and can be written alone")
-    return (
-        command(
-            "range_in", "range", tr("Loop from &here"), noted.set_in, ("I",), tip=tip, enabled=performing
-        ),
-        command(
-            "range_out", "range", tr("Loop &to here"), noted.set_out, ("O",), tip=tip, enabled=performing
-        ),
-        command(
-            "range_clear",
-            "range",
-            tr("&Clear loop range"),
-            noted.clear_range,
-            ("Ctrl+Shift+X",),
-            enabled=performing,
-        ),
-        command(
-            "marker",
-            "markers",
-            tr("Add &marker"),
-            noted.add_marker,
-            ("Ctrl+Alt+M",),
-            tip=tr("A named moment at the playhead; on the timeline, M alone"),
-            enabled=performing,
-        ),
-        command("marker_next", "markers", tr("&Next marker"), move(1), ("Shift+M",)),
-        command("marker_before", "markers", tr("&Previous marker"), move(-1), ("Ctrl+Shift+M",)),
-        command(
-            "timeline_all",
-            "timeline",
-            tr("Zoom the timeline to &all"),
-            lambda: panel().lanes.zoom_all(),
-            ("Shift+Z",),
-        ),
-        command(
-            "timeline_selection",
-            "timeline",
-            tr("&Zoom the timeline to the selection"),
-            lambda: panel().lanes.zoom_selection(),
-            ("Z",),
-            tip=tr("The selected requests or action; else the loop range"),
-        ),
-        command(
-            "timeline_snap",
-            "timeline",
-            tr("&Snap on the timeline"),
-            press("magnet"),
-            ("S",),
-            checked=snaps,
-        ),
-        command(
-            "timeline_ripple",
-            "timeline",
-            tr("&Ripple on the timeline"),
-            press("ripple"),
-            ("Shift+R",),
-            checked=lambda: performance.requests.ripple,
-            tip=tr("What follows goes along with what is moved"),
-        ),
-        command(
-            "lock_layer",
-            "timeline",
-            tr("&Lock the layer's requests"),
-            lambda: noted.lock(session.place.layer, session.place.layer not in noted.now.locked),
-            ("Shift+K",),
-            tip=tr("Requests of the layer that is edited cannot be moved or taken back"),
-            checked=lambda: session.place.layer in noted.now.locked,
-        ),
-        command("lane_taller", "timeline", tr("Taller lane"), taller(1.3), ("Alt+Shift+Up",)),
-        command("lane_lower", "timeline", tr("Lower lane"), taller(1 / 1.3), ("Alt+Shift+Down",)),
-        command(
-            "automatic_cuts",
-            "timeline",
-            tr("A&utomatic cuts"),
-            automatic,
-            ("Ctrl+Shift+U",),
-            tip=tr("The camera of the conversation on stage follows who speaks"),
-            enabled=lambda: performance.conversation is not None,
-        ),
-        command(
-            "captions",
-            "timeline",
-            tr("&Captions"),
-            lambda: noted.show_captions(not noted.now.captions),
-            ("Shift+C",),
-            tip=tr("The words of who speaks, at the bottom of the picture"),
-            checked=lambda: noted.now.captions,
-        ),
-        command(
-            "what_if",
-            "timeline",
-            tr("What other seeds would pla&y"),
-            press("ghosts"),
-            ("Shift+W",),
-            tip=tr("Three more rows under the lanes; a click takes one over"),
-        ),
-        command(
-            "what_if_others",
-            "timeline",
-            tr("Three ot&her seeds"),
-            lambda: shell.panel("timeline").what_if.others(),
-            (),
-            tip=tr("The next three, where other seeds are shown"),
-        ),
-        command(
-            "requests_copy",
-            "timeline",
-            tr("Copy re&quests"),
-            lambda: performance.requests.to_clipboard(session.onstage.requests),
-            (),
-            tip=tr("As a text that another window pastes, too; Ctrl+C on the timeline"),
-            enabled=lambda: performance.requests.kept is not None and bool(session.onstage.requests),
-        ),
-        command(
-            "requests_paste",
-            "timeline",
-            tr("Paste requests at the p&layhead"),
-            performance.requests.paste,
-            (),
-            tip=tr("Ctrl+V on the timeline"),
-        ),
-    )
+    def shows_captions(self) -> bool:
+        return self.noted.now.captions
+
+    def toggle_other_seeds(self) -> None:
+        self.panel.ghosts.toggle()
+
+    def try_other_seeds(self) -> None:
+        self.panel.what_if.others()
+
+    def copy_requests(self) -> None:
+        self.requests.to_clipboard(self.session.onstage.requests)
+
+    def paste_requests(self) -> None:
+        self.requests.paste()
+
+    def withdraw_requests(self) -> None:
+        self.requests.withdraw(*self.session.onstage.requests)
+
+    def toggle_live(self) -> None:
+        if self.is_live():
+            self.live.end()
+        else:
+            self.live.begin()
+        self.shell.show("timeline")
+
+    def is_live(self) -> bool:
+        return self.live.stage is not None
+
+
+def performance_shown(feature: TimelineFeature) -> bool:
+    """Whether the timeline is a performance's, and no clip's or action's that is looked at alone."""
+    return feature.transport.show == "plan"
+
+
+def snaps(feature: TimelineFeature) -> bool:
+    return QSettings().value("timeline/magnet", "true") != "false"
+
+
+def conversation_performed(feature: TimelineFeature) -> bool:
+    return feature.performance.conversation is not None
+
+
+def requests_kept(feature: TimelineFeature) -> bool:
+    return feature.requests.kept is not None
+
+
+def requests_selected(feature: TimelineFeature) -> bool:
+    return bool(feature.session.onstage.requests)
+
+
+def marker_selected(feature: TimelineFeature) -> bool:
+    return feature.noted.selected is not None
+
+
+def _command(
+    ident: str, group: str, text: str, run: Callable[..., object], keys: tuple[str, ...] = (), **more: Any
+) -> Command:
+    return Command(ident, "&Play", group, text, run, keys, when="meta", **{"enabled": has_skeleton, **more})
+
+
+performing = all_of(has_skeleton, performance_shown)
+COMMANDS = (
+    _command(
+        "range_in",
+        "range",
+        tr_noop("Loop from &here"),
+        TimelineFeature.begin_range,
+        ("I",),
+        tip=tr_noop("What is between in and out is played again and again, and can be written alone"),
+        enabled=performing,
+    ),
+    _command(
+        "range_out",
+        "range",
+        tr_noop("Loop &to here"),
+        TimelineFeature.end_range,
+        ("O",),
+        tip=tr_noop("What is between in and out is played again and again, and can be written alone"),
+        enabled=performing,
+    ),
+    _command(
+        "range_clear",
+        "range",
+        tr_noop("&Clear loop range"),
+        TimelineFeature.clear_range,
+        ("Ctrl+Shift+X",),
+        enabled=performing,
+    ),
+    _command(
+        "marker",
+        "markers",
+        tr_noop("Add &marker"),
+        TimelineFeature.add_marker,
+        ("Ctrl+Alt+M",),
+        tip=tr_noop("A named moment at the playhead; on the timeline, M alone"),
+        enabled=performing,
+    ),
+    _command(
+        "marker_next", "markers", tr_noop("&Next marker"), TimelineFeature.go_to_next_marker, ("Shift+M",)
+    ),
+    _command(
+        "marker_before",
+        "markers",
+        tr_noop("&Previous marker"),
+        TimelineFeature.go_to_previous_marker,
+        ("Ctrl+Shift+M",),
+    ),
+    _command(
+        "timeline_all",
+        "timeline",
+        tr_noop("Zoom the timeline to &all"),
+        TimelineFeature.zoom_all,
+        ("Shift+Z",),
+    ),
+    _command(
+        "timeline_selection",
+        "timeline",
+        tr_noop("&Zoom the timeline to the selection"),
+        TimelineFeature.zoom_selection,
+        ("Z",),
+        tip=tr_noop("The selected requests or action; else the loop range"),
+    ),
+    _command(
+        "timeline_snap",
+        "timeline",
+        tr_noop("&Snap on the timeline"),
+        TimelineFeature.toggle_snapping,
+        ("S",),
+        checked=snaps,
+    ),
+    _command(
+        "timeline_ripple",
+        "timeline",
+        tr_noop("&Ripple on the timeline"),
+        TimelineFeature.toggle_ripple,
+        ("Shift+R",),
+        checked=TimelineFeature.ripples,
+        tip=tr_noop("What follows goes along with what is moved"),
+    ),
+    _command(
+        "lock_layer",
+        "timeline",
+        tr_noop("&Lock the layer's requests"),
+        TimelineFeature.toggle_lock,
+        ("Shift+K",),
+        tip=tr_noop("Requests of the layer that is edited cannot be moved or taken back"),
+        checked=TimelineFeature.is_locked,
+    ),
+    _command(
+        "lane_taller",
+        "timeline",
+        tr_noop("Taller lane"),
+        partial(TimelineFeature.size_lane, factor=TALLER),
+        ("Alt+Shift+Up",),
+    ),
+    _command(
+        "lane_lower",
+        "timeline",
+        tr_noop("Lower lane"),
+        partial(TimelineFeature.size_lane, factor=1 / TALLER),
+        ("Alt+Shift+Down",),
+    ),
+    _command(
+        "automatic_cuts",
+        "timeline",
+        tr_noop("A&utomatic cuts"),
+        TimelineFeature.cut_automatically,
+        ("Ctrl+Shift+U",),
+        tip=tr_noop("The camera of the conversation on stage follows who speaks"),
+        enabled=conversation_performed,
+    ),
+    _command(
+        "captions",
+        "timeline",
+        tr_noop("&Captions"),
+        TimelineFeature.toggle_captions,
+        ("Shift+C",),
+        tip=tr_noop("The words of who speaks, at the bottom of the picture"),
+        checked=TimelineFeature.shows_captions,
+    ),
+    _command(
+        "what_if",
+        "timeline",
+        tr_noop("What other seeds would pla&y"),
+        TimelineFeature.toggle_other_seeds,
+        ("Shift+W",),
+        tip=tr_noop("Three more rows under the lanes; a click takes one over"),
+    ),
+    _command(
+        "what_if_others",
+        "timeline",
+        tr_noop("Three ot&her seeds"),
+        TimelineFeature.try_other_seeds,
+        tip=tr_noop("The next three, where other seeds are shown"),
+    ),
+    _command(
+        "requests_copy",
+        "timeline",
+        tr_noop("Copy re&quests"),
+        TimelineFeature.copy_requests,
+        tip=tr_noop("As a text that another window pastes, too; Ctrl+C on the timeline"),
+        enabled=all_of(requests_kept, requests_selected),
+    ),
+    _command(
+        "requests_paste",
+        "timeline",
+        tr_noop("Paste requests at the p&layhead"),
+        TimelineFeature.paste_requests,
+        tip=tr_noop("Ctrl+V on the timeline"),
+    ),
+    _command(
+        "live",
+        "live",
+        tr_noop("Li&ve"),
+        TimelineFeature.toggle_live,
+        ("Ctrl+L",),
+        tip=tr_noop("Let programs on this machine drive the character"),
+        checked=TimelineFeature.is_live,
+    ),
+)

@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.timeline.lane_view import Lanes
+from app.features.timeline.stage_words import cues, machine_words, marks_words, talk_words
 from app.features.timeline.voices import Voices
 from app.features.timeline.what_if import WhatIf
 from app.look import icons
@@ -29,7 +30,6 @@ from app.project.jobs import Jobs
 from app.stage.performance import Performance
 from app.stage.session import Session
 from app.translation import tr, tr_error
-from app.widgets.lane_geometry import outcome, wanted
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
@@ -39,7 +39,7 @@ from metagraph.graph import edits, performance_edits
 from metagraph.graph.conversation import side_name
 from metagraph.graph.conversation_edits import change_conversation
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.model import LAYERS, Project
+from metagraph.graph.model import Project
 from metagraph.graph.requests import Performance as KeptPerformance
 from metagraph.graph.words import FEELINGS
 
@@ -73,6 +73,28 @@ class TimelinePanel(QWidget):
         row = QHBoxLayout()
         row.setContentsMargins(12, 0, 12, 2)
         row.setSpacing(8)
+        self._add_choice(row)
+        self.magnet = self._switch(MAGNET, tr("Snap"), self.lanes.magnet.on)
+        self.ripple = self._switch(RIPPLE, tr("Ripple"), performance.requests.ripple)
+        for switch in (self.magnet, self.ripple):
+            row.addWidget(switch)
+        self._add_live(row)
+        self._add_chance(row)
+        layout.addLayout(row)
+        layout.addWidget(self.lanes, 1)
+        self.lanes.magnet.on = self.magnet.isChecked()
+        self.magnet.toggled.connect(self.lanes.magnet.set_on)
+        self.ripple.toggled.connect(lambda on: setattr(performance.requests, "ripple", on))
+        self._restyle()
+        self._spoken = QTimer(self, interval=500)  # the words about clients, while live
+        self._spoken.timeout.connect(self._words)
+        self._follow()
+        self._live()
+        self._restage()
+        self._switched()
+
+    def _add_choice(self, row: QHBoxLayout) -> None:
+        """Add which performance is on stage, what can be done with it, and what is said of it."""
         self.stage = ComboBox(
             self,
             toolTip=tr("Which performance is on stage; improvised, the models fill the time on their own"),
@@ -81,17 +103,16 @@ class TimelinePanel(QWidget):
         self.stage.setMinimumWidth(150)
         self.stage.activated.connect(self._put_on)
         row.addWidget(self.stage)
-        self.more = MoreButton(session.look, tr("Performances"), tr("New, rename, length, remove"), self)
+        self.more = MoreButton(self.session.look, tr("Performances"), tr("New, rename, length, remove"), self)
         self.more_menu = self.more.menu_of
         self.more_menu.aboutToShow.connect(self._fill)
         row.addWidget(self.more)
         self.title = Sentence(self)
         self.title.setMinimumHeight(2 * self.title.fontMetrics().height())
         row.addWidget(self.title, 1)
-        self.magnet = self._switch(MAGNET, tr("Snap"), self.lanes.magnet.on)
-        self.ripple = self._switch(RIPPLE, tr("Ripple"), performance.requests.ripple)
-        for switch in (self.magnet, self.ripple):
-            row.addWidget(switch)
+
+    def _add_live(self, row: QHBoxLayout) -> None:
+        """Add what was not met, and what is done live."""
         self.lost = make_widget(
             QToolButton, self, toolTip=tr("Select the next of them; its reason then stands beside")
         )
@@ -100,7 +121,7 @@ class TimelinePanel(QWidget):
         self.now = make_widget(
             QToolButton, self, text=tr("Back to now"), toolTip=tr("Follow what is played live again")
         )
-        self.now.clicked.connect(performance.live.follow)
+        self.now.clicked.connect(self.performance.live.follow)
         row.addWidget(self.now)
         self.live = make_widget(QToolButton, self, text=tr("Live"), checkable=True)
         self.live.setToolTip(
@@ -113,6 +134,9 @@ class TimelinePanel(QWidget):
         )
         self.ask.clicked.connect(self._ask)
         row.addWidget(self.ask)
+
+    def _add_chance(self, row: QHBoxLayout) -> None:
+        """Add the seed, and what others would bring."""
         row.addWidget(QLabel(tr("Seed"), self))
         # Whole numbers of 32 bits without a sign, which the other field does not hold.
         self.seed = DoubleSpinBox(
@@ -128,28 +152,20 @@ class TimelinePanel(QWidget):
         self.ghosts.toggled.connect(self.what_if.set_on)
         self.what_if.changed.connect(lambda: self.ghosts.setChecked(self.what_if.on))
         row.addWidget(self.ghosts)
-        layout.addLayout(row)
-        layout.addWidget(self.lanes, 1)
-        self.lanes.magnet.on = self.magnet.isChecked()
-        self.magnet.toggled.connect(self.lanes.magnet.set_on)
-        self.ripple.toggled.connect(lambda on: setattr(performance.requests, "ripple", on))
+
+    def _follow(self) -> None:
+        session, performance = self.session, self.performance
         session.look.changed.connect(self._restyle)
-        self._restyle()
         performance.changed.connect(self._words)
         session.transport.show_changed.connect(self._words)
         performance.live.changed.connect(self._live)
         session.transport.moved.connect(self._moved)
         session.transport.playing_changed.connect(self._moved)
-        self._spoken = QTimer(self, interval=500)  # the words about clients, while live
-        self._spoken.timeout.connect(self._words)
-        self._live()
         session.onstage.performance_changed.connect(self._restage)
         session.onstage.performance_changed.connect(self._words)
         session.onstage.conversation_changed.connect(self._restage)
         session.onstage.mode_changed.connect(self._switched)
-        document.changed.connect(lambda before, after: self._restage())
-        self._restage()
-        self._switched()
+        self.document.changed.connect(lambda before, after: self._restage())
 
     def _switch(self, tip: str, name: str, on: bool) -> QToolButton:
         """Return a button that stays pressed while something is on."""
@@ -379,6 +395,7 @@ class TimelinePanel(QWidget):
             self.lanes.reveal(lost[place % len(lost)])
 
     def _words(self) -> None:
+        """Say what is selected, what plays live, or what is seen."""
         shown, plan = self.performance.shown, self.session.transport.show == "plan"
         answers = self.performance.answers() if plan else {}
         lost = sum(1 for a in answers.values() if a.state == "refused")
@@ -387,73 +404,21 @@ class TimelinePanel(QWidget):
         self.lost.setAccessibleName(tr("{requests} could not be met", requests=many(lost, "request")))
         chosen = self.session.onstage.requests if plan else ()
         marks = [m for m in self.lanes.marks() if m.ask.id in chosen] if chosen else []
-        if len(marks) == 1:
-            self.title.say(
-                tr(
-                    "{outcome} Asked for: {wanted}.",
-                    outcome=outcome(marks[0].ask, marks[0].answer),
-                    wanted=wanted(marks[0]),
-                ).strip(),
-                True,
-            )
-            return
         if marks:
-            unmet, chosen_words = sum(1 for m in marks if m.lost), many(len(marks), "request")
-            self.title.say(
-                tr("{requests} selected", requests=chosen_words)
-                if not unmet
-                else tr(
-                    "{requests} selected, {unmet:,} of them could not be met",
-                    requests=chosen_words,
-                    unmet=unmet,
-                ),
-                True,
-            )
+            self.title.say(marks_words(marks), True)
         elif self.performance.live.stage is not None and plan:
             self.title.say(self.performance.live.stage.words())
         elif shown.clip is not None:
             self.title.say(tr("A clip alone. Click it again to play it in context, Esc for the performance."))
         elif self.session.onstage.mode == "manual":
-            count = sum(len(shown.plan.layers[layer].cues) for layer in LAYERS)
-            lost_words = "".join(f" {r.message[:1].upper()}{r.message[1:]}." for r in shown.plan.reports[-1:])
-            words = (
-                tr("{states} in {length:g} s.", states=many(count, "state"), length=shown.length)
-                if count
-                else tr("Nothing plays yet: drop clips and draw links.")
-            )
-            self.title.say(
-                tr("Alone. Esc for the whole machine.")
-                if self.session.transport.show == "context"
-                else words + lost_words
-            )
-        elif shown.others and self.session.transport.show == "plan":
-            talk = self.performance.document.project.conversations.get(
-                self.session.onstage.conversation or ""
-            )
-            who = side_name(talk, shown.side) if talk is not None else tr("One who talks")
-            gestures = sum(1 for cue in shown.plan.layers["arms"].cues if cue.action.kind == "gesture")
-            nods = len(shown.plan.layers["head"].cues)
-            if shown.motion is not None:
-                self.title.say(
-                    tr(
-                        "{who} moves with '{name}'; its graph would do this.",
-                        who=who,
-                        name=shown.project.clips[shown.motion].name,
-                    )
-                )
-                return
-            self.title.say(
-                tr(
-                    "{who} in conversation: {gestures} of the hands, {nods}.",
-                    who=who,
-                    gestures=many(gestures, "gesture"),
-                    nods=many(nods, "nod"),
-                )
-            )
+            self.title.say(machine_words(shown, self.session))
+        elif shown.others and plan:
+            talk = self.document.project.conversations.get(self.session.onstage.conversation or "")
+            self.title.say(talk_words(shown, talk))
         elif self.session.transport.show == "context":
             self.title.say(tr("In context: stance, action, back to the stance. Esc for the performance."))
         else:
-            count = sum(len(shown.plan.layers[layer].cues) for layer in LAYERS)
+            count = cues(shown)
             words = tr("{actions} in {length:g} s", actions=many(count, "action"), length=shown.length)
             empty = tr("Nothing plays yet: drop a clip on a stance and some around it.")
             self.title.say(

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.cli import render_command
-from app.cli.render_command import draw_to, figure_of
+from app.cli.render_command import Shot, draw_to, figure_of
 from app.project.files import SAMPLE
 from app.project.opening import open_whole
 from app.stage.playback_source import Shown
@@ -35,9 +35,8 @@ def test_actions_are_called_as_their_node_calls_them(project, tmp_path, monkeypa
 
     monkeypatch.setattr("preview.sheet.contact_sheet", contact_sheet)
     shown = Shown(project, make_plan(project, 10.0), 10.0)
-    draw_to(
-        tmp_path / "sheet.png", [(figure_of(project, SAMPLE.parent), shown)], 10.0, (96, 72), 30, 16, "dark"
-    )
+    seen = [(figure_of(project, SAMPLE.parent), shown)]
+    draw_to(tmp_path / "sheet.png", seen, Shot(10.0, (96, 72), 30, 16, "dark"))
     assert len(under) == 16 and under[0].startswith("0.00 s")
     named = [words for words in under if words.partition(" s")[2].strip()]
     assert named and not any("ChrLong" in words for words in named)

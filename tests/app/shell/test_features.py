@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -65,3 +67,26 @@ def test_a_feature_goes_by_deleting_its_folder_and_its_line(feature, gone, tmp_p
 def test_every_folder_of_a_feature_is_named_once():
     folders = {p.parent.name for p in (ROOT / "app" / "features").glob("*/__init__.py")}
     assert sorted(FEATURES) == sorted(folders)
+
+
+@pytest.fixture
+def greeting(monkeypatch):
+    """The feature that CONTRIBUTING.md has as its recipe, with its line among the others."""
+    page = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    (source,) = re.findall(r"^### Add a feature\n.*?^```python\n(.*?)^```$", page, re.M | re.S)
+    feature = ModuleType("app.features.greeting")
+    exec(compile(source, "greeting", "exec"), vars(feature))
+    monkeypatch.setitem(sys.modules, feature.__name__, feature)
+    monkeypatch.setattr("app.features.FEATURES", (*FEATURES, "greeting"))
+
+
+@pytest.mark.window
+@pytest.mark.fresh_window
+def test_a_feature_comes_by_its_folder_and_its_line(greeting, drive, toy):
+    (entry,) = [a for a in drive.menus["&Help"].actions() if a.objectName() == "greet"]
+    assert entry.text() == "&Greet" and entry.shortcut().toString() == "Ctrl+Alt+G"
+    drive.do("greet")
+    assert drive.window.statusBar().currentMessage() == f"Hello, {drive.document.project.name}"
+    drive.document.load(toy.project(), None)
+    drive.shell.actions.refresh()
+    assert not entry.isEnabled(), "it is for projects without a skeleton"

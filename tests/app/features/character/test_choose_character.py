@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import pytest
 from PySide6.QtWidgets import QFileDialog
 
-from app.features.character import choose_character
+from app.features.character.character_choice import choose_character
 from app.project.document import Document
 from app.project.jobs import Jobs
 from metagraph.formats import characters

@@ -35,7 +35,7 @@ def shown(drive):
 def test_a_stand_in_is_drawn_as_sticks_and_a_button_in_the_view_asks_for_a_character(
     drive, scene, monkeypatch
 ):
-    from app.features import character
+    from app.features.character import character_choice
 
     drive.importing.import_paths([str(scene / "proxy.glb")])
     drive.wait(lambda: isinstance(shown(drive), StickFigure))
@@ -44,7 +44,7 @@ def test_a_stand_in_is_drawn_as_sticks_and_a_button_in_the_view_asks_for_a_chara
     assert over.parentWidget().rect().contains(over.geometry())
     assert drive.document.project.character is None
     asked = []
-    monkeypatch.setattr(character, "choose_character", asked.append)
+    monkeypatch.setattr(character_choice, "choose_character", asked.append)
     QTest.mouseClick(over.button, Qt.MouseButton.LeftButton)
     assert len(asked) == 1
     drive.document.edit("Choose", lambda p: replace(p, character=str(scene / "proxy.glb")))

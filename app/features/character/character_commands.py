@@ -1,0 +1,373 @@
+"""The commands of the character: which one it is, its transport, and from where it is seen."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from app.features.character import character_choice
+from app.features.character.character_panel import PreviewPanel
+from app.features.character.mesh_menu import MeshButton
+from app.features.character.watch_commands import fill_watch
+from app.shell.actions import Command
+from app.shell.command_table import Feature, actions_selected, any_of, clips_selected, has_character
+from app.shell.context import Shell
+from app.shell.places import Places
+from app.shell.workspace_keeper import Workspaces
+from app.translation import tr, tr_noop
+from metagraph.graph import edits
+
+FRAME = 1 / 30  # seconds of a step
+FILE, PLAY, VIEW = "&File", "&Play", "&View"
+
+
+class CharacterFeature(Feature):
+    """Makes the panel of the character, and does the commands of this module."""
+
+    def __init__(self, shell: Shell) -> None:
+        super().__init__(shell)
+        self.stage, self.transport = shell.stage, self.session.transport
+
+    @property
+    def panel(self) -> PreviewPanel:
+        found: PreviewPanel = self.shell.panel("character")
+        return found
+
+    def make_panel(self) -> PreviewPanel:
+        shell, stage = self.shell, self.stage
+        panel = PreviewPanel(
+            self.session,
+            stage.performance,
+            stage.playhead,
+            stage.figures,
+            shell.widget,
+            lambda: shell.actions["character"].trigger(),
+            lambda: shell.actions["character"].isEnabled(),
+        )
+        panel.mesh_button = MeshButton(panel, self.show_meshes)
+        panel.watch_button.menu_of.aboutToShow.connect(lambda: fill_watch(shell, panel.watch_button.menu_of))
+        panel.view.failed.connect(shell.tell)
+        panel.view.painted.connect(lambda _: stage.painted.emit())
+        shell.services[Workspaces].changed.connect(lambda: panel.set_bare(shell.services[Places].alone))
+        return panel
+
+    # --- which character
+
+    def choose_character(self) -> None:
+        character_choice.choose_character(self.shell)
+
+    def show_meshes(self) -> None:
+        from app.features.character.meshes_dialog import MeshesDialog
+
+        MeshesDialog(self.document, self.stage.figures, self.shell.widget).show()
+
+    def draw_stick_figure(self) -> None:
+        self.document.edit(tr("Draw a stick figure"), lambda p: edits.set_character(p, None))
+
+    # --- transport
+
+    def play_or_pause(self) -> None:
+        self.transport.set_playing(not self.transport.playing)
+
+    def go_to_start(self) -> None:
+        self.transport.seek(0.0)
+
+    def step_back(self) -> None:
+        self._step(-FRAME)
+
+    def step_forward(self) -> None:
+        self._step(FRAME)
+
+    def _step(self, seconds: float) -> None:
+        self.transport.set_playing(False)
+        self.transport.seek(self.transport.seconds + seconds)
+
+    def toggle_mute(self) -> None:
+        self.stage.sound.set_muted(not self.stage.sound.muted)
+
+    def is_muted(self) -> bool:
+        return self.stage.sound.muted
+
+    def toggle_loop(self) -> None:
+        self.panel.toggle_loop()
+
+    def loops(self) -> bool:
+        return self.transport.loop
+
+    def show_performance(self) -> None:
+        self.transport.show_plan()
+
+    def shows_performance(self) -> bool:
+        return self.transport.show == "plan"
+
+    def play_alone(self) -> None:
+        """Play the first selected clip, else that of the first selected action."""
+        selection = self.session.selection
+        clips = (*selection.clips, *(a.clip for a in selection.selected_actions()))
+        if clips:
+            self.transport.show_clip(clips[0])
+
+    def play_in_context(self) -> None:
+        selected = (*self.session.selection.actions, *self.session.selection.clips)
+        if selected:
+            self.session.show_context(selected[0])
+
+    # --- view
+
+    def frame(self) -> None:
+        self.panel.frame_all()
+
+    def frame_face(self) -> None:
+        self.panel.frame_face()
+
+    def see_from(self, side: str) -> None:
+        self.panel.looking.see_from(side)
+
+    def see_hands(self) -> None:
+        self.panel.looking.see_hands()
+
+    def toggle_flat(self) -> None:
+        self.panel.looking.set_flat(not self.is_flat())
+
+    def is_flat(self) -> bool:
+        return self.panel.looking.flat
+
+    def toggle_turntable(self) -> None:
+        self.panel.looking.set_turning(not self.turns())
+
+    def turns(self) -> bool:
+        return self.panel.looking.turning
+
+    def toggle_trails(self) -> None:
+        self.panel.looking.set_trailing(not self.shows_trails())
+
+    def shows_trails(self) -> bool:
+        return self.panel.looking.trailing
+
+    def copy_picture(self) -> None:
+        self.panel.looking.copy()
+
+    def toggle_skeleton(self) -> None:
+        self.panel.toggle_bones()
+
+    def shows_skeleton(self) -> bool:
+        return self.panel.bones
+
+    def show_only_character(self) -> None:
+        places = self.shell.services[Places]
+        places.only("character")
+        self.panel.set_bare(places.alone)
+
+
+SIDES = {
+    "front": (tr_noop("From the f&ront"), "Num+1"),
+    "left": (tr_noop("From its &left"), "Num+3"),
+    "right": (tr_noop("From its ri&ght"), "Ctrl+Num+3"),
+    "back": (tr_noop("From b&ehind"), "Ctrl+Num+1"),
+    "quarter": (tr_noop("&Three quarters"), "Num+9"),
+    "above": (tr_noop("From a&bove"), "Num+7"),
+}
+COMMANDS = (
+    Command(
+        "character",
+        FILE,
+        "character",
+        tr_noop("Choose &character…"),
+        CharacterFeature.choose_character,
+        tip=tr_noop("The GLB that is drawn"),
+    ),
+    Command(
+        "meshes",
+        FILE,
+        "character",
+        tr_noop("&Meshes of the character…"),
+        CharacterFeature.show_meshes,
+        tip=tr_noop("Which of its meshes are drawn"),
+        enabled=has_character,
+    ),
+    Command(
+        "no_character",
+        FILE,
+        "character",
+        tr_noop("Draw a stick figure"),
+        CharacterFeature.draw_stick_figure,
+        enabled=has_character,
+    ),
+    Command(
+        "play",
+        PLAY,
+        "transport",
+        tr_noop("Play or &pause"),
+        CharacterFeature.play_or_pause,
+        ("Space",),
+        study=True,
+    ),
+    Command(
+        "to_start",
+        PLAY,
+        "transport",
+        tr_noop("Back to the &start"),
+        CharacterFeature.go_to_start,
+        ("Home",),
+        study=True,
+    ),
+    Command(
+        "back", PLAY, "transport", tr_noop("A frame back"), CharacterFeature.step_back, (",",), study=True
+    ),
+    Command(
+        "forward",
+        PLAY,
+        "transport",
+        tr_noop("A frame forward"),
+        CharacterFeature.step_forward,
+        (".",),
+        study=True,
+    ),
+    Command(
+        "mute",
+        PLAY,
+        "live",
+        tr_noop("&Mute"),
+        CharacterFeature.toggle_mute,
+        ("Ctrl+M",),
+        checked=CharacterFeature.is_muted,
+        study=True,
+    ),
+    Command(
+        "loop",
+        PLAY,
+        "live",
+        tr_noop("&Loop"),
+        CharacterFeature.toggle_loop,
+        ("L",),
+        checked=CharacterFeature.loops,
+        study=True,
+    ),
+    Command(
+        "show_plan",
+        PLAY,
+        "show",
+        tr_noop("The whole &performance"),
+        CharacterFeature.show_performance,
+        ("Escape",),
+        checked=CharacterFeature.shows_performance,
+        study=True,
+    ),
+    Command(
+        "alone",
+        PLAY,
+        "show",
+        tr_noop("The clip &alone"),
+        CharacterFeature.play_alone,
+        ("Ctrl+Return",),
+        enabled=any_of(clips_selected, actions_selected),
+        study=True,
+    ),
+    Command(
+        "in_context",
+        PLAY,
+        "show",
+        tr_noop("In &context"),
+        CharacterFeature.play_in_context,
+        ("Shift+Return",),
+        enabled=any_of(clips_selected, actions_selected),
+        study=True,
+    ),
+    Command(
+        "frame",
+        VIEW,
+        "character",
+        tr_noop("&Frame the character"),
+        CharacterFeature.frame,
+        ("F",),
+        study=True,
+    ),
+    Command(
+        "face",
+        VIEW,
+        "character",
+        tr_noop("Close-up of the &face"),
+        CharacterFeature.frame_face,
+        ("Shift+F",),
+        study=True,
+    ),
+    *(
+        Command(
+            f"see_{side}",
+            VIEW,
+            "sides",
+            words,
+            partial(CharacterFeature.see_from, side=side),
+            (key,),
+            study=True,
+        )
+        for side, (words, key) in SIDES.items()
+    ),
+    Command(
+        "see_hands",
+        VIEW,
+        "sides",
+        tr_noop("Close-up of the &hands"),
+        CharacterFeature.see_hands,
+        ("Shift+H",),
+        study=True,
+    ),
+    Command(
+        "flat",
+        VIEW,
+        "sides",
+        tr_noop("&Orthographic"),
+        CharacterFeature.toggle_flat,
+        ("Num+5",),
+        checked=CharacterFeature.is_flat,
+        tip=tr_noop("Near and far of one size"),
+        study=True,
+    ),
+    Command(
+        "turntable",
+        VIEW,
+        "sides",
+        tr_noop("T&urntable"),
+        CharacterFeature.toggle_turntable,
+        checked=CharacterFeature.turns,
+        study=True,
+    ),
+    Command(
+        "trails",
+        VIEW,
+        "sides",
+        tr_noop("Trails of hands an&d head"),
+        CharacterFeature.toggle_trails,
+        ("Shift+T",),
+        checked=CharacterFeature.shows_trails,
+        tip=tr_noop("Where they were and will be; a dot for each frame"),
+        study=True,
+    ),
+    Command(
+        "copy_picture",
+        VIEW,
+        "character",
+        tr_noop("&Copy the picture"),
+        CharacterFeature.copy_picture,
+        ("Ctrl+Shift+C",),
+        tip=tr_noop("The character as it stands, to the clipboard"),
+    ),
+    Command(
+        "bones",
+        VIEW,
+        "character",
+        tr_noop("Show the &skeleton"),
+        CharacterFeature.toggle_skeleton,
+        ("B",),
+        checked=CharacterFeature.shows_skeleton,
+        study=True,
+    ),
+    Command(
+        "big",
+        VIEW,
+        "character",
+        tr_noop("Only the &character"),
+        CharacterFeature.show_only_character,
+        ("F11",),
+        study=True,
+    ),
+)

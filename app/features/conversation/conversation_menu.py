@@ -1,0 +1,194 @@
+"""The commands of the menu Conversation; what does them is imported when the first of them is wanted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+from PySide6.QtWidgets import QMenu, QWidget
+
+from app.project.files import Files
+from app.project.importing import FileDrop
+from app.project.speech_files import SOUNDS, converses, kinds_of
+from app.shell.actions import Command
+from app.shell.command_table import Feature, conversation_staged
+from app.translation import tr_noop
+from metagraph.graph.conversation import Conversation
+
+MENU = "&Conversation"
+SHORT = "conversation"  # the panel's own menu
+
+
+class ConversationFeature(Feature):
+    """Makes the panel of the conversation, and does the commands of this module."""
+
+    def make_panel(self) -> QWidget:
+        from app.features.conversation.conversation_panel import ConversationPanel
+
+        shell = self.shell
+        panel = ConversationPanel(self.document, self.session, shell.jobs, self.performance, shell.widget)
+        panel.files_dropped.connect(self.converse)
+        panel.view.more = self.edit_sounds
+        panel.add.clicked.connect(lambda: self.converse())
+        panel.more_menu.addActions(shell.actions.of_menu(SHORT))
+        panel.more_menu.aboutToShow.connect(shell.actions.refresh)
+        return panel
+
+    def drop(self) -> FileDrop:
+        """Return what a drop of sounds on the window does."""
+        return FileDrop(SOUNDS, self._claim, self._take)
+
+    def _claim(self, paths: Sequence[Path]) -> Sequence[Path]:
+        sounds, transcripts = kinds_of(paths)
+        mine = (*sounds, *transcripts)
+        return mine if sounds and converses(mine) else ()
+
+    def _take(self, paths: Sequence[Path]) -> None:
+        if not self.shell.services[Files].refuse():
+            self.converse(paths)
+
+    def talk(self) -> Conversation | None:
+        """The conversation on stage."""
+        return self.document.project.conversations.get(self.session.onstage.conversation or "")
+
+    def do(self, name: str) -> None:
+        """Do one of `conversation_commands`."""
+        from app.features.conversation import conversation_commands
+
+        getattr(conversation_commands, name)(self.shell)
+
+    def converse(self, paths: Sequence[Path] = ()) -> None:
+        from app.features.conversation import conversation_commands
+
+        conversation_commands.converse(self.shell, paths)
+
+    def edit_sounds(self) -> None:
+        self.do("side_sounds")
+
+    def fill_partners(self, menu: QMenu) -> None:
+        """Fill the menu of who is drawn, moved and heard how."""
+        from app.features.conversation.partner_menu import fill_all
+
+        if self.talk() is not None:
+            fill_all(menu, self.document, str(self.session.onstage.conversation), self.edit_sounds)
+
+    def show_next_side(self) -> None:
+        """Show the plan of the next of those who talk."""
+        talk, onstage = self.talk(), self.session.onstage
+        onstage.set_side((onstage.side + 1) % (len(talk.sides) if talk is not None else 2))
+
+    def keep_as_performances(self) -> None:
+        self.performance.keep_conversation()
+
+    def moves_without_graph(self) -> bool:
+        """Whether somebody on stage moves with new motion instead of a graph."""
+        talk = self.talk()
+        return talk is not None and any(side.motion is not None for side in talk.sides)
+
+
+COMMANDS = (
+    Command(
+        "converse",
+        MENU,
+        "read",
+        tr_noop("Conversation from &sound…"),
+        ConversationFeature.converse,
+        menus=(SHORT,),
+        tip=tr_noop("Read what two or more say, and let a character each move with it"),
+    ),
+    Command(
+        "rename_conversation",
+        MENU,
+        "settings",
+        tr_noop("Re&name conversation…"),
+        partial(ConversationFeature.do, name="rename"),
+        enabled=conversation_staged,
+        menus=(SHORT,),
+    ),
+    Command(
+        "rates",
+        MENU,
+        "settings",
+        tr_noop("&Rates…"),
+        partial(ConversationFeature.do, name="rates"),
+        enabled=conversation_staged,
+        tip=tr_noop("How often each gestures and nods"),
+        menus=(SHORT,),
+    ),
+    Command(
+        "word_lists",
+        MENU,
+        "settings",
+        tr_noop("&Word lists…"),
+        partial(ConversationFeature.do, name="word_lists"),
+        enabled=conversation_staged,
+        tip=tr_noop("Which words are responses, which hesitations"),
+        menus=(SHORT,),
+    ),
+    Command(
+        "side_sounds",
+        MENU,
+        "settings",
+        tr_noop("S&ounds and names…"),
+        ConversationFeature.edit_sounds,
+        enabled=conversation_staged,
+        tip=tr_noop("Who talks, which sound is whose, and where each stands"),
+        menus=(SHORT,),
+    ),
+    Command(
+        "partners",
+        MENU,
+        "settings",
+        tr_noop("C&haracters and voices"),
+        fill=ConversationFeature.fill_partners,
+        enabled=conversation_staged,
+        tip=tr_noop("Another character, body or voice for each who talks"),
+    ),
+    Command(
+        "other_side",
+        MENU,
+        "stage",
+        tr_noop("The &other's plan"),
+        ConversationFeature.show_next_side,
+        enabled=conversation_staged,
+        tip=tr_noop("Whose plan the timeline shows: of several the next one's"),
+    ),
+    Command(
+        "graph_again",
+        MENU,
+        "stage",
+        tr_noop("Move with the &graph again"),
+        partial(ConversationFeature.do, name="graph_again"),
+        enabled=ConversationFeature.moves_without_graph,
+        tip=tr_noop("Instead of new motion that was found for it"),
+    ),
+    Command(
+        "keep_conversation",
+        MENU,
+        "stage",
+        tr_noop("&Keep as performances"),
+        ConversationFeature.keep_as_performances,
+        enabled=conversation_staged,
+        tip=tr_noop("What all of them do, as requests that can be edited one by one, and exported"),
+    ),
+    Command(
+        "write_segments",
+        MENU,
+        "write",
+        tr_noop("&Export segments…"),
+        partial(ConversationFeature.do, name="write_segments"),
+        enabled=conversation_staged,
+        tip=tr_noop("As ELAN or Praat TextGrid"),
+        menus=(SHORT,),
+    ),
+    Command(
+        "remove_conversation",
+        MENU,
+        "remove",
+        tr_noop("Remove conversation"),
+        partial(ConversationFeature.do, name="remove"),
+        enabled=conversation_staged,
+        menus=(SHORT,),
+    ),
+)

@@ -1,0 +1,259 @@
+"""The commands that open, save and import, and undo and redo."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from PySide6.QtWidgets import QMenu
+
+from app.features.files.import_line import ImportLine
+from app.features.files.import_report import show_report
+from app.project.files import PRACTICE, SAMPLE, SEATED, Files
+from app.project.importing import Importing
+from app.project.label_files import LabelFiles
+from app.project.watching import Watcher
+from app.shell.actions import Command, Standard
+from app.shell.command_table import Feature
+from app.shell.context import Shell
+from app.translation import tr, tr_noop
+from metagraph.formats.imports import Imported
+
+FILE, EDIT = "&File", "&Edit"
+
+
+class FileFeature(Feature):
+    """Does the commands of this module, and reports what came of opening and importing."""
+
+    def __init__(self, shell: Shell) -> None:
+        super().__init__(shell)
+        self.files, self.importing = shell.services[Files], shell.services[Importing]
+        self.watcher, self.undo_stack = shell.services[Watcher], shell.document.undo_stack
+        self.labels = LabelFiles(shell.document, shell.jobs, self.files, self.importing, shell.widget)
+        self.watcher.set_on(str(shell.settings.value("watch", "true")) == "true")
+        report = partial(show_report, shell)
+        self.files.opened.connect(self.session.open_project)
+        self.files.report.connect(report)
+        self.importing.report.connect(report)
+        self.importing.imported.connect(self.select_imported)
+
+    def make_import_line(self) -> ImportLine:
+        shell = self.shell
+        return ImportLine(
+            self.document,
+            self.importing,
+            lambda command: shell.actions[command].trigger(),
+            partial(show_report, shell),
+            shell.widget,
+        )
+
+    def select_imported(self, result: Imported, place: object) -> None:
+        """Select a clip that was imported alone, not dropped on a place."""
+        load = self.importing.load_for(result)
+        if place is None and load.clips:
+            self.session.selection.select_clips(load.clips if len(load.clips) < 2 else ())
+
+    # --- projects
+
+    def new(self) -> None:
+        self.files.new()
+
+    def ask_open(self) -> None:
+        self.files.ask_open()
+
+    def fill_recent(self, menu: QMenu) -> None:
+        for path in self.files.recent():
+            menu.addAction(f"{path.name.split('.')[0]}   {path.parent}", partial(self.files.open, path))
+        if menu.isEmpty():
+            menu.addAction(tr("None yet")).setEnabled(False)
+
+    def open_sample(self) -> None:
+        self.files.open(SAMPLE, template=True)
+
+    def open_seated(self) -> None:
+        self.files.open(SEATED, template=True)
+
+    def open_practice(self) -> None:
+        self.files.open(PRACTICE, template=True)
+
+    def recover(self) -> None:
+        self.files.recover()
+
+    def ask_network(self) -> None:
+        self.files.network.ask()
+
+    def save(self) -> None:
+        self.files.save()
+
+    def save_as(self) -> None:
+        self.files.save_as()
+
+    def is_saved(self) -> bool:
+        """Whether the project has a file."""
+        return self.document.path is not None
+
+    def show_versions(self) -> None:
+        from app.features.files.versions_dialog import Found, VersionsDialog, found_versions
+        from app.project.questions import moment_words
+
+        path, now = self.document.path, self.document.project
+        if path is None:
+            return
+
+        def open_copy(found: Found) -> None:
+            words = moment_words(found.version.saved).replace(":", ".")
+            self.files.open(found.version.path, template=True, name=f"{now.name} {words}")
+
+        def show(found: tuple[Found, ...]) -> None:
+            if self.document.path == path:
+                VersionsDialog(path.name, found, open_copy, self.shell.widget).open()
+
+        self.shell.jobs.start(
+            tr("Reading earlier versions"), lambda _: found_versions(path, now), show, self.files.show_failure
+        )
+
+    # --- clips
+
+    def import_folder(self) -> None:
+        self.importing.ask_import_folder()
+
+    def import_files(self) -> None:
+        self.importing.ask_import_files()
+
+    def import_labels(self) -> None:
+        self.labels.ask()
+
+    def find_missing(self) -> None:
+        self.importing.find_missing()
+
+    def toggle_watching(self) -> None:
+        self.watcher.set_on(not self.watcher.on)
+        self.shell.settings.setValue("watch", "true" if self.watcher.on else "false")
+        self.shell.actions.refresh()
+
+    def watches(self) -> bool:
+        return self.watcher.on
+
+    # --- history
+
+    def undo(self) -> None:
+        self.document.undo()
+
+    def can_undo(self) -> bool:
+        return self.undo_stack.canUndo()
+
+    def undo_text(self) -> str:
+        return tr("&Undo {what}", what=self.undo_stack.undoText()).strip()
+
+    def redo(self) -> None:
+        self.document.redo()
+
+    def can_redo(self) -> bool:
+        return self.undo_stack.canRedo()
+
+    def redo_text(self) -> str:
+        return tr("&Redo {what}", what=self.undo_stack.redoText()).strip()
+
+
+COMMANDS = (
+    Command("new", FILE, "project", tr_noop("&New project"), FileFeature.new, (Standard.New,)),
+    Command("open", FILE, "project", tr_noop("&Open…"), FileFeature.ask_open, (Standard.Open,)),
+    Command("recent", FILE, "project", tr_noop("Open &recent"), fill=FileFeature.fill_recent),
+    Command("sample", FILE, "project", tr_noop("Open the &sample project"), FileFeature.open_sample),
+    Command(
+        "seated",
+        FILE,
+        "project",
+        tr_noop("Open the seate&d project"),
+        FileFeature.open_seated,
+        tip=tr_noop("Somebody who sits on a stool, and gets up when asked"),
+    ),
+    Command(
+        "practice",
+        FILE,
+        "project",
+        tr_noop("Open the &practice project"),
+        FileFeature.open_practice,
+        tip=tr_noop("152 clips to label"),
+    ),
+    Command(
+        "recover",
+        FILE,
+        "project",
+        tr_noop("Reco&ver…"),
+        FileFeature.recover,
+        tip=tr_noop("All work that is in no file, of windows that were not closed properly"),
+    ),
+    Command(
+        "network",
+        FILE,
+        "project",
+        tr_noop("Files on other &computers…"),
+        FileFeature.ask_network,
+        tip=tr_noop("Whether files on other computers that this project names are opened"),
+    ),
+    Command("save", FILE, "save", tr_noop("&Save"), FileFeature.save, (Standard.Save,)),
+    Command("save_as", FILE, "save", tr_noop("Save &as…"), FileFeature.save_as, (Standard.SaveAs,)),
+    Command(
+        "versions",
+        FILE,
+        "save",
+        tr_noop("Earlier &versions…"),
+        FileFeature.show_versions,
+        tip=tr_noop("What each save has kept of this project, and how many are kept"),
+        enabled=FileFeature.is_saved,
+    ),
+    Command(
+        "import",
+        FILE,
+        "import",
+        tr_noop("&Import folder…"),
+        FileFeature.import_folder,
+        ("Ctrl+I",),
+        icon="folder",
+    ),
+    Command(
+        "import_files", FILE, "import", tr_noop("Import &files…"), FileFeature.import_files, ("Ctrl+Shift+I",)
+    ),
+    Command(
+        "import_labels",
+        FILE,
+        "import",
+        tr_noop("Import &labels…"),
+        FileFeature.import_labels,
+        tip=tr_noop("A file of labels, as Blender's add-on writes it, with the clips beside it"),
+    ),
+    Command(
+        "watch",
+        FILE,
+        "import",
+        tr_noop("Follow changed &files"),
+        FileFeature.toggle_watching,
+        checked=FileFeature.watches,
+        tip=tr_noop("Clips that are exported again are read again, in place"),
+    ),
+    Command("find_missing", FILE, "import", tr_noop("Find missing files…"), FileFeature.find_missing),
+    Command(
+        "undo",
+        EDIT,
+        "history",
+        FileFeature.undo_text,
+        FileFeature.undo,
+        (Standard.Undo,),
+        tip=tr_noop("Undo"),
+        icon="undo",
+        enabled=FileFeature.can_undo,
+        study=True,
+    ),
+    Command(
+        "redo",
+        EDIT,
+        "history",
+        FileFeature.redo_text,
+        FileFeature.redo,
+        (Standard.Redo, "Ctrl+Y"),
+        tip=tr_noop("Redo"),
+        icon="redo",
+        enabled=FileFeature.can_redo,
+        study=True,
+    ),
+)

@@ -1,0 +1,62 @@
+"""What is said of what is on stage: of selected requests, of the machine drawn by hand, of who talks."""
+
+from __future__ import annotations
+
+from app.look.plural import many
+from app.stage.playback_source import Shown
+from app.stage.session import Session
+from app.translation import tr
+from app.widgets.lane_geometry import Mark, outcome, wanted
+from metagraph.graph.conversation import Conversation, side_name
+from metagraph.graph.model import LAYERS
+
+
+def cues(shown: Shown) -> int:
+    """Return how much plays on all layers."""
+    return sum(len(shown.plan.layers[layer].cues) for layer in LAYERS)
+
+
+def marks_words(marks: list[Mark]) -> str:
+    """Return what is said of selected requests."""
+    if len(marks) == 1:
+        return tr(
+            "{outcome} Asked for: {wanted}.",
+            outcome=outcome(marks[0].ask, marks[0].answer),
+            wanted=wanted(marks[0]),
+        ).strip()
+    unmet, chosen = sum(1 for m in marks if m.lost), many(len(marks), "request")
+    if not unmet:
+        return tr("{requests} selected", requests=chosen)
+    return tr("{requests} selected, {unmet:,} of them could not be met", requests=chosen, unmet=unmet)
+
+
+def machine_words(shown: Shown, session: Session) -> str:
+    """Return what is said of the machine drawn by hand."""
+    if session.transport.show == "context":
+        return tr("Alone. Esc for the whole machine.")
+    count = cues(shown)
+    words = (
+        tr("{states} in {length:g} s.", states=many(count, "state"), length=shown.length)
+        if count
+        else tr("Nothing plays yet: drop clips and draw links.")
+    )
+    return words + "".join(f" {r.message[:1].upper()}{r.message[1:]}." for r in shown.plan.reports[-1:])
+
+
+def talk_words(shown: Shown, talk: Conversation | None) -> str:
+    """Return what is said of the one whose plan of a conversation is seen."""
+    who = side_name(talk, shown.side) if talk is not None else tr("One who talks")
+    if shown.motion is not None:
+        return tr(
+            "{who} moves with '{name}'; its graph would do this.",
+            who=who,
+            name=shown.project.clips[shown.motion].name,
+        )
+    gestures = sum(1 for cue in shown.plan.layers["arms"].cues if cue.action.kind == "gesture")
+    nods = len(shown.plan.layers["head"].cues)
+    return tr(
+        "{who} in conversation: {gestures} of the hands, {nods}.",
+        who=who,
+        gestures=many(gestures, "gesture"),
+        nods=many(nods, "nod"),
+    )

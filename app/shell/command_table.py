@@ -1,0 +1,81 @@
+"""A feature's commands as a static table, and what they are enabled by.
+
+A table is a tuple of `Command`s whose functions take the feature and whose texts are marked by `tr_noop`; of
+it `bound` makes the commands of one window. What enables a command is a named condition, and `all_of`,
+`any_of` and `not_` combine conditions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+from app.shell.actions import Command
+from app.shell.context import Shell
+from app.translation import tr
+
+Condition = Callable[[Any], bool]
+
+
+class Feature:
+    """What a feature knows and does in one window: its commands are methods, its state attributes."""
+
+    def __init__(self, shell: Shell) -> None:
+        self.shell, self.document = shell, shell.document
+        self.session, self.performance = shell.stage.session, shell.stage.performance
+
+
+def bound(table: Iterable[Command], feature: Feature) -> tuple[Command, ...]:
+    """Return a table's commands in the window's language, each done by the feature."""
+    return tuple(_bound(command, feature) for command in table)
+
+
+def _bound(command: Command, feature: Feature) -> Command:
+    of_feature: dict[str, Any] = {
+        name: partial(function, feature)
+        for name in ("run", "enabled", "checked", "visible", "fill")
+        if (function := getattr(command, name)) is not None
+    }
+    text = partial(command.text, feature) if callable(command.text) else tr(command.text)
+    return replace(command, text=text, tip=tr(command.tip) if command.tip else "", **of_feature)
+
+
+def all_of(*conditions: Condition) -> Condition:
+    """Return the condition that all of them are met."""
+    return lambda feature: all(met(feature) for met in conditions)
+
+
+def any_of(*conditions: Condition) -> Condition:
+    """Return the condition that one of them is met."""
+    return lambda feature: any(met(feature) for met in conditions)
+
+
+def not_(condition: Condition) -> Condition:
+    """Return the condition that it is not met."""
+    return lambda feature: not condition(feature)
+
+
+def clips_selected(feature: Feature) -> bool:
+    return bool(feature.session.selection.clips)
+
+
+def actions_selected(feature: Feature) -> bool:
+    return bool(feature.session.selection.actions)
+
+
+def meta_graph_shown(feature: Feature) -> bool:
+    return feature.session.onstage.mode == "meta"
+
+
+def has_skeleton(feature: Feature) -> bool:
+    return feature.document.project.skeleton is not None
+
+
+def has_character(feature: Feature) -> bool:
+    return feature.document.project.character is not None
+
+
+def conversation_staged(feature: Feature) -> bool:
+    return feature.session.onstage.conversation is not None

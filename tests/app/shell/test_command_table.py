@@ -1,0 +1,75 @@
+"""A table's commands are done by the feature they are bound to, in the window's language."""
+
+from __future__ import annotations
+
+import itertools
+from types import SimpleNamespace
+
+import pytest
+
+from app import translation
+from app.shell.actions import Command
+from app.shell.command_table import all_of, any_of, bound, not_
+from app.translation import tr_noop
+
+TABLE = (
+    Command(
+        "undo",
+        "&Edit",
+        "history",
+        lambda feature: f"Undo {feature.name}",
+        lambda feature: feature.done.append("undo"),
+        ("Ctrl+Z",),
+        tip=tr_noop("Undo"),
+        enabled=lambda feature: feature.on,
+        checked=lambda feature: not feature.on,
+    ),
+    Command(
+        "fill", "&Edit", "history", tr_noop("Undo"), fill=lambda feature, menu: feature.done.append(menu)
+    ),
+)
+
+
+@pytest.fixture
+def feature():
+    yield SimpleNamespace(name="move", on=True, done=[])
+    translation.choose("en")
+
+
+def test_a_command_asks_and_does_what_its_feature_says(feature):
+    undo, fill = bound(TABLE, feature)
+    undo.run()
+    fill.fill("a menu")
+    assert feature.done == ["undo", "a menu"]
+    assert undo.enabled() and not undo.checked() and undo.words == "Undo move"
+    feature.on, feature.name = False, "turn"
+    assert not undo.enabled() and undo.checked() and undo.words == "Undo turn"
+    assert (undo.id, undo.keys, undo.visible) == ("undo", ("Ctrl+Z",), None)
+    fill.run()  # a submenu does nothing itself
+
+
+def test_two_windows_have_commands_of_their_own(feature):
+    other = SimpleNamespace(name="other", on=False, done=[])
+    (mine, _), (theirs, _) = bound(TABLE, feature), bound(TABLE, other)
+    theirs.run()
+    assert other.done and not feature.done and mine.enabled() and not theirs.enabled()
+
+
+def test_texts_are_in_the_language_that_is_chosen_when_the_window_is_made(feature):
+    translation.choose("de")
+    undo, fill = bound(TABLE, feature)
+    assert undo.tip == fill.words == translation.words_of("de")["Undo"] != "Undo"
+
+
+def test_conditions_combine():
+    def first(feature):
+        return feature[0]
+
+    def second(feature):
+        return feature[1]
+
+    for a, b in itertools.product((False, True), repeat=2):
+        assert all_of(first, second)((a, b)) == (a and b)
+        assert any_of(first, second)((a, b)) == (a or b)
+        assert not_(all_of(first, not_(second)))((a, b)) == (not a or b)
+    assert all_of()(()) and not any_of()(())
