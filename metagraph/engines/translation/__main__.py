@@ -3,14 +3,26 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable
+from pathlib import Path
 
 from metagraph.engines.translation.gesture_word_lists import gesture_word_lists
+from metagraph.engines.translation.listing import RUNTIMES
 from metagraph.engines.translation.translating import translated
+
+ATTRIBUTES = RUNTIMES / ".gitattributes"
+
+
+def mark_generated(paths: Iterable[Path]) -> str:
+    """Return Git attributes that fold these files in differences, and leave them out of counts of code."""
+    names = sorted(path.relative_to(RUNTIMES).as_posix() for path in paths)
+    return "".join(f"{name} linguist-generated\n" for name in names)
 
 
 def main() -> int:
     """Write what differs; say what."""
-    for path, text in (translated() | gesture_word_lists()).items():
+    files = translated() | gesture_word_lists()
+    for path, text in (files | {ATTRIBUTES: mark_generated(files)}).items():
         if not path.exists() or path.read_text(encoding="utf-8") != text:
             path.write_text(text, encoding="utf-8")
             print(path)

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from metagraph.engines.translation.__main__ import ATTRIBUTES, mark_generated
+from metagraph.engines.translation.gesture_word_lists import gesture_word_lists
 from metagraph.engines.translation.listing import LISTING, NATIVE, RUNTIMES, Translated
 from metagraph.engines.translation.lowering import module_of
 from metagraph.engines.translation.printing import TranslationError
@@ -36,6 +38,8 @@ def test_the_runtimes_hold_what_is_translated_today(sources: dict[Translated, So
     """Else: `.venv/bin/python -m metagraph.engines.translation`."""
     made = printed({one: module_of(sources[one]) for one in LISTING}, NATIVE)
     assert not [path for path, text in made.items() if (RUNTIMES / path).read_text(encoding="utf-8") != text]
+    every = [*(RUNTIMES / path for path in made), *gesture_word_lists()]
+    assert ATTRIBUTES.read_text() == mark_generated(every), "who reads a change need not read these"
 
 
 @pytest.fixture(scope="module")
