@@ -169,8 +169,21 @@ def pytest_configure(config: pytest.Config) -> None:
         kernels.make()
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put the files that take longest first; the others keep their order."""
+def pytest_report_header() -> str:
+    """Say what is left for the night."""
+    return "" if THOROUGH else "nightly tests run with METAGRAPH_THOROUGH=1, or when their file is named"
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave nightly tests out, but those whose file is named. Put the files that take longest first; the
+    others keep their order.
+    """
+    named = {Path(word.partition("::")[0]).resolve() for word in config.args if word.partition("::")[0]}
+    left = [] if THOROUGH else [x for x in items if x.get_closest_marker("nightly") and x.path not in named]
+    if left:
+        config.hook.pytest_deselected(items=left)
+        later = set(left)
+        items[:] = [item for item in items if item not in later]
     place = {str(ROOT / "tests" / name): n for n, name in enumerate(LONG)}
     items.sort(key=lambda item: place.get(str(item.path), len(LONG)))
 

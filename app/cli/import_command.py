@@ -10,7 +10,7 @@ from app.cli.command_output import opened, say
 from app.cli.outputs import ProjectOutput, project_name
 from metagraph.errors import FileError
 from metagraph.formats.action_labels import labelled, read_labels
-from metagraph.formats.clips import SUFFIXES
+from metagraph.formats.clip_readers import clip_suffixes
 from metagraph.formats.import_words import counted, remedies, said
 from metagraph.formats.imports import import_files
 from metagraph.formats.project_pieces import read_other_project
@@ -102,7 +102,10 @@ def _imported(options: Namespace, output: ProjectOutput) -> int:
     if files and not result.loaded and not result.failures:
         place = ", ".join(str(p) for p in files)
         raise FileError(
-            place, "no clip was found in it", "on importing it", f"Clips are {', '.join(SUFFIXES)} files."
+            place,
+            "no clip was found in it",
+            "on importing it",
+            f"Clips are {', '.join(clip_suffixes())} files.",
         )
     for failure in counted(result.failures):
         print(f"left out: {failure}", file=sys.stderr)

@@ -19,7 +19,7 @@ from app.project.kept_maps import kept_maps
 from app.project.load import Load
 from app.project.opening import take_over
 from app.translation import tr, tr_told
-from metagraph.formats.clips import SUFFIXES
+from metagraph.formats.clip_readers import clip_suffixes
 from metagraph.formats.import_words import Remedy, counted, head, said
 from metagraph.formats.imports import Imported, Strangers, import_files
 from metagraph.formats.repairs import repairs_of
@@ -72,7 +72,7 @@ class Importing(QObject):
 
     def takes(self, paths: Sequence[Path]) -> bool:
         """Return whether there may be anything among files that is of use, by their names."""
-        ends = (*SUFFIXES, *(suffix for drop in self.drops for suffix in drop.suffixes))
+        ends = (*clip_suffixes(), *(suffix for drop in self.drops for suffix in drop.suffixes))
         return any(not path.suffix or path.name.lower().endswith(ends) for path in paths)
 
     def ask_import_folder(self) -> None:

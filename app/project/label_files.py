@@ -17,7 +17,7 @@ from app.project.files import Files
 from app.project.importing import FileDrop, Importing
 from app.project.jobs import Job, Jobs
 from app.translation import tr
-from metagraph.formats.clips import SUFFIXES
+from metagraph.formats.clip_readers import clip_suffixes
 from metagraph.formats.imports import Imported
 from metagraph.graph.model import Project
 
@@ -48,7 +48,9 @@ class ReadLabels:
 def clips_beside(path: Path) -> list[Path]:
     """Return the files of clips that are called as a file of labels is: `talk.glb` for `talk.labels.json`."""
     stem = path.name.removesuffix(ENDING)
-    return [path.with_name(stem + ending) for ending in SUFFIXES if path.with_name(stem + ending).is_file()]
+    return [
+        path.with_name(stem + ending) for ending in clip_suffixes() if path.with_name(stem + ending).is_file()
+    ]
 
 
 class LabelFiles:

@@ -13,16 +13,18 @@ from pathlib import Path
 from metagraph.budgets import MOTION_FILE, SOUND_FILE
 from metagraph.errors import FileError
 from metagraph.files import guarded, opened, unforeseen
-from metagraph.formats.live_link_face import is_live_link
+from metagraph.formats.clip_readers import (
+    HEAD,
+    LIVE_LINK,
+    ClipReader,
+    clip_suffixes,
+    reader_for,
+    reader_of,
+)
 from metagraph.formats.stray_poses import is_bind_pose
 from metagraph.formats.takes import NAME, ONE_FRAME, repaired
 from metagraph.motion.clip import Clip, ClipError, Repair
 from metagraph.wording import told
-
-SUFFIXES = (".bvh", ".glb", ".gltf", ".vrm", ".vrma", ".fbx", ".csv")
-
-_GLTF = (".glb", ".gltf", ".vrm", ".vrma")
-_REMEDY = told("Clips are read from {endings}.", endings=", ".join(SUFFIXES))
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,53 +51,27 @@ def read_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
     to make; takes that are then not skipped stand behind the others, whose numbers stay. Raises FileError.
     """
     path = Path(path)
-    suffix = path.suffix.lower()
-    kind = _content(path)
-    wanted = {".bvh": "bvh", ".fbx": "fbx", ".csv": "live link", **dict.fromkeys(_GLTF, "gltf")}.get(suffix)
+    wanted, found = reader_for(path.suffix.lower()), _reader(path)
+    remedy = told("Clips are read from {endings}.", endings=", ".join(clip_suffixes()))
     if wanted is None:
         raise FileError(
             path,
             told("'{value}' is not an ending of a clip file", value=path.suffix or path.name),
             told("its name"),
-            _REMEDY,
+            remedy,
         )
-    if kind != wanted:
-        names = {
-            "bvh": told("a BVH file"),
-            "gltf": told("a glTF file"),
-            "fbx": told("an FBX file"),
-            "live link": told("a recording of Live Link Face"),
-        }
-        if kind in names:
-            raise FileError(
-                path,
-                told("it is {names} in spite of its ending", names=names[kind]),
-                told("its first bytes"),
-                told("Rename it to match its content."),
-            )
+    if isinstance(found, str):
+        cause = told("it is {kind}, not {names}", kind=found, names=wanted.name)
+        raise FileError(path, cause, told("its first bytes"), remedy)
+    if found is not wanted:
         raise FileError(
             path,
-            told("it is {kind}, not {names}", kind=kind, names=names[wanted]),
+            told("it is {names} in spite of its ending", names=found.name),
             told("its first bytes"),
-            _REMEDY,
+            told("Rename it to match its content."),
         )
     try:
-        if wanted == "bvh":
-            from metagraph.formats.bvh import read_bvh
-
-            clips = [read_bvh(path, as_is=as_is)]
-        elif wanted == "gltf":
-            from metagraph.formats.gltf import read_gltf_clips
-
-            clips = read_gltf_clips(path, as_is)
-        elif wanted == "live link":
-            from metagraph.formats.live_link_face import read_live_link
-
-            clips = [read_live_link(path)]
-        else:
-            from metagraph.formats.fbx import read_fbx_clips
-
-            clips = read_fbx_clips(path, as_is=as_is)
+        clips = wanted.read(path, as_is)
     except ClipError as error:
         raise FileError(path, str(error), told("its motion"), told("Export it again.")) from error
     return _without_junk(clips, as_is)
@@ -133,26 +109,20 @@ def _unnamed(clip: Clip) -> bool:
     return any(repair.name == NAME for repair in clip.repairs)
 
 
-def _content(path: Path) -> str:
-    """Return "bvh", "gltf", "fbx", "live link", or a description of something else. Raises FileError when it
-    cannot be read.
+def _reader(path: Path) -> ClipReader | str:
+    """Return what reads a file by its content, or what else it is. Raises FileError when it cannot be
+    read.
     """
     with opened(path, MOTION_FILE) as file:
-        head = file.read(4096)
-    start = head.lstrip(b"\xef\xbb\xbf \t\r\n")
+        head = file.read(HEAD)
     if not head:
         return told("an empty file")
-    if head.startswith(b"glTF") or start.startswith(b"{"):
-        return "gltf"
-    if head.startswith(b"Kaydara FBX Binary") or start.startswith(b"; FBX") or b"FBXHeaderExtension" in head:
-        return "fbx"
-    if start[:9].upper() == b"HIERARCHY":
-        return "bvh"
-    if is_live_link(head):
-        return "live link"
+    found = reader_of(head)
+    if found is not None:
+        return found
     if head.startswith(b"version https://git-lfs"):
         return told("a Git LFS pointer whose content was never fetched")
-    if start[:1] == b"<":
+    if head.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"<":
         return told("a web page or XML file")
     return told("something else")
 
@@ -160,7 +130,7 @@ def _content(path: Path) -> str:
 def is_face_recording(path: Path) -> bool:
     """Whether a table is a recording of Live Link Face."""
     try:
-        return _content(path) == "live link"
+        return _reader(path) is LIVE_LINK
     except FileError:
         return False
 
@@ -169,11 +139,11 @@ def find_clip_files(folder: str | Path) -> list[Path]:
     """Return every clip file in a folder and below, sorted by path without regard to case; hidden ones are
     skipped.
     """
-    folder = Path(folder)
+    folder, endings = Path(folder), clip_suffixes()
     found = [
         p
         for p in folder.rglob("*")
-        if p.suffix.lower() in SUFFIXES
+        if p.suffix.lower() in endings
         and p.is_file()
         and not any(part.startswith(".") for part in p.relative_to(folder).parts)
         and (p.suffix.lower() != ".csv" or is_face_recording(p))  # most tables are something else

@@ -6,8 +6,10 @@ import json
 import re
 import shutil
 import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 from xml.etree import ElementTree
 
@@ -31,6 +33,7 @@ from metagraph.playback.bml import read_bml
 from metagraph.playback.planner import make_plan
 from tests.engines.test_export import gltf, khronos
 from tests.posing import pose_at
+from tests.recipes import code_of
 
 HERE = Path(__file__).parent
 MODULES = HERE.parent / "node_modules"
@@ -122,6 +125,24 @@ def test_losses_count_what_the_project_has(sample: Project) -> None:
 def test_a_target_that_does_not_exist_is_told_with_the_nearest(sample: Project, tmp_path: Path) -> None:
     with pytest.raises(ExportError, match="did you mean 'playcanvas'"):
         registry.write(sample, "playcanvass", tmp_path)
+
+
+def test_a_target_comes_by_its_module_and_its_line(
+    sample: Project, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The target that CONTRIBUTING.md has as its recipe."""
+    module = ModuleType("metagraph.engines.targets.uses")
+    exec(code_of("Add a target"), vars(module))
+    monkeypatch.setitem(sys.modules, module.__name__, module)
+    monkeypatch.setattr(registry, "MODULES", (*registry.MODULES, "uses"))
+    registry.targets.cache_clear()
+    try:
+        report = registry.write(sample, "uses", tmp_path)
+    finally:
+        registry.targets.cache_clear()
+    (path,) = report.files
+    counts = json.loads(path.read_text())
+    assert sum(counts.values()) == sum(1 for _ in sample.actions())
 
 
 def test_a_project_with_errors_is_not_written(tmp_path: Path) -> None:

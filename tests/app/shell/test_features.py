@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 import shutil
 import subprocess
 import sys
@@ -13,6 +12,7 @@ from types import ModuleType
 import pytest
 
 from app.features import FEATURES
+from tests.recipes import code_of
 from tests.thorough import some
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -72,10 +72,8 @@ def test_every_folder_of_a_feature_is_named_once():
 @pytest.fixture
 def greeting(monkeypatch):
     """The feature that CONTRIBUTING.md has as its recipe, with its line among the others."""
-    page = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
-    (source,) = re.findall(r"^### Add a feature\n.*?^```python\n(.*?)^```$", page, re.M | re.S)
     feature = ModuleType("app.features.greeting")
-    exec(compile(source, "greeting", "exec"), vars(feature))
+    exec(compile(code_of("Add a feature"), "greeting", "exec"), vars(feature))
     monkeypatch.setitem(sys.modules, feature.__name__, feature)
     monkeypatch.setattr("app.features.FEATURES", (*FEATURES, "greeting"))
 

@@ -1,0 +1,92 @@
+"""The kinds of clip files: how each is told by its first bytes, and what reads it.
+
+Readers are imported when the first file of their kind is read.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+from pathlib import Path
+
+from metagraph.formats.live_link_face import is_live_link
+from metagraph.motion.clip import Clip
+from metagraph.wording import told
+
+HEAD = 4096  # bytes that tell what a file is
+
+
+@dataclass(frozen=True)
+class ClipReader:
+    """A kind of clip file. name: what such a file is, for people. suffixes: lower case. begins: whether the
+    first bytes are of this kind; as they are, and without what may stand before text. read: takes of a file,
+    and the repairs (`takes.REPAIRS`) not to make.
+    """
+
+    name: str
+    suffixes: tuple[str, ...]
+    begins: Callable[[bytes, bytes], bool]
+    read: Callable[[Path, Collection[str]], list[Clip]]
+
+
+def _read_bvh(path: Path, as_is: Collection[str]) -> list[Clip]:
+    from metagraph.formats.bvh import read_bvh
+
+    return [read_bvh(path, as_is=as_is)]
+
+
+def _read_gltf(path: Path, as_is: Collection[str]) -> list[Clip]:
+    from metagraph.formats.gltf import read_gltf_clips
+
+    return read_gltf_clips(path, as_is)
+
+
+def _read_fbx(path: Path, as_is: Collection[str]) -> list[Clip]:
+    from metagraph.formats.fbx import read_fbx_clips
+
+    return read_fbx_clips(path, as_is=as_is)
+
+
+def _read_live_link(path: Path, as_is: Collection[str]) -> list[Clip]:
+    from metagraph.formats.live_link_face import read_live_link
+
+    return [read_live_link(path)]
+
+
+def _is_fbx(head: bytes, text: bytes) -> bool:
+    return (
+        head.startswith(b"Kaydara FBX Binary") or text.startswith(b"; FBX") or b"FBXHeaderExtension" in head
+    )
+
+
+LIVE_LINK = ClipReader(
+    told("a recording of Live Link Face"), (".csv",), lambda head, text: is_live_link(head), _read_live_link
+)
+# The first that knows a file's beginning reads it.
+READERS = [
+    ClipReader(told("a BVH file"), (".bvh",), lambda head, text: text[:9].upper() == b"HIERARCHY", _read_bvh),
+    ClipReader(
+        told("a glTF file"),
+        (".glb", ".gltf", ".vrm", ".vrma"),
+        lambda head, text: head.startswith(b"glTF") or text.startswith(b"{"),
+        _read_gltf,
+    ),
+    ClipReader(told("an FBX file"), (".fbx",), _is_fbx, _read_fbx),
+    LIVE_LINK,
+]
+
+
+def reader_of(head: bytes) -> ClipReader | None:
+    """Return what reads files that begin so; None where nothing does."""
+    text = head.lstrip(b"\xef\xbb\xbf \t\r\n")
+    return next((reader for reader in READERS if reader.begins(head, text)), None)
+
+
+def reader_for(suffix: str) -> ClipReader | None:
+    """Return what reads files of an ending, lower case; None where nothing does."""
+    return next((reader for reader in READERS if suffix in reader.suffixes), None)
+
+
+def clip_suffixes() -> tuple[str, ...]:
+    """Return the endings of clip files, lower case."""
+    return tuple(suffix for reader in READERS for suffix in reader.suffixes)
