@@ -132,7 +132,6 @@ LONG = (
     "app/cli/test_mimic_command.py",
     "engines/test_javascript_characters.py",
     "suggest/test_find_contacts.py",
-    "test_object_code.py",
     "study/perceive/test_page.py",
     "suggest/test_bridges.py",
     "app/shell/test_workspaces.py",

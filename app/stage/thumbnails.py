@@ -251,6 +251,8 @@ class Thumbnails(QObject):
                     pictures = Cropped(each) if what == "moving" else [to_image(p) for p in each]
                 self._drawn.emit(number, pictures)
                 del pictures  # until the next ones come, which may be long
+        with contextlib.suppress(subprocess.TimeoutExpired):  # also of one that was sent home
+            process.wait(5)
         with contextlib.suppress(RuntimeError):  # the window is gone
             self._ended.emit(process)
 
@@ -258,7 +260,6 @@ class Thumbnails(QObject):
         """The process has ended by itself: start another, and leave out the picture it ended over."""
         if self._stopped:
             return
-        process.wait(5)
         if process is not self._process:  # it was sent home
             return
         self._queue.put(None)

@@ -19,7 +19,7 @@ from metagraph.engines.export import export
 from metagraph.engines.reading import read_export
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
-from metagraph.playback import choice, hashing, markov, player, replan, sampling
+from metagraph.playback import choice, hashing, layers, markov, replan, sampling
 from metagraph.playback.life import evaluate, gaze, solve
 from metagraph.playback.planner import make_plan
 from sample_clips.make import conformance
@@ -130,7 +130,7 @@ def _broken_keyed(seed: int, *words: str) -> int:
 
 
 MUTATIONS: dict[str, tuple[Any, str, Any]] = {
-    "the blend curve": (player, "ease", lambda x: np.clip(x, 0.0, 1.0)),
+    "the blend curve": (layers, "ease", lambda x: np.clip(x, 0.0, 1.0)),
     "weights are played as they stand": (
         reading,
         "_weights",
@@ -150,11 +150,11 @@ MUTATIONS: dict[str, tuple[Any, str, Any]] = {
     "the counter of uses": (sampling.Performer, "_count", lambda self, ident, now: 0.0),
     "never twice and spacing": (sampling.Performer, "_spaced", lambda self, candidates: candidates),
     "the loop's seam": (
-        player,
+        layers,
         "loop_seconds",
         lambda p, a, t: (p.span(a)[0] + t * 0, p.span(a)[0] + t * 0, t * 0),
     ),
-    "leading a clip in from its stance": (player, "_lead", lambda shown, stance, edge, weight: shown),
+    "leading a clip in from its stance": (layers, "_lead", lambda shown, stance, edge, weight: shown),
     "the cooldown": (sampling.Performer, "_cooled", lambda self, action: float("-inf")),
     "the shortest chain": (sampling.Performer, "_chain", lambda self, goal: []),
     "how late a request may start": (replan, "delay", lambda asked, free, settings: (list(asked), [])),
