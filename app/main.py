@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from collections.abc import Callable
@@ -119,8 +120,11 @@ def run_window(path: Path | None, sample: bool = False, clip: str | None = None)
     from app import faults
     from app.shell.fault_dialog import folder
 
+    gc.disable()  # what is made until the window is there lives as long as it; else 0.08 s later
     app = prepare()
     faults.install(folder())
     window = open_window(path, sample, clip)  # lives as long as the program
+    gc.freeze()
+    gc.enable()
     window.shell.faults.offer_left()
     return app.exec()

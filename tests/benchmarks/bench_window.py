@@ -34,9 +34,12 @@ ACTIONS, CLIPS, BEAT = 10_000, 1000, 5
 COLD = """
 import sys, time
 started = float(sys.argv[1])
+import gc
+gc.disable()  # as `run_window` does
 from app.main import open_window, prepare
 app = prepare()
 window = open_window(None, sample=True)
+gc.enable()
 window.resize(1680, 1020)
 seen = []
 def painted():
