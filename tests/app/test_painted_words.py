@@ -105,6 +105,7 @@ def test_every_dialog_keeps_to_it_too(drive, tmp_path):
     assert not any(found.values()), told(found)
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(("scale", "language"), [("2", "de"), ("2", "en"), ("1", "de")][: many(1, 3)])
 def test_on_a_screen_twice_as_fine_and_in_another_language_words_are_as_whole(scale, language):
     """Measures of letters differ by parts of a pixel on such a screen; Qt takes its scale, and the window its

@@ -54,6 +54,7 @@ def test_clips_are_done_without_a_mistake(drive, sample, condition):
     assert result.operators["B"] >= 20 and result.predicted > 0
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     "way",
     some(

@@ -195,6 +195,7 @@ def test_what_tries_mutants_finds_no_fault_with_what_is_whole(
 @pytest.mark.parametrize(
     ("file", "rule", "instead", "about"), TRIED, ids=[m[3].replace(" ", "-") for m in TRIED]
 )
+@pytest.mark.nightly
 def test_the_vectors_notice_when_a_rule_is_broken(
     host: Host, single: Path, tmp_path: Path, file: str, rule: str, instead: str, about: str
 ) -> None:

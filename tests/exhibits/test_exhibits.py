@@ -89,6 +89,7 @@ def test_of_a_project_without_clips_each_exhibit_is_made_or_says_what_is_missing
     assert shown.missing or exhibit.needs == NUMBERS or shown.says
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("exhibit", EXHIBITS, ids=lambda e: e.name)
 def test_of_somebodys_takes_each_exhibit_is_made(
     exhibit: Exhibit, sample: Project, talks: tuple[Recorded, ...], monkeypatch: pytest.MonkeyPatch
@@ -154,6 +155,7 @@ def test_made_up_conversations_are_the_same_each_time_and_move_at_the_actors_rat
     assert actors_rates()[0].clause == pytest.approx(0.7515, abs=1e-4)
 
 
+@pytest.mark.nightly
 def test_where_constraints_compete_some_find_nothing_and_the_best_finds_more(sample: Project) -> None:
     settings = [s for s in searching.SETTINGS if s.name in (searching.ALL, "no constraints")]
     actor = scarce(sample, Scarcity("few", 4, 30.0, adjoining=True), 1)

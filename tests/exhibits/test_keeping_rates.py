@@ -38,6 +38,7 @@ def whole(sample: Project) -> Project:
     return sample.with_graph(graph.with_actions(actions))
 
 
+@pytest.mark.nightly
 def test_with_every_limb_in_every_stance_an_hour_keeps_to_the_matrix_as_it_is_performed(
     whole: Project,
 ) -> None:
@@ -47,6 +48,7 @@ def test_with_every_limb_in_every_stance_an_hour_keeps_to_the_matrix_as_it_is_pe
     assert near >= 0.85 * of and arms["near"] == arms["performed near"]
 
 
+@pytest.mark.nightly
 def test_the_samples_rates_are_performed_within_sampling_error(sample: Project) -> None:
     shown = delivery(Material(sample))
     arms = next(r for r in shown.numbers["improvised"] if r["layer"] == "arms")

@@ -112,6 +112,7 @@ def test_what_cannot_be_planted_is_refused_before_anything_is_written(project, t
     assert not (tmp_path / "a").exists()
 
 
+@pytest.mark.nightly
 def test_other_moves_are_other_motion_that_goes_with_the_speech_as_well(project, folder, tmp_path):
     assert write_planted(project, tmp_path, Planted(count=2, seconds=20.0, moves=2)) == 2
     one = read_takes(find_takes([folder])[0])

@@ -52,6 +52,9 @@ def found(name: str) -> MadeSet:
     return named(name)
 
 
+pytestmark = pytest.mark.nightly
+
+
 @pytest.fixture(scope="module", autouse=True)
 def let_go() -> Iterator[None]:
     """A hundred sets are much for a process that goes on to test something else."""

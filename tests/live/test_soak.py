@@ -4,10 +4,13 @@
 
 from __future__ import annotations
 
+import pytest
+
 from tests.benchmarks.soak_live import soak
 from tests.thorough import THOROUGH
 
 
+@pytest.mark.nightly
 def test_what_a_session_keeps_does_not_grow_with_time_but_for_what_was_asked() -> None:
     hours = 0.15 if THOROUGH else 0.01
     rows = list(soak(hours, rate=5, every=hours * 600, history=10.0, traced=True))

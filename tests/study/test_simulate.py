@@ -62,6 +62,7 @@ def test_without_any_chance_the_truth_comes_out_exactly() -> None:
         assert curve.slope.value == pytest.approx(-0.25)
 
 
+@pytest.mark.nightly
 def test_intervals_include_the_truth_as_often_as_they_promise() -> None:
     """Studies of 12 people: of ratio, order and practice 95 % of the intervals hold what was put in."""
     held: Counter[str] = Counter()

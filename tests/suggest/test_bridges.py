@@ -221,6 +221,7 @@ def test_one_stance_is_joined_and_the_others_keep_their_troubles(
     assert bridged_at(after, chosen) == (after, ())
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", ["standing talker", "sitting without legs", "numbers of unseen stances"])
 def test_labelled_takes_that_lack_transitions_become_whole(name: str) -> None:
     made = named(name)

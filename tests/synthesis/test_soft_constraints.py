@@ -54,6 +54,7 @@ def studio() -> Studio:
     return Studio()
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("search", ["exact", "greedy"])
 def test_what_is_said_louder_is_gestured_faster_where_it_was_so_in_the_takes(
     studio: Studio, search: str

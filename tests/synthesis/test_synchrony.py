@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from metagraph.graph.conversation import Segment
 from metagraph.motion.clip import Clip
@@ -37,6 +38,7 @@ def stresses(segments: list[Segment]) -> list[float]:
     return [s.peak for s in segments if s.peak is not None]
 
 
+@pytest.mark.nightly
 def test_strokes_fall_on_the_stresses_of_new_speech_and_not_on_those_of_shuffled_speech() -> None:
     said = [speech(60, n) for n in range(4)]
     takes = [talking(f"take {n}", s, 60, n) for n, s in enumerate(said)]

@@ -331,6 +331,7 @@ def test_models_are_judged_on_what_was_held_out(
     assert "true,speed,1,1,1" in (tmp_path / "report" / "report.csv").read_text()
 
 
+@pytest.mark.nightly
 def test_a_floor_of_ones_own_stands_beside(
     model: Path, takes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -484,6 +485,7 @@ def test_stopping_a_training_keeps_what_was_learned(
     assert signal.getsignal(signal.SIGINT) is before
 
 
+@pytest.mark.nightly
 def test_an_ablation_is_a_table_and_is_taken_up_again(
     takes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -109,6 +109,7 @@ def test_answers_that_were_saved_are_collected_and_bad_files_spoil_nothing(
     assert main(["study", "perceive", "report", str(made.folder)]) == 0
 
 
+@pytest.mark.nightly
 def test_a_plan_says_how_many_answers_and_people_are_needed(capsys: pytest.CaptureFixture[str]) -> None:
     words = ["plan", "--share", "0.75", "--smallest", "0.65", "--items", "6", "--studies", "30", "--json"]
     assert main(["study", "perceive", *words]) == 0
@@ -163,6 +164,7 @@ def test_a_video_that_is_too_short_is_told_before_anything_is_drawn(
     assert "conditions.b" in shown and "lasts 0.60 s" in shown and not out.exists()
 
 
+@pytest.mark.nightly
 @pytest.mark.gl
 def test_a_conversation_is_drawn_in_every_condition(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]

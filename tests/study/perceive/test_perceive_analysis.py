@@ -25,6 +25,7 @@ def simulated(folder: Path, raters: Raters, **options: object) -> PerceiveResult
     )
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("planted", [0.9, -0.7][: many(1, 2)])
 def test_a_planted_preference_lies_within_its_interval(tmp_path: Path, planted: float) -> None:
     held = 0
@@ -37,6 +38,7 @@ def test_a_planted_preference_lies_within_its_interval(tmp_path: Path, planted: 
     assert held >= 8
 
 
+@pytest.mark.nightly
 def test_without_a_preference_hardly_any_study_finds_one(tmp_path: Path) -> None:
     found = [simulated(tmp_path / str(s), Raters(seed=s)).pairs[0].verdict for s in range(many(15, 30))]
     assert found.count("not told") >= many(

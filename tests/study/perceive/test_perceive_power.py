@@ -39,6 +39,7 @@ def test_people_who_differ_need_more_answers() -> None:
     assert about(Expected(0.52, 0.5, 0.5), 4, 4, 0.8, 0.05) is None  # no crowd makes up for four items
 
 
+@pytest.mark.nightly
 def test_the_fewest_people_show_it_as_often_as_is_wanted() -> None:
     people, found = people_needed(Expected(0.75, 0.3, 0.2), 8, 8, studies=thorough.many(30, 60))
     assert people is not None and found is not None and 4 <= people <= 20 and found.value >= 0.8
