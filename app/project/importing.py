@@ -27,7 +27,7 @@ from metagraph.formats.store import Opened, load_returned
 from metagraph.formats.takes import NAME
 from metagraph.graph.model import Project
 
-CLIPS = tr("Clips (*.bvh *.glb *.gltf *.vrm *.vrma *.fbx *.csv);;All files (*)")
+CLIPS = tr("Clips ({endings});;All files (*)", endings=" ".join(f"*{x}" for x in clip_suffixes()))
 Retarget = Callable[[Sequence[Strangers], Callable[[Imported], None]], None]
 
 

@@ -152,8 +152,8 @@ def _encoded(clips: Iterable[Clip]) -> bytes:
                 tuple(map(int, clip.translated)),
                 clip.morphs,
                 _bytes(clip.weights),
-                clip.notes,
-                tuple((r.name, r.words, r.made, r.take) for r in clip.repairs),
+                tuple(map(str, clip.notes)),  # msgspec takes no text that knows its template
+                tuple((r.name, str(r.words), r.made, r.take) for r in clip.repairs),
                 clip.brought_from,
             )
         )

@@ -24,6 +24,7 @@ from app.translation import tr, tr_error, tr_told
 from metagraph.engines.targets import registry
 from metagraph.errors import FileError
 from metagraph.formats import import_words
+from metagraph.formats.clip_readers import clip_suffixes
 from metagraph.formats.conversations import read_conversation
 from metagraph.formats.imports import import_files
 from metagraph.formats.store import open_project
@@ -170,7 +171,7 @@ def test_an_import_is_told_in_the_language_whatever_files_are_left_out(english: 
     lines = [tr_told(line) for line in import_words.counted(result.failures)]
     assert lines[0] == (
         "bad.bvh, ihre ersten Bytes: sie ist etwas anderes, nicht eine BVH-Datei. "
-        "Clips werden gelesen aus .bvh, .glb, .gltf, .vrm, .vrma, .fbx, .csv."
+        f"Clips werden gelesen aus {', '.join(clip_suffixes())}."
     )
     assert lines[1].startswith("worse.glb, ihre ersten Bytes: sie ist ")
     assert import_words.said(result) == "Imported 0 clips. Left out: 2 files that cannot be used"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +14,8 @@ from metagraph.errors import FileError
 from metagraph.formats import motion_cache, store
 from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.motion_cache import finish, read_or_kept
-from metagraph.motion.clip import Clip
+from metagraph.motion.clip import Clip, Repair
+from metagraph.wording import told
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips"
 CLIP = sorted((SAMPLE / "clips").glob("*.glb"))[0]
@@ -65,6 +66,16 @@ def test_what_was_read_comes_back_to_the_bit_and_the_file_is_not_read_again(
     monkeypatch.setattr(motion_cache, "read_clips", barred)
     assert_same(first, read(CLIP))
     assert_same(first, read_clips(CLIP))
+
+
+def test_clips_are_kept_whose_notes_know_their_template(monkeypatch: pytest.MonkeyPatch) -> None:
+    repair = Repair("unit", told("{n} frames were joined", n=2))
+    noted = [replace(read_clips(CLIP)[0], notes=(told("{n} gaps were filled", n=3),), repairs=(repair,))]
+    monkeypatch.setattr(motion_cache, "read_clips", lambda *_: noted)
+    read(CLIP)
+    finish()
+    monkeypatch.setattr(motion_cache, "read_clips", barred)
+    assert_same(noted, read(CLIP))
 
 
 def test_clips_of_a_project_share_a_skeleton(monkeypatch: pytest.MonkeyPatch) -> None:
