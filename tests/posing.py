@@ -24,8 +24,11 @@ from metagraph.playback.life.track import Track
 from metagraph.playback.manual_playback import ManualEvaluator, ManualPlan
 from metagraph.playback.overlay import Overlay
 from metagraph.playback.plan import Plan
+from metagraph.playback.player import morphs_at, pose_at
 from metagraph.playback.rigs import rigs_of
 from metagraph.playback.weight import Weight
+
+__all__ = ["morphs_at", "pose_at"]
 
 KEPT = 8
 _kept: list[Evaluator] = []
@@ -40,18 +43,8 @@ def evaluator(plan: Plan, project: Project) -> Evaluator:
     return _kept[0]
 
 
-def pose_at(plan: Plan, project: Project, seconds: Any, alive: bool = True) -> Pose:
-    return evaluator(plan, project).at(seconds, alive)
-
-
 def overlaid(plan: Plan, project: Project, seconds: Any, over: Overlay | None, alive: bool = True) -> Pose:
     return evaluator(plan, project).at(seconds, alive, over)
-
-
-def morphs_at(
-    plan: Plan, project: Project, seconds: float, alive: bool = True, composed: Pose | None = None
-) -> dict[str, float]:
-    return evaluator(plan, project).morphs_at(seconds, alive, composed)
 
 
 def faces_at(plan: Plan, project: Project, times: np.ndarray) -> list[dict[str, float]]:

@@ -78,6 +78,10 @@ class Evaluator:
             return self
         return Evaluator(plan, project, self.rigs if project is self.project else None)
 
+    def layered(self, times: Array) -> Pose:
+        """Return what the layers alone compose at `times [N]`."""
+        return self._layers.run(times)
+
     def before_life(self, times: Array) -> Pose:
         """Return the poses at `times [N]` that life is added to."""
         return self._weight.run(self._layers.run(times), times)

@@ -1,0 +1,46 @@
+"""Poses of a plan by one call, for scripts. Who asks for many plans keeps an evaluator of each."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.graph.model import Project
+from metagraph.motion.skeleton import Pose
+from metagraph.playback.evaluator import Evaluator
+from metagraph.playback.plan import Plan
+
+_latest: list[Evaluator] = []  # of the plan that was asked for last: mostly it is asked for again
+
+
+def pose_at(plan: Plan, project: Project, seconds: Any, alive: bool = True) -> Pose:
+    """Return the composed pose at `seconds`, a number or an array `[...]`: rotations `[..., J, 4]` xyzw,
+    translations `[..., J, 3]` metres. alive: with life, as far as the project has it on. Raises ValueError
+    when the project has no skeleton.
+    """
+    return _evaluator(plan, project).at(seconds, alive)
+
+
+def morphs_at(
+    plan: Plan, project: Project, seconds: float, alive: bool = True, composed: Pose | None = None
+) -> dict[str, float]:
+    """Return morph target weights, 0..1, at one time. composed: the pose `[J]` before life, where it is not
+    the plan's alone. Raises ValueError as `pose_at`.
+    """
+    return _evaluator(plan, project).morphs_at(seconds, alive, composed)
+
+
+def layered(plan: Plan, project: Project, times: NDArray[Any]) -> Pose:
+    """Return what the layers alone compose at `times [N]`, without life, weight and contacts. Raises
+    ValueError as `pose_at`.
+    """
+    return _evaluator(plan, project).layered(np.asarray(times, np.float64))
+
+
+def _evaluator(plan: Plan, project: Project) -> Evaluator:
+    known = next(iter(_latest), None)
+    found = known.follow(plan, project) if known is not None else Evaluator(plan, project)
+    _latest[:] = [found]
+    return found
