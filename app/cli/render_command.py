@@ -167,8 +167,6 @@ def _actors(figure: Any, shown: Shown, times: np.ndarray) -> list[Any]:
     """Return a figure as it is shown at each of some times."""
     from preview.scene import Actor
 
-    if shown.over is not None:  # what is laid over is asked for one time after the other
-        return [_actor(figure, shown, at) for at in times]
     rotations, positions = _placed(shown, times)
     faces: list[Any] = [None] * len(times)
     if figure.morphs:

@@ -138,8 +138,7 @@ class Shown:
                 return None
             return (GeneratedEvaluator if entry.made_by else MovedEvaluator)(self.plan, project, motion)
         if self.over is not None:
-            over = self.over
-            return OverlaidEvaluator(self.moving, project, lambda times: over(float(times[0])))
+            return OverlaidEvaluator(self.moving, project, self.over)
         return Evaluator(self.moving, project)
 
     def pose(self, seconds: Any) -> Pose | None:

@@ -61,22 +61,35 @@ class MovedEvaluator(Evaluator):
 
 
 class OverlaidEvaluator(Evaluator):
-    """A plan with motion over it. over: what lies over it at times `[N]`, None for nothing."""
+    """A plan with live motion over it. over: what lies over it at a time, seconds; None for nothing."""
 
-    def __init__(self, plan: Plan, project: Project, over: Callable[[Array], Overlay | None]) -> None:
+    def __init__(self, plan: Plan, project: Project, over: Callable[[float], Overlay | None]) -> None:
         super().__init__(plan, project)
         self._over = over
 
     def at(self, seconds: Any, alive: bool = True, overlay: Overlay | None = None) -> Pose:
-        over = self._over(np.asarray(seconds, np.float64).reshape(-1)) if overlay is None else overlay
-        return super().at(seconds, alive, over)
+        if overlay is not None or np.size(seconds) == 0:
+            return super().at(seconds, alive, overlay)
+        if np.ndim(seconds) == 0:
+            return super().at(seconds, alive, self._over(float(seconds)))
+        poses = [self.at(time, alive) for time in np.asarray(seconds, np.float64).reshape(-1).tolist()]
+        shape = (*np.shape(seconds), len(self.rigs.composer.ground.skeleton))
+        return Pose(
+            np.stack([pose.rotations for pose in poses]).reshape(*shape, 4),
+            np.stack([pose.translations for pose in poses]).reshape(*shape, 3),
+        )
 
 
-class GeneratedEvaluator(OverlaidEvaluator):
+class GeneratedEvaluator(Evaluator):
     """A generated clip: it moves what is above the hips, the plan moves the rest."""
 
     def __init__(self, plan: Plan, project: Project, clip: Clip) -> None:
-        super().__init__(plan, project, lambda times: clip_overlay(project, clip, times))
+        super().__init__(plan, project)
+        self._clip = clip
+
+    def at(self, seconds: Any, alive: bool = True, overlay: Overlay | None = None) -> Pose:
+        times = np.asarray(seconds, np.float64).reshape(-1)
+        return super().at(seconds, alive, overlay or clip_overlay(self.project, self._clip, times))
 
     def morphs_at(self, seconds: float, alive: bool = True, composed: Pose | None = None) -> dict[str, float]:
         return super().morphs_at(seconds, alive, composed or self.at(seconds, alive=False))
