@@ -14,7 +14,7 @@ from PySide6.QtCore import QCoreApplication, QLibraryInfo, QSettings, Qt, QTimer
 from PySide6.QtGui import QSurfaceFormat
 from PySide6.QtWidgets import QApplication
 
-from metagraph.programs import settle
+from metagraph.common.programs import settle
 
 if TYPE_CHECKING:
     from app.shell.window import Window

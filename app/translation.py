@@ -3,7 +3,7 @@
 English stands in the code, inside `tr`; a language is a file of English texts and what stands in their place
 (`languages/de.json`), the form that translation services call flat JSON. What a language lacks is shown in
 English. It is chosen once, before the window is made. What the domain says of files and graphs knows its
-templates (`metagraph.wording`) and is translated where it is shown.
+templates (`metagraph.common.wording`) and is translated where it is shown.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from metagraph.common.wording import Told, reworded
 from metagraph.errors import error_words
-from metagraph.wording import Told, reworded
 
 ENGLISH = "en"
 NAMES = {"en": "English", "de": "Deutsch"}  # languages by what they call themselves

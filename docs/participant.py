@@ -26,7 +26,7 @@ from PySide6.QtCore import QPoint, QSettings  # noqa: E402
 from PySide6.QtTest import QTest  # noqa: E402
 
 from app.main import prepare  # noqa: E402
-from metagraph.study.klm import predicted  # noqa: E402
+from metagraph.research.study.machines.klm import predicted  # noqa: E402
 
 SIZES = (10, 20, 50, 100, 152)
 PROPOSED, BY_KEYS, ONE_BY_ONE = (
@@ -106,11 +106,11 @@ def done(condition: str, clips: int, named: bool, look: bool) -> dict[str, Any]:
     """Do a task; return what it took."""
     from app.project.files import SAMPLE
     from metagraph.formats.store import open_project
-    from metagraph.study.by_hand import Way
-    from metagraph.study.counted_drops import dropped
-    from metagraph.study.counted_hand import searched, try_way
-    from metagraph.study.normal_machine import normal
-    from metagraph.study.score import score
+    from metagraph.research.study.machines.by_hand import Way
+    from metagraph.research.study.machines.counted_drops import dropped
+    from metagraph.research.study.machines.counted_hand import searched, try_way
+    from metagraph.research.study.machines.normal_machine import normal
+    from metagraph.research.study.scores.machines import score
     from tests.app.expert import Expert, Reviewer, hidden, without_times
     from tests.app.participant import Participant, bare, task
 
@@ -166,7 +166,7 @@ def done(condition: str, clips: int, named: bool, look: bool) -> dict[str, Any]:
 
 
 def _works(given: Any) -> list[Any]:
-    from metagraph.study.by_hand import works
+    from metagraph.research.study.machines.by_hand import works
 
     return works(given.reference)
 

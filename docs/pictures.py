@@ -158,7 +158,7 @@ def keep_screen(out: Any, name: str) -> None:
 
 def timing() -> None:
     """The timing editor, with a hold, a kept hand, a line and onion skin."""
-    from metagraph.graph.retiming import keep_hand, set_hold
+    from metagraph.graph.editing.retiming import keep_hand, set_hold
 
     out = on_sample(size=(1680, 1050))
     found = selected(out, "shrug_bt_01")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from metagraph.wording import told
+from metagraph.common.wording import told
 
 
 def shown(text: str) -> str:
@@ -30,7 +30,7 @@ class FileError(Exception):
 
     @property
     def words(self) -> str:
-        """All of it; words that know their templates (`metagraph.wording`)."""
+        """All of it; words that know their templates (`metagraph.common.wording`)."""
         found: str = self.args[0]
         return found
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from pathlib import Path
 
-from metagraph.formats.gltf import read_character
+from metagraph.formats.gltf.reader import read_character
 from metagraph.motion.character_mesh import no_character
 from metagraph.motion.skeleton import Skeleton
 from preview.figure import Figure, SkinnedFigure, StickFigure

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.child_channel import Child
+from metagraph.common.child_channel import Child
 from preview.camera import Camera
 from preview.figure import Figure
 from preview.offscreen import Offscreen

@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from metagraph.child_channel import parent
+from metagraph.common.child_channel import parent
 from preview.offscreen import Offscreen
 
 

@@ -12,8 +12,8 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.budgets import PICTURE_PIXELS
-from metagraph.pictures import picture_size
+from metagraph.common.budgets import PICTURE_PIXELS
+from metagraph.common.pictures import picture_size
 from preview.mesh import VERTEX, Batch, Mesh, arranged
 from preview.occlusion import Rods
 from preview.paint import painted

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.disk_cache import DiskCache, cache_folder
+from metagraph.common.disk_cache import DiskCache, cache_folder
 from preview.mesh import Mesh
 from preview.simplify import Fewer, simplified
 

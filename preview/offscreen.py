@@ -11,7 +11,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.wording import told
+from metagraph.common.wording import told
 from preview.camera import Camera
 from preview.renderer import Renderer
 from preview.scene import DARK, Scene, Theme

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from metagraph.budgets import MOTION_FILE, PICTURE_PIXELS
+from metagraph.common.budgets import MOTION_FILE, PICTURE_PIXELS
+from metagraph.common.files import check_file
 from metagraph.errors import FileError
-from metagraph.files import check_file
 
 Array = NDArray[Any]
 JUMP = 2.0  # seconds ahead that are read rather than jumped over

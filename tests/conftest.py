@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
-from metagraph import files
+from metagraph.common import files
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Layer, Life, Project
 from metagraph.motion import rotation
@@ -73,7 +73,7 @@ LONG = (
     "app/features/study/test_journey_study.py",
     "app/stage/test_conversation_plans.py",
     "app/test_memory.py",
-    "exhibits/test_exhibits.py",
+    "research/exhibits/test_exhibits.py",
     "app/test_shared_window.py",
     "app/features/timing_editor/test_timing_editor.py",
     "app/features/motion_graph/test_motion_graph_dialog.py",
@@ -89,18 +89,18 @@ LONG = (
     "engines/test_packed_exports.py",
     "app/cli/test_motion_graph_command.py",
     "engines/test_vectors.py",
-    "formats/test_conversations.py",
+    "formats/conversations/test_files.py",
     "engines/test_runtime_unity.py",
     "synthesis/test_soft_constraints.py",
     "engines/test_character.py",
     "engines/stranger/test_stranger.py",
     "suggest/test_whole_body.py",
     "engines/test_runtime_unreal.py",
-    "study/perceive/test_perceive_power.py",
+    "research/study/perceive/test_perceive_power.py",
     "suggest/test_propose.py",
-    "study/test_simulate.py",
+    "research/study/simulation/test_people.py",
     "formats/test_stray_poses.py",
-    "playback/test_extend_performance.py",
+    "playback/planning/test_extend_performance.py",
     "playback/life/test_evaluate.py",
     "test_distribution.py",
     "generation/test_takes.py",
@@ -108,8 +108,8 @@ LONG = (
     "engines/test_javascript_mutants.py",
     "engines/test_csharp_mutants.py",
     "engines/test_old_exports.py",
-    "study/test_planted.py",
-    "study/perceive/test_crossed.py",
+    "research/study/test_planted.py",
+    "research/study/perceive/test_crossed.py",
     "generation/test_sampler.py",
     "engines/test_whole_or_not.py",
     "app/features/library/test_library_views.py",
@@ -127,13 +127,13 @@ LONG = (
     "app/stage/test_stage.py",
     "app/features/character/test_watching.py",
     "app/test_journey_by_mouse.py",
-    "generation/test_planted.py",
+    "research/generation/test_planted.py",
     "app/cli/test_label_report.py",
     "app/cli/test_mimic_command.py",
     "engines/test_javascript_characters.py",
     "suggest/test_find_contacts.py",
-    "study/perceive/test_page.py",
-    "suggest/test_bridges.py",
+    "research/study/perceive/test_page.py",
+    "suggest/jumps/test_bridges.py",
     "app/shell/test_workspaces.py",
     "suggest/test_traits.py",
     "app/cli/test_speech_command.py",
@@ -142,10 +142,10 @@ LONG = (
     "fuzz/test_bombs.py",
     "speech/test_clauses_languages.py",
     "mimicry/test_performing.py",
-    "study/perceive/test_perceive_analysis.py",
+    "research/study/perceive/test_perceive_analysis.py",
     "fuzz/test_readers.py",
     "playback/life/test_schedule.py",
-    "playback/test_running_plan.py",
+    "playback/planning/test_running_plan.py",
 )
 
 # The gate must give the same answer twice; at the desk, examples are drawn anew each time, and twice as many.
@@ -378,7 +378,7 @@ def sample_clips_read_once() -> None:
     """A process decodes each sample clip once, wherever a copy of it lies: opening the sample project a
     hundred times cost more than most of what is tested on it. Files that differ in a byte are read.
     """
-    from metagraph.formats import gltf
+    from metagraph.formats.gltf import reader as gltf
 
     read = gltf.read_gltf_clips
     known: dict[tuple[str, bytes, frozenset[str]], list[Clip]] = {}

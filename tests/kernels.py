@@ -66,7 +66,7 @@ def compile_all() -> None:
     from app.features.motion_graph.synthesis_jobs import Wish, synthesise, takes_of, usable
     from metagraph.formats.store import open_project
     from metagraph.synthesis.constraints import heard
-    from metagraph.synthesis.extending import PathExtender, driver_graph
+    from metagraph.synthesis.extending.path import PathExtender, driver_graph
     from metagraph.synthesis.graph import build
     from metagraph.synthesis.states import states_of
 

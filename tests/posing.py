@@ -14,7 +14,6 @@ from metagraph.graph.model import Project
 from metagraph.graph.requests import Point
 from metagraph.motion.contact_solve import ContactRig
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.composer import ComposerRig
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.life.body import Body
 from metagraph.playback.life.evaluate import LifeStage, Playing
@@ -22,11 +21,12 @@ from metagraph.playback.life.gaze import Gaze
 from metagraph.playback.life.schedule import Schedule
 from metagraph.playback.life.track import Track
 from metagraph.playback.manual_playback import ManualEvaluator, ManualPlan
-from metagraph.playback.overlay import Overlay
 from metagraph.playback.plan import Plan
 from metagraph.playback.player import morphs_at, pose_at
-from metagraph.playback.rigs import rigs_of
-from metagraph.playback.weight import Weight
+from metagraph.playback.posing.composer import ComposerRig
+from metagraph.playback.posing.overlay import Overlay
+from metagraph.playback.posing.rigs import rigs_of
+from metagraph.playback.posing.weight import Weight
 
 __all__ = ["morphs_at", "pose_at"]
 

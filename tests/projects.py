@@ -11,14 +11,16 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
+from metagraph.common.network_paths import reason
 from metagraph.formats.store import open_project, save_project
-from metagraph.graph import edits, manual_edits, manual_groups
+from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.manual import ANY, WHENS
+from metagraph.graph.manual import edits as manual_edits
+from metagraph.graph.manual import groups as manual_groups
+from metagraph.graph.manual.machine import ANY, WHENS
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, PARTS, Markov, Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
-from metagraph.network_paths import reason
 
 NASTY = (
     "yes",

@@ -8,7 +8,7 @@ import sys
 from functools import cache
 from pathlib import Path
 
-from metagraph.formats.journal_records import framed, whole_record
+from metagraph.formats.project.journal_records import framed, whole_record
 
 
 @cache

@@ -21,9 +21,9 @@ from app.cli.parser import main
 from metagraph.engines import vectors
 from metagraph.formats.language_files import read_pack
 from metagraph.formats.store import from_text
-from metagraph.study.perceive.perceive_plan import PerceivePlan
-from metagraph.study.perceive.perceive_plan import from_text as perceive_from_text
-from metagraph.study.study_plan import from_text as study_from_text
+from metagraph.research.study.perceive.perceive_plan import PerceivePlan
+from metagraph.research.study.perceive.perceive_plan import from_text as perceive_from_text
+from metagraph.research.study.study_plan import from_text as study_from_text
 from tests.thorough import many
 
 # Papers are drawn by Qt; whoever opens windows later in this process needs its application.
@@ -198,8 +198,8 @@ def test_every_field_of_the_schema_is_described() -> None:
 
 
 def test_every_field_of_a_study_file_and_every_event_of_its_log_is_described() -> None:
-    from metagraph.study.log import TYPES
-    from metagraph.study.study_plan import schema_text
+    from metagraph.research.study.logs.log import TYPES
+    from metagraph.research.study.study_plan import schema_text
 
     text = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
     schema = json.loads(schema_text())
@@ -217,7 +217,7 @@ def test_every_field_of_a_perceptual_study_is_described() -> None:
 
 
 def test_every_field_of_a_project_file_is_described() -> None:
-    from metagraph.formats import data
+    from metagraph.formats.project import data
 
     text = (ROOT / "docs" / "format.md").read_text(encoding="utf-8")
     fields = data._PROJECT_FIELDS | data._CLIP_FIELDS | data._ACTION_FIELDS

@@ -14,12 +14,13 @@ from typing import Any
 import pytest
 
 from app.project.opening import open_whole
-from metagraph import files
+from metagraph.common import files
 from metagraph.engines.targets import registry
-from metagraph.formats import bvh, clips
-from metagraph.formats.bvh import write_bvh
+from metagraph.formats import clips
+from metagraph.formats.bvh import file as bvh
+from metagraph.formats.bvh.file import write_bvh
 from metagraph.formats.imports import import_files
-from metagraph.formats.journal import Journal
+from metagraph.formats.project.journal import Journal
 from metagraph.formats.recovery import read_journal
 from metagraph.formats.store import open_project, read_project, save_project
 from metagraph.graph.model import Project

@@ -17,9 +17,17 @@ from app.project.opening import open_whole
 from metagraph.errors import FileError
 from metagraph.formats.elan import read_elan
 from metagraph.graph.model import LAYERS, Layer
-from metagraph.playback.annotation import IGNORE, MEANINGS, ROLES, SPEECH, Annotation, is_meaning, label_of
-from metagraph.playback.compare import compare
-from metagraph.playback.learn import Act, learn, state_words, states_of
+from metagraph.playback.learning.annotation import (
+    IGNORE,
+    MEANINGS,
+    ROLES,
+    SPEECH,
+    Annotation,
+    is_meaning,
+    label_of,
+)
+from metagraph.playback.learning.compare import compare
+from metagraph.playback.learning.learn import Act, learn, state_words, states_of
 
 
 def arguments(parser: ArgumentParser) -> None:

@@ -18,7 +18,7 @@ from metagraph.graph.model import Project
 from metagraph.graph.requests import Performance
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.running_plan import asks_of, perform
+from metagraph.playback.planning.running_plan import asks_of, perform
 
 LONGEST = 36000  # seconds of one performance, ten hours
 

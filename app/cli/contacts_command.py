@@ -48,7 +48,7 @@ def _found(options: Namespace, output: ProjectOutput | None) -> int:
     """output: where the project is saved, if it is."""
     import msgspec
 
-    from metagraph.formats.gltf import read_character
+    from metagraph.formats.gltf.reader import read_character
     from metagraph.graph import edits
     from metagraph.suggest.find_contacts import measured, with_contacts
 

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from app.cli.command_output import opened, say, until_told_to_stop
+from metagraph.common.files import is_inside
 from metagraph.engines.export_error import ExportError
 from metagraph.errors import FileError
-from metagraph.files import is_inside
 
 LOOK = 0.3  # seconds between two looks at the project file
 SHOWN = 8  # files named on the screen
@@ -139,7 +139,7 @@ def _state(path: Path) -> tuple[int, int] | None:
 
 def _once(options: Namespace) -> None:
     from metagraph.engines.targets import registry
-    from metagraph.graph.manual_meta import exportable
+    from metagraph.graph.manual.meta import exportable
 
     project, differences = exportable(opened(options.project))
     character = (

@@ -57,7 +57,7 @@ def planted(options: Namespace) -> int:
     from app.cli.command_output import opened, say
     from app.cli.demo_command import SAMPLE
     from app.cli.generate_takes import telling
-    from metagraph.generation.planted import Planted, write_planted
+    from metagraph.research.generation.planted import Planted, write_planted
 
     own = options.project is None
     project = opened(SAMPLE if own else options.project)

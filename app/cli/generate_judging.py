@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
-    from metagraph.generation.evaluation import Manner
     from metagraph.generation.poses import PoseRig
     from metagraph.generation.stored import Model
     from metagraph.generation.takes import Take
+    from metagraph.research.generation.evaluation import Manner
 
 
 def arguments(parser: ArgumentParser) -> None:
@@ -54,7 +54,7 @@ def manner_arguments(parser: ArgumentParser) -> None:
 def manner_of(options: Namespace) -> Manner:
     """Return how models are sampled. Raises ValueError."""
     from metagraph.generation.chunks import GUIDANCE
-    from metagraph.generation.evaluation import Manner
+    from metagraph.research.generation.evaluation import Manner
 
     if not 1 <= options.seeds <= 100:
         raise ValueError(f"--seeds is 1 to 100, not {options.seeds}")
@@ -72,8 +72,8 @@ def evaluate(options: Namespace) -> int:
     from app.cli.generate_report import REPORT, data_of, text_of, write_report
     from app.cli.generate_takes import models_of, read_all, telling
     from metagraph.formats.outputs import claim
-    from metagraph.generation.evaluation import for_all, judge
     from metagraph.generation.stored import SUFFIX
+    from metagraph.research.generation.evaluation import for_all, judge
 
     paths = [p for p in options.given if p.suffix.lower() == SUFFIX]
     options.takes = [p for p in options.given if p.suffix.lower() != SUFFIX]
@@ -150,7 +150,7 @@ def planted_floor(given: list[Path], takes: tuple[Take, ...], rig: PoseRig) -> l
     """Return planted takes performed anew, None where they are not planted or not by the sample project."""
     from app.cli.command_output import opened
     from app.cli.demo_command import SAMPLE
-    from metagraph.generation.planted import again, read_planted
+    from metagraph.research.generation.planted import again, read_planted
 
     cards = [card for folder in given if folder.is_dir() and (card := read_planted(folder)) is not None]
     if len(cards) != 1 or len(given) != 1:

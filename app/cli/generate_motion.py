@@ -115,8 +115,8 @@ def heard_of(options: Namespace, tracks: int) -> Heard:
 
 def _planted_speech(options: Namespace) -> tuple[Speech, str]:
     """Return speech that was made up, with its name."""
-    from metagraph.generation.planted_speech import converse
     from metagraph.generation.take_files import Speech
+    from metagraph.research.generation.planted_speech import converse
 
     name = "planted speech"
     spoken = converse(min(options.minutes, 3.0) * 60, options.seed, 1, name)
@@ -128,7 +128,7 @@ def _read_speech(options: Namespace, paths: list[Path]) -> tuple[Speech, str]:
     """Return the speech of files, with its name. Raises FileError."""
     from app.cli.language_options import speaking_of
     from metagraph.errors import FileError
-    from metagraph.formats.conversations import SOUNDS
+    from metagraph.formats.conversations.files import SOUNDS
     from metagraph.generation.take_files import TakeFiles, read_speech
 
     for path in paths:
@@ -146,7 +146,7 @@ def _read_speech(options: Namespace, paths: list[Path]) -> tuple[Speech, str]:
 
 def _words_beside(sound: Path) -> list[Path]:
     """Return the transcript that has a sound's name, if there is one."""
-    from metagraph.formats.transcript_words import SUFFIXES
+    from metagraph.formats.transcripts.words import SUFFIXES
 
     known = {s.lower() for s in SUFFIXES}
     beside = sorted(sound.parent.glob("*"))
@@ -232,8 +232,8 @@ def made(options: Namespace, model: Model, heard: Heard, seed: int) -> Clip:
 def sample(options: Namespace) -> int:
     """Make motion to speech and write it."""
     from app.cli.command_output import say
-    from metagraph.formats.bvh import write_bvh
-    from metagraph.formats.gltf_writer import write_glb
+    from metagraph.formats.bvh.file import write_bvh
+    from metagraph.formats.gltf.writer import write_glb
     from metagraph.generation.stored import read_model
 
     out: Path = options.out
@@ -275,7 +275,7 @@ def _cut(options: Namespace, output: ProjectOutput | None) -> int:
     from app.cli.command_output import say
     from metagraph.formats.atomic import write_atomically
     from metagraph.formats.clips import digest
-    from metagraph.formats.gltf_writer import write_glb
+    from metagraph.formats.gltf.writer import write_glb
     from metagraph.formats.outputs import claim
     from metagraph.generation.stored import read_model
     from metagraph.synthesis.cut import candidates, uncut

@@ -10,14 +10,14 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from metagraph.csv_text import csv_text
+from metagraph.common.csv_text import csv_text
+from metagraph.common.xml_text import escape
 from metagraph.formats.atomic import write_together
-from metagraph.generation import figures
-from metagraph.generation.evaluation import Judged
 from metagraph.generation.features import PARTNER, SELF
 from metagraph.generation.statistics import MEASURES, Row, mean_landmarks
-from metagraph.study.report_style import STYLE
-from metagraph.xml_text import escape
+from metagraph.research.generation import figures
+from metagraph.research.generation.evaluation import Judged
+from metagraph.research.study.reports.style import STYLE
 
 REPORT = ("report.html", "report.json", "report.csv")  # what is written
 NAMES = (*MEASURES, "diversity")

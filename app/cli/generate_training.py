@@ -13,10 +13,10 @@ from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
-    from metagraph.generation.ablation import Job
     from metagraph.generation.take_files import Batch
     from metagraph.generation.takes import Take
     from metagraph.generation.train_process import Event, TrainingProcess
+    from metagraph.research.generation.ablation import Job
 
 KINDS = ("flow-vae", "moglow", "cvae", "matching")
 MINUTES = 15.0
@@ -269,11 +269,11 @@ def ablate(options: Namespace) -> int:
     from app.cli.generate_takes import read_all
     from metagraph.formats.atomic import write_atomically
     from metagraph.formats.outputs import claim
-    from metagraph.generation import ablation
     from metagraph.generation.features import MELS
     from metagraph.generation.networks import sizes_of
     from metagraph.generation.take_files import find_takes
     from metagraph.generation.takes import split
+    from metagraph.research.generation import ablation
 
     check(options)
     claim(options.out / "table.json", options.out / "table.csv")
@@ -333,7 +333,7 @@ def ablate(options: Namespace) -> int:
 
 def chosen(names: list[str] | None) -> list[Any]:
     """Return changes by name, the whole model always first. Raises ValueError."""
-    from metagraph.generation.ablation import CHANGES, NAMES
+    from metagraph.research.generation.ablation import CHANGES, NAMES
 
     odd = next((n for n in names or () if n not in NAMES), None)
     if odd is not None:

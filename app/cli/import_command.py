@@ -13,10 +13,10 @@ from metagraph.formats.action_labels import labelled, read_labels
 from metagraph.formats.clip_readers import clip_suffixes
 from metagraph.formats.import_words import counted, remedies, said
 from metagraph.formats.imports import import_files
-from metagraph.formats.project_pieces import read_other_project
+from metagraph.formats.project.pieces import read_other_project
 from metagraph.formats.store import SUFFIX
+from metagraph.graph.editing.taking import words_of_taking
 from metagraph.graph.model import Project
-from metagraph.graph.taking import words_of_taking
 
 
 def arguments(parser: ArgumentParser) -> None:

@@ -18,8 +18,8 @@ if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from app.cli.outputs import ProjectOutput
     from metagraph.graph.model import Project
     from metagraph.suggest.alike import Example
-    from metagraph.suggest.bridges import Bridge
-    from metagraph.suggest.words_patterns import Patterns
+    from metagraph.suggest.jumps.bridges import Bridge
+    from metagraph.suggest.words.patterns import Patterns
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -103,8 +103,8 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
     from metagraph.formats.atomic import write_atomically
     from metagraph.formats.import_words import counted
     from metagraph.graph.check import check, grave
-    from metagraph.suggest.bridges import bridged, told
     from metagraph.suggest.flags import needs_a_look
+    from metagraph.suggest.jumps.bridges import bridged, told
     from metagraph.suggest.left_aside import reasons
     from metagraph.suggest.propose import SOURCES, accept, propose
 
@@ -209,7 +209,7 @@ def _taught(options: Namespace, path: Path) -> tuple[Patterns | None, list[Examp
     a run is the same everywhere.
     """
     from app.project.pattern_files import read_patterns
-    from metagraph.suggest.name_words import merged
+    from metagraph.suggest.words.names import merged
 
     given = read_patterns(options.patterns) if options.patterns is not None else None
     if not options.learned:
@@ -295,7 +295,7 @@ def _beside_work(before: Project, labelled: Project, bridge: bool) -> tuple[Proj
     bridges to the stances that are new.
     """
     from metagraph.graph.model import LAYERS
-    from metagraph.suggest.bridges import bridged_at
+    from metagraph.suggest.jumps.bridges import bridged_at
 
     graphs = dict(labelled.graphs)
     for layer in LAYERS:

@@ -15,13 +15,13 @@ from typing import Any
 
 from app.cli.label_page import SCRIPT, STYLE
 from app.look.plural import many
+from metagraph.common.xml_text import escape
 from metagraph.formats.import_words import counted
 from metagraph.graph.model import KINDS, LAYERS, Project
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.flags import chance_wrong, doubt, gain, needs_a_look
 from metagraph.suggest.left_aside import reasons
 from metagraph.suggest.propose import Proposal, Proposals, Taken
-from metagraph.xml_text import escape
 
 KIND_MARKS = {
     "stance": "●",

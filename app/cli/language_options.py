@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
-    from metagraph.formats.conversation_languages import Speaking
+    from metagraph.formats.conversations.languages import Speaking
 
 
 def language_arguments(parser: ArgumentParser, usual: str = "auto") -> None:
@@ -31,9 +31,9 @@ def language_arguments(parser: ArgumentParser, usual: str = "auto") -> None:
 
 def speaking_of(options: Namespace, project: str = "auto") -> Speaking:
     """Return what to read words by. project: what the project is set to. Raises FileError, ValueError."""
-    from metagraph.formats.conversation_languages import Speaking
+    from metagraph.formats.conversations.languages import Speaking
     from metagraph.formats.language_files import packs_with, read_pack
-    from metagraph.graph.conversation import AUTO
+    from metagraph.graph.conversation.model import AUTO
 
     packs = packs_with(options.words_list)
     asked: str | None = options.language

@@ -176,7 +176,7 @@ def _keep(session: LiveSession, options: Namespace) -> None:
     """
     from metagraph.errors import FileError
     from metagraph.formats.store import open_project
-    from metagraph.graph.performance_edits import add_performance
+    from metagraph.graph.editing.performances import add_performance
 
     played = session.performance(options.keep)
     lacks = session.kept_words()
@@ -205,10 +205,10 @@ def _kept_beside(project: Project, played: Performance, path: Path) -> Path | No
     """
     import tempfile
 
+    from metagraph.common.file_names import file_stem
     from metagraph.errors import FileError
-    from metagraph.file_names import file_stem
     from metagraph.formats.store import SUFFIX, save_project
-    from metagraph.graph.performance_edits import add_performance
+    from metagraph.graph.editing.performances import add_performance
 
     whole, _ = add_performance(project, played)
     own = path.name.removesuffix(SUFFIX)

@@ -97,7 +97,7 @@ def graphs_of(options: Namespace, project: Project) -> dict[str, LiveGraph]:
 def _brought(clips: list[Clip], project: Project, retarget: bool) -> list[Clip]:
     if not retarget or project.skeleton is None:
         return clips
-    from metagraph.graph.project_retargeting import Bringing
+    from metagraph.graph.editing.retargeting import Bringing
 
     bringing = Bringing(project)
     return [
@@ -126,7 +126,7 @@ def keep_motion(session: LiveSession, options: Namespace) -> None:
     motions = session.generating.motions()
     if not motions:
         return
-    from metagraph.file_names import file_stem
+    from metagraph.common.file_names import file_stem
     from metagraph.formats.store import SUFFIX as PROJECT
     from metagraph.live.kept_motion import write_kept
 

@@ -9,12 +9,12 @@ from pathlib import Path
 
 from app.cli.command_output import say
 from app.cli.outputs import ProjectOutput
+from metagraph.common.wording import told
 from metagraph.errors import FileError
-from metagraph.formats.merging import MergeError, merge
 from metagraph.formats.outputs import claim, wrote
+from metagraph.formats.project.merging import MergeError, merge
 from metagraph.formats.store import SUFFIX, read_project
 from metagraph.graph.model import Project
-from metagraph.wording import told
 
 
 def arguments(parser: ArgumentParser) -> None:

@@ -96,7 +96,7 @@ def _mimicked(
 ) -> int:
     """output: where the project is saved, if it is."""
     from app.cli.command_output import opened
-    from metagraph.formats.keypoints import read_keypoints
+    from metagraph.formats.keypoints.reader import read_keypoints
     from metagraph.graph.requests import Performance
     from metagraph.mimicry.performing import REST, mimic_performance, placed
 
@@ -133,8 +133,8 @@ def _mimicked(
 def _take(options: Namespace, project: Project, seen: Keypoints) -> Path | None:
     """Write the person's own motion, if it is wanted."""
     from metagraph.errors import FileError
-    from metagraph.formats.bvh import write_bvh
-    from metagraph.formats.gltf_writer import write_glb
+    from metagraph.formats.bvh.file import write_bvh
+    from metagraph.formats.gltf.writer import write_glb
     from metagraph.mimicry.keypoint_take import KeypointTakeError, take_of
 
     path: Path | None = options.take
@@ -157,7 +157,7 @@ def _take(options: Namespace, project: Project, seen: Keypoints) -> Path | None:
 
 
 def _planned(project: Project, kept: Performance) -> Plan:
-    from metagraph.playback.running_plan import asks_of, perform
+    from metagraph.playback.planning.running_plan import asks_of, perform
 
     return perform(project, asks_of(kept), kept.length, kept.seed, dict(kept.stances), kept.idle)
 
@@ -165,7 +165,7 @@ def _planned(project: Project, kept: Performance) -> Plan:
 def _keep(output: ProjectOutput | None, project: Project, kept: Performance) -> Path | None:
     if output is None:
         return None
-    from metagraph.graph.performance_edits import add_performance
+    from metagraph.graph.editing.performances import add_performance
 
     output.save(add_performance(project, kept)[0])
     return output.path
@@ -197,7 +197,7 @@ def _write(
 
 def _rows(project: Project, found: Mimicry, made: Plan) -> list[dict[str, Any]]:
     """Return of each sighting what was seen and when, and from when to when the character goes there."""
-    from metagraph.playback.extend_performance import answer
+    from metagraph.playback.planning.extend_performance import answer
 
     rows = []
     for sight in found.sightings:

@@ -27,8 +27,8 @@ def arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Tell moods; set those that are asked for, and keep them in the project."""
-    from metagraph.graph.performance_edits import set_life
-    from metagraph.playback.understand import felt
+    from metagraph.graph.editing.performances import set_life
+    from metagraph.playback.planning.understand import felt
 
     told = felt(_mood(options.mood), options.intensity)  # type: ignore[arg-type]
     if not told and not options.from_voices:

@@ -17,12 +17,12 @@ from app.cli.motion_graph_soft import soft_options, soft_wish
 from app.cli.takes import beside, paired, paired_speech, read_spoken, read_takes, speech_arguments
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
-    from metagraph.graph.conversation import Segment
+    from metagraph.graph.conversation.model import Segment
     from metagraph.motion.clip import Clip
     from metagraph.synthesis.graph import MotionGraph, Threshold
-    from metagraph.synthesis.path_quality import PathQuality
     from metagraph.synthesis.prosody_costs import SpokenTake
-    from metagraph.synthesis.relaxing import Answer
+    from metagraph.synthesis.search.path_quality import PathQuality
+    from metagraph.synthesis.search.relaxing import Answer
     from metagraph.synthesis.states import States
 
 OUT = (".bvh", ".glb")
@@ -237,7 +237,7 @@ def build(options: Namespace) -> int:
     from time import perf_counter
 
     from app.cli.command_output import say
-    from metagraph.suggest.fits import fits
+    from metagraph.suggest.jumps.fits import fits
     from metagraph.synthesis.graph import build as build_graph
     from metagraph.synthesis.graph import largest, threshold
     from metagraph.synthesis.states import key_states
@@ -337,15 +337,15 @@ def table(options: Namespace) -> int:
 def synthesize(options: Namespace) -> int:
     """Write motion that goes with speech."""
     from app.cli.command_output import say
-    from metagraph.graph.conversation import SOUNDS
+    from metagraph.graph.conversation.model import SOUNDS
+    from metagraph.research.motion_graph.search_evaluation import cut
     from metagraph.synthesis.assemble import assemble
     from metagraph.synthesis.constraints import changes, heard
     from metagraph.synthesis.graph import build as build_graph
     from metagraph.synthesis.graph import threshold
-    from metagraph.synthesis.path_quality import quality
-    from metagraph.synthesis.relaxing import Constraints, answer
-    from metagraph.synthesis.ruled_search import FREE, JUMP_RULES
-    from metagraph.synthesis.search_evaluation import cut
+    from metagraph.synthesis.search.path_quality import quality
+    from metagraph.synthesis.search.relaxing import Constraints, answer
+    from metagraph.synthesis.search.ruled_search import FREE, JUMP_RULES
     from metagraph.synthesis.soft_constraints import SoftMaterial, soft_report
     from metagraph.synthesis.states import key_states
 
@@ -436,7 +436,7 @@ def _speech_of_file(options: Namespace, needs_sound: bool) -> SpokenTake:
 def _seconds(options: Namespace, new: SpokenTake) -> float:
     """Return how long the motion is to be. Raises FileError, ValueError."""
     from metagraph.errors import FileError
-    from metagraph.synthesis.search_evaluation import WINDOW
+    from metagraph.research.motion_graph.search_evaluation import WINDOW
 
     end = max((s.end for s in new.segments), default=0.0)
     if options.start < 0 or (options.start >= end and options.seconds is None):
@@ -469,8 +469,8 @@ def _path_facts(found: Answer, states: States, looks: PathQuality) -> dict[str, 
 
 
 def _write(path: Path, clip: Clip) -> None:
-    from metagraph.formats.bvh import write_bvh
-    from metagraph.formats.gltf_writer import write_glb
+    from metagraph.formats.bvh.file import write_bvh
+    from metagraph.formats.gltf.writer import write_glb
 
     path.parent.mkdir(parents=True, exist_ok=True)
     if path.suffix == ".bvh":
@@ -498,9 +498,9 @@ def evaluate(options: Namespace) -> int:
     """Print, setting by setting, how much held-out speech finds motion."""
     from app.cli.command_output import say
     from metagraph.formats.atomic import write_atomically
-    from metagraph.synthesis.evaluation_table import csv_of, table_of
-    from metagraph.synthesis.search_evaluation import SETTINGS
-    from metagraph.synthesis.search_evaluation import evaluate as run
+    from metagraph.research.motion_graph.evaluation_table import csv_of, table_of
+    from metagraph.research.motion_graph.search_evaluation import SETTINGS
+    from metagraph.research.motion_graph.search_evaluation import evaluate as run
 
     _checked(options)
     wish = soft_wish(options)
@@ -540,7 +540,7 @@ def evaluate(options: Namespace) -> int:
 def _evaluate_live(options: Namespace, clips: list[Clip], speech: list[tuple[Segment, ...]]) -> int:
     """Print how motion that is extended while it plays goes with speech that becomes known bit by bit."""
     from app.cli.command_output import say
-    from metagraph.synthesis.extending_evaluation import held_out, rows_of, table_of
+    from metagraph.research.motion_graph.extending_evaluation import held_out, rows_of, table_of
 
     graphs = held_out(clips, speech, options.k, options.level, options.keys, options.most)
     rows = list(rows_of(graphs, seed=options.seed, progress=_telling(options, "drives")))

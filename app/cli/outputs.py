@@ -118,8 +118,8 @@ class ProjectOutput:
         """
         from app.project.version_count import version_count
         from metagraph.errors import FileError
+        from metagraph.formats.project.versions import write_project
         from metagraph.formats.store import encoded, file_digest, moved
-        from metagraph.formats.versions import write_project
 
         if file_digest(self.path) != self._digest:
             raise FileError(

@@ -14,8 +14,8 @@ from typing import Any
 
 from app.cli.outputs import offer_overwrite, outputs_of
 from metagraph import __version__
-from metagraph.network_paths import allow
-from metagraph.programs import settle
+from metagraph.common.network_paths import allow
+from metagraph.common.programs import settle
 
 ERROR = 1
 NETWORK = "--network"  # of any command: open files on other computers that a project names

@@ -62,11 +62,11 @@ def make(options: Namespace) -> int:
     from app.cli.command_output import say
     from app.cli.perceive_stimuli import Stimuli
     from metagraph.formats.outputs import claim
+    from metagraph.research.study.perceive.design import design, sequences
+    from metagraph.research.study.perceive.folder import KEY, level_times, write_folder
+    from metagraph.research.study.perceive.perceive_plan import FILE, read_plan
+    from metagraph.research.study.plan.allocation import make_secret
     from metagraph.speech.soundtrack import RATE
-    from metagraph.study.allocation import make_secret
-    from metagraph.study.perceive.design import design, sequences
-    from metagraph.study.perceive.folder import KEY, level_times, write_folder
-    from metagraph.study.perceive.perceive_plan import FILE, read_plan
     from preview.video import write_video
 
     path = options.plan / FILE if options.plan.is_dir() else options.plan
@@ -141,9 +141,9 @@ def serve(options: Namespace) -> int:
     import time
 
     from app.cli.command_output import until_told_to_stop
-    from metagraph.study.perceive.folder import read_folder
-    from metagraph.study.perceive.serving import page_of
-    from metagraph.study.perceive.serving import serve as begin
+    from metagraph.research.study.perceive.folder import read_folder
+    from metagraph.research.study.perceive.serving import page_of
+    from metagraph.research.study.perceive.serving import serve as begin
 
     study = read_folder(options.folder)
     page_of(study)
@@ -165,8 +165,8 @@ def serve(options: Namespace) -> int:
 def collect(options: Namespace) -> int:
     from app.cli.command_output import say
     from metagraph.errors import FileError
-    from metagraph.study.perceive.answers import SheetError, keep, read_answers
-    from metagraph.study.perceive.folder import read_folder
+    from metagraph.research.study.perceive.answers import SheetError, keep, read_answers
+    from metagraph.research.study.perceive.folder import read_folder
 
     study = read_folder(options.folder)
     paths = [q for p in options.answers for q in (sorted(p.glob("*.json")) if p.is_dir() else [p])]
@@ -192,10 +192,10 @@ def collect(options: Namespace) -> int:
 def report(options: Namespace) -> int:
     from app.cli.command_output import say
     from metagraph.formats.outputs import claim
-    from metagraph.study.perceive.folder import read_folder
-    from metagraph.study.perceive.perceive_analysis import analyse
-    from metagraph.study.perceive.perceive_data import collect as read_answers
-    from metagraph.study.perceive.perceive_report import NAME, summary, tables, write_report
+    from metagraph.research.study.perceive.folder import read_folder
+    from metagraph.research.study.perceive.perceive_analysis import analyse
+    from metagraph.research.study.perceive.perceive_data import collect as read_answers
+    from metagraph.research.study.perceive.perceive_report import NAME, summary, tables, write_report
 
     study = read_folder(options.folder)
     place = options.out or study.folder / "report"
@@ -226,8 +226,8 @@ def report(options: Namespace) -> int:
 
 def withdraw(options: Namespace) -> int:
     from app.cli.command_output import say
-    from metagraph.study.perceive.folder import read_folder
-    from metagraph.study.withdrawal import withdraw as note
+    from metagraph.research.study.logs.withdrawal import withdraw as note
+    from metagraph.research.study.perceive.folder import read_folder
 
     study = read_folder(options.folder)
     new = note(study, options.participant, options.why)
@@ -242,8 +242,8 @@ def withdraw(options: Namespace) -> int:
 
 def delete(options: Namespace) -> int:
     from app.cli.command_output import may_delete, say
-    from metagraph.study.perceive.folder import read_folder
-    from metagraph.study.withdrawal import delete as remove
+    from metagraph.research.study.logs.withdrawal import delete as remove
+    from metagraph.research.study.perceive.folder import read_folder
 
     study = read_folder(options.folder)
     study.known(options.participant)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
-    from metagraph.study.perceive.simulated import Raters
+    from metagraph.research.study.perceive.simulated import Raters
 
 Action = Callable[[str, str, Callable[[Namespace], int]], ArgumentParser]
 
@@ -51,7 +51,7 @@ def arguments(action: Action) -> None:
 
 def empty(folder: Path) -> None:
     """Raise ValueError for a folder with a study in it: its answers must not get another key."""
-    from metagraph.study.perceive.folder import KEY
+    from metagraph.research.study.perceive.folder import KEY
 
     if (folder / KEY).exists() or (folder / "answers").exists():
         raise ValueError(f"{folder} holds a study already, perhaps with answers: name another folder")
@@ -61,8 +61,8 @@ def empty(folder: Path) -> None:
 
 def plan(options: Namespace) -> int:
     from app.cli.command_output import say
-    from metagraph.study.perceive import binomial
-    from metagraph.study.perceive.perceive_power import Expected, design_effect, people_needed, shown
+    from metagraph.research.study.perceive import binomial
+    from metagraph.research.study.perceive.perceive_power import Expected, design_effect, people_needed, shown
 
     if options.tests < 1 or options.items < 1:
         raise ValueError("tests and items are at least 1")
@@ -159,8 +159,8 @@ def simulate(options: Namespace) -> int:
     from msgspec.structs import replace as changed
 
     from app.cli.command_output import say
-    from metagraph.study.perceive.perceive_plan import FILE, from_text, read_plan
-    from metagraph.study.perceive.simulated import write_simulated
+    from metagraph.research.study.perceive.perceive_plan import FILE, from_text, read_plan
+    from metagraph.research.study.perceive.simulated import write_simulated
 
     empty(options.out)
     text = EXAMPLE.encode()
@@ -187,7 +187,7 @@ def simulate(options: Namespace) -> int:
 
 
 def _raters(options: Namespace) -> Raters:
-    from metagraph.study.perceive.simulated import Raters
+    from metagraph.research.study.perceive.simulated import Raters
 
     liked = {}
     for words in options.liked:

@@ -17,12 +17,12 @@ from app.cli.render_command import bounds_of, figure_of, pictures, sound_of
 from app.stage.conversation_plans import ConversationPlans
 from app.stage.playback_source import ASIDE, Shown, alone
 from metagraph.errors import FileError
-from metagraph.formats.gltf import has_skinned_mesh
+from metagraph.formats.gltf.reader import has_skinned_mesh
 from metagraph.graph.model import ClipEntry, Project
 from metagraph.motion.clip import Clip
+from metagraph.research.study.perceive.perceive_plan import Condition, PerceivePlan, Stretch
 from metagraph.speech.loudness import levelled
 from metagraph.speech.soundtrack import RATE
-from metagraph.study.perceive.perceive_plan import Condition, PerceivePlan, Stretch
 
 NEW = "perceived.{}"  # ids of clips that are put into a project for its pictures alone
 LATE = 0.05  # seconds by which an item may reach beyond its source: the last frame stands

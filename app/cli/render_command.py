@@ -373,9 +373,9 @@ def bake_to(out: Path, shown: Shown, seconds: float, fps: float, folder: Path, s
 
     A GLB and a USD stage have the character in them, where the project has one.
     """
-    from metagraph.formats.bvh import write_bvh
-    from metagraph.formats.gltf_writer import write_glb
-    from metagraph.formats.usd_writer import write_usd
+    from metagraph.formats.bvh.file import write_bvh
+    from metagraph.formats.gltf.writer import write_glb
+    from metagraph.formats.usd.writer import write_usd
 
     project = shown.project
     whole = shown.clip or shown.motion
@@ -391,7 +391,7 @@ def bake_to(out: Path, shown: Shown, seconds: float, fps: float, folder: Path, s
     else:
         body = None
         if project.character is not None:
-            from metagraph.formats.gltf import read_character
+            from metagraph.formats.gltf.reader import read_character
 
             body = read_character(folder / project.character).without(project.hidden)
             if body.skeleton != project.skeleton or not len(body.triangles):

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
-    from metagraph.exhibits.exhibit import Exhibit, Shown
-    from metagraph.exhibits.material import Material
+    from metagraph.research.exhibits.exhibit import Exhibit, Shown
+    from metagraph.research.exhibits.material import Material
 
 
 def arguments(parser: ArgumentParser) -> None:
@@ -50,10 +50,10 @@ def run(options: Namespace) -> int:
     """Make exhibits; write the report and print the tables."""
     from app.cli.command_output import say
     from metagraph import __version__
-    from metagraph.exhibits.exhibit import chosen
-    from metagraph.exhibits.page import data_of, page, text_of
     from metagraph.formats.atomic import write_together
     from metagraph.formats.outputs import claim
+    from metagraph.research.exhibits.exhibit import chosen
+    from metagraph.research.exhibits.page import data_of, page, text_of
 
     exhibits = chosen(options.exhibits)
     if options.list:
@@ -86,7 +86,7 @@ def run(options: Namespace) -> int:
 
 def _list(options: Namespace, exhibits: Sequence[Exhibit]) -> int:
     from app.cli.command_output import say
-    from metagraph.exhibits.published import PAPERS
+    from metagraph.research.exhibits.published import PAPERS
 
     lines, before = [], ""
     for e in exhibits:
@@ -108,7 +108,7 @@ def _made(exhibit: Exhibit, material: Material) -> tuple[Shown, float]:
     from time import perf_counter
 
     from metagraph.errors import FileError
-    from metagraph.exhibits.exhibit import Shown
+    from metagraph.research.exhibits.exhibit import Shown
 
     began = perf_counter()
     try:
@@ -129,9 +129,9 @@ def _material(options: Namespace) -> Material:
     from app.cli.command_output import opened
     from app.cli.demo_command import SAMPLE
     from metagraph.errors import FileError
-    from metagraph.exhibits.material import Material
     from metagraph.formats.corpora import Recorded, read_corpus
     from metagraph.generation.offered import SHIPPED
+    from metagraph.research.exhibits.material import Material
 
     if options.model is not None and not options.model.is_file():
         raise FileError(options.model, "there is no such model", remedy="Check where the .mgmodel file is.")

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 from app.cli.outputs import ProjectOutput
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
-    from metagraph.formats.conversations import Read
-    from metagraph.graph.conversation import Conversation, Side
+    from metagraph.formats.conversations.files import Read
+    from metagraph.graph.conversation.model import Conversation, Side
     from metagraph.graph.model import Project
     from metagraph.speech.duet import DuetPart
 
@@ -67,7 +67,7 @@ def _read(options: Namespace, words: list[Path], out: Path | None, output: Proje
     """output: where the conversation is kept, if it is."""
     from app.cli.command_output import opened, say
     from app.cli.language_options import speaking_of
-    from metagraph.formats.conversations import read_conversation
+    from metagraph.formats.conversations.files import read_conversation
     from metagraph.speech.gaze_shares import together
 
     folder = options.project.resolve().parent if options.project is not None else None
@@ -151,7 +151,7 @@ def _row(n: int, side: Side) -> dict[str, Any]:
 
 
 def _keep(output: ProjectOutput, project: Project, read: Read) -> str:
-    from metagraph.graph.conversation_edits import add_conversation
+    from metagraph.graph.conversation.edits import add_conversation
 
     project, ident = add_conversation(project, read.conversation)
     output.save(project)
@@ -160,7 +160,7 @@ def _keep(output: ProjectOutput, project: Project, read: Read) -> str:
 
 def _with_speakers(conversation: Conversation, chosen: str) -> Conversation:
     """Return a conversation of those who are named, or numbered from 1, in that order. Raises ValueError."""
-    from metagraph.graph.conversation import side_name, with_sides
+    from metagraph.graph.conversation.model import side_name, with_sides
 
     names = [side_name(conversation, n) for n in range(len(conversation.sides))]
     known = {name.casefold(): n for n, name in reversed(list(enumerate(names)))}
@@ -187,8 +187,8 @@ def _performed(path: Path, ident: str) -> tuple[DuetPart, ...]:
 def _write(out: Path, read: Read, folder: Path | None) -> None:
     import msgspec
 
-    from metagraph.formats.conversation_writers import write_elan, write_json, write_textgrid
-    from metagraph.xml_text import replaced_note
+    from metagraph.common.xml_text import replaced_note
+    from metagraph.formats.conversations.writers import write_elan, write_json, write_textgrid
 
     kind = out.suffix.casefold()
     if kind == ".eaf":

@@ -20,8 +20,8 @@ from app.cli.study_run import run as run_study
 from app.cli.study_watching import arguments as watch_arguments
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
-    from metagraph.study.analysis import Results
-    from metagraph.study.stats import Estimate
+    from metagraph.research.study.analysis.results import Results
+    from metagraph.research.study.statistics.small_samples import Estimate
 
 
 def arguments(parser: ArgumentParser) -> None:
@@ -104,8 +104,8 @@ def report(options: Namespace) -> int:
     from app.cli.command_output import say
     from app.cli.study_papers import papers_maker
     from metagraph.formats.outputs import claim
-    from metagraph.study.report import NAME, summary, write_report
-    from metagraph.study.study_plan import read_study
+    from metagraph.research.study.report import NAME, summary, write_report
+    from metagraph.research.study.study_plan import read_study
 
     place = options.out or read_study(options.folder).folder / "report"
     claim(place / NAME)
@@ -120,11 +120,11 @@ def report(options: Namespace) -> int:
 
 def export(options: Namespace) -> int:
     from app.cli.command_output import say
+    from metagraph.common.xml_text import INSTEAD
     from metagraph.formats.outputs import claim
-    from metagraph.study.bids import write_bids
-    from metagraph.study.study_plan import read_study
-    from metagraph.study.xes import write_xes
-    from metagraph.xml_text import INSTEAD
+    from metagraph.research.study.interchange.bids import write_bids
+    from metagraph.research.study.interchange.xes import write_xes
+    from metagraph.research.study.study_plan import read_study
 
     if options.bids is None and options.xes is None:
         raise ValueError("say what to write: --bids OUT, --xes OUT")
@@ -149,8 +149,8 @@ def export(options: Namespace) -> int:
 
 def example(options: Namespace) -> int:
     from app.cli.command_output import say
-    from metagraph.study.analysis_example import example as recomputed
-    from metagraph.study.analysis_example import told
+    from metagraph.research.study.analysis.example import example as recomputed
+    from metagraph.research.study.analysis.example import told
 
     found = recomputed()
     data = {
@@ -166,8 +166,8 @@ def example(options: Namespace) -> int:
 
 def simulate(options: Namespace) -> int:
     from app.cli.command_output import say
-    from metagraph.study.simulate import Truth
-    from metagraph.study.simulate_files import write_study
+    from metagraph.research.study.simulation.files import write_study
+    from metagraph.research.study.simulation.people import Truth
 
     truth = Truth(
         participants=options.participants,
@@ -180,8 +180,8 @@ def simulate(options: Namespace) -> int:
         sus=tuple(options.sus),
     )
     if options.like is not None:
-        from metagraph.study.simulate_like import write_like
-        from metagraph.study.study_plan import read_study
+        from metagraph.research.study.simulation.like_study import write_like
+        from metagraph.research.study.study_plan import read_study
 
         mine = read_study(options.like)
         truth = replace(truth, participants=len(mine.plan.ids))
@@ -193,16 +193,16 @@ def simulate(options: Namespace) -> int:
 
 
 def _tell_missing(results: Results) -> None:
-    from metagraph.study.report_cells import gathered
+    from metagraph.research.study.reports.cells import gathered
 
     for words in gathered(results.data.missing):
         print(f"note: {words}", file=sys.stderr)
 
 
 def _results(options: Namespace) -> Results:
-    from metagraph.study.analysis import analyse
-    from metagraph.study.analysis_read import collect
-    from metagraph.study.sites import merge
+    from metagraph.research.study.analysis.reading import collect
+    from metagraph.research.study.analysis.results import analyse
+    from metagraph.research.study.plan.sites import merge
 
     show = sys.stderr.isatty() and not options.json
 

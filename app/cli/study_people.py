@@ -49,9 +49,9 @@ def _who(parser: ArgumentParser) -> None:
 
 def freeze(options: Namespace) -> int:
     from app.cli.command_output import say
-    from metagraph.study.freeze import freeze as write
-    from metagraph.study.freeze import frozen, seal
-    from metagraph.study.study_plan import read_study
+    from metagraph.research.study.plan.freeze import freeze as write
+    from metagraph.research.study.plan.freeze import frozen, seal
+    from metagraph.research.study.study_plan import read_study
 
     study = read_study(options.study)
     path = write(study, options.force)
@@ -66,9 +66,9 @@ def freeze(options: Namespace) -> int:
 
 def withdraw(options: Namespace) -> int:
     from app.cli.command_output import say
-    from metagraph.study.study_plan import read_study
-    from metagraph.study.withdrawal import mentions
-    from metagraph.study.withdrawal import withdraw as note
+    from metagraph.research.study.logs.withdrawal import mentions
+    from metagraph.research.study.logs.withdrawal import withdraw as note
+    from metagraph.research.study.study_plan import read_study
 
     study = read_study(options.study)
     new = note(study, options.participant, options.why)
@@ -83,9 +83,9 @@ def withdraw(options: Namespace) -> int:
 
 def delete(options: Namespace) -> int:
     from app.cli.command_output import may_delete, say
-    from metagraph.study.study_plan import read_study
-    from metagraph.study.withdrawal import delete as remove
-    from metagraph.study.withdrawal import mentions
+    from metagraph.research.study.logs.withdrawal import delete as remove
+    from metagraph.research.study.logs.withdrawal import mentions
+    from metagraph.research.study.study_plan import read_study
 
     study = read_study(options.study)
     study.plan.known(options.participant)
@@ -110,10 +110,10 @@ def gaze(options: Namespace) -> int:
     from app.cli.command_output import say
     from metagraph.formats.atomic import write_atomically
     from metagraph.formats.outputs import claim
-    from metagraph.study.gaze import dwelt, read_gaze
-    from metagraph.study.log import read
-    from metagraph.study.report_tables import table
-    from metagraph.study.study_plan import read_study
+    from metagraph.research.study.logs.gaze import dwelt, read_gaze
+    from metagraph.research.study.logs.log import read
+    from metagraph.research.study.reports.tables import table
+    from metagraph.research.study.study_plan import read_study
 
     study = read_study(options.study)
     study.plan.known(options.participant)
@@ -128,8 +128,8 @@ def gaze(options: Namespace) -> int:
 
 def bring(options: Namespace) -> int:
     from app.cli.command_output import say
-    from metagraph.study.engine_import import import_engine
-    from metagraph.study.study_plan import read_study
+    from metagraph.research.study.logs.engine_import import import_engine
+    from metagraph.research.study.study_plan import read_study
 
     log, odd = import_engine(read_study(options.study), options.participant, options.log)
     for words in odd:

@@ -48,10 +48,10 @@ def plan(options: Namespace) -> int:
     from math import ceil
 
     from app.cli.command_output import say
-    from metagraph.study.allocation import prepare
-    from metagraph.study.planning import assumed, sample_size
-    from metagraph.study.preregistration import Aims, preregister
-    from metagraph.study.study_plan import read_study
+    from metagraph.research.study.plan.allocation import prepare
+    from metagraph.research.study.plan.planning import assumed, sample_size
+    from metagraph.research.study.plan.preregistration import Aims, preregister
+    from metagraph.research.study.study_plan import read_study
 
     study = read_study(options.study) if options.study is not None else None
     if study is None and (options.allocate or options.preregister):
@@ -98,9 +98,9 @@ def plan(options: Namespace) -> int:
 
 
 def _pilot(folder: Path):
-    from metagraph.study.analysis import analyse
-    from metagraph.study.analysis_read import collect
-    from metagraph.study.planning import from_pilot
+    from metagraph.research.study.analysis.reading import collect
+    from metagraph.research.study.analysis.results import analyse
+    from metagraph.research.study.plan.planning import from_pilot
 
     time = analyse(collect(folder, jumps=False)).time
     people = time.people if time is not None else ()

@@ -28,7 +28,7 @@ def arguments(action: Action) -> None:
 
 def replay(options: Namespace) -> int:
     """Open the window. Raises FileError, ValueError."""
-    from metagraph.study.study_plan import read_study
+    from metagraph.research.study.study_plan import read_study
 
     study = read_study(options.study)
     study.plan.known(options.participant)

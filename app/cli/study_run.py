@@ -20,7 +20,7 @@ def run_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Open the window and lead a participant through. Raises FileError, ValueError."""
-    from metagraph.study.study_plan import read_study
+    from metagraph.research.study.study_plan import read_study
 
     study = read_study(options.study)
     if options.participant is not None:
@@ -47,8 +47,8 @@ def check_arguments(parser: ArgumentParser) -> None:
 
 def check(options: Namespace) -> int:
     """Print who does what in which order, and what would hamper the study. Raises FileError."""
-    from metagraph.study.sitting import standing
-    from metagraph.study.study_plan import read_study
+    from metagraph.research.study.sitting import standing
+    from metagraph.research.study.study_plan import read_study
 
     study = read_study(options.study)
     problems = study.problems() + _promised(study)
@@ -88,9 +88,9 @@ def _order(study, participant):
 
 def _promised(study):
     """Return in words where the study is not what was frozen, preregistered or drawn."""
-    from metagraph.study import allocation
-    from metagraph.study.freeze import changed, frozen, manifest
-    from metagraph.study.preregistration import unlike
+    from metagraph.research.study.plan import allocation
+    from metagraph.research.study.plan.freeze import changed, frozen, manifest
+    from metagraph.research.study.plan.preregistration import unlike
 
     before = frozen(study)
     out = [f"{name} is not as it was frozen" for name in changed(before, manifest(study))] if before else []

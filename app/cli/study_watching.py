@@ -23,9 +23,9 @@ def watch(options: Namespace) -> int:
     from dataclasses import asdict
 
     from app.cli.command_output import say, until_told_to_stop
-    from metagraph.study.study_plan import read_study
-    from metagraph.study.watching import table
-    from metagraph.study.watching import watch as look
+    from metagraph.research.study.logs.watching import table
+    from metagraph.research.study.logs.watching import watch as look
+    from metagraph.research.study.study_plan import read_study
 
     study = read_study(options.study)
     if options.once or options.json:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
-    from metagraph.graph.conversation import Conversation, Segment, Word
+    from metagraph.graph.conversation.model import Conversation, Segment, Word
     from metagraph.motion.clip import Clip
     from metagraph.synthesis.prosody_costs import SpokenTake
 
@@ -81,8 +81,8 @@ def read_side(path: Path, side: str) -> tuple[Conversation, int]:
     import msgspec
 
     from metagraph.errors import FileError
-    from metagraph.formats.transcripts import read_transcript
-    from metagraph.graph.conversation import MOST_SPEAKERS, Conversation, Side
+    from metagraph.formats.transcripts.reader import read_transcript
+    from metagraph.graph.conversation.model import MOST_SPEAKERS, Conversation, Side
 
     made = None
     if path.suffix.lower() == ".json" and path.is_file():
@@ -126,7 +126,7 @@ def read_spoken(
     of the recording, None where there is none; where it has a channel for each of them, of its own.
     transcript: where its words are, None where they are in the file itself. Raises FileError.
     """
-    from metagraph.graph.conversation import heard_by
+    from metagraph.graph.conversation.model import heard_by
     from metagraph.speech.prosody import prosody
     from metagraph.speech.sound import read_head, read_sound
     from metagraph.synthesis.prosody_costs import SpokenTake
@@ -146,7 +146,7 @@ def _words_of(path: Path, name: str, number: int) -> tuple[Word, ...]:
     the only one. Raises FileError.
     """
     from metagraph.errors import FileError
-    from metagraph.formats.transcripts import read_transcript
+    from metagraph.formats.transcripts.reader import read_transcript
 
     speakers = read_transcript(path).speakers
     if len(speakers) == 1 or name in speakers:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from app.cli.command_output import say
 from metagraph.engines.verifying_exports import verify
-from metagraph.formats.verified import Verified, counted
+from metagraph.formats.project.verified import Verified, counted
 
 INDENT = 2
 

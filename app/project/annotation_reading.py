@@ -9,13 +9,14 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from app.translation import tr
-from metagraph.graph import edits, performance_edits
+from metagraph.graph import edits
+from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import LAYERS, Layer, Project
-from metagraph.playback.annotation import SPEECH, Annotation, Label, guess_roles, labels
-from metagraph.playback.learn import Act, learn, performance, sequences
-from metagraph.playback.markov import DEFAULTS
-from metagraph.playback.mode_shares import with_modes
-from metagraph.playback.running_plan import asks_of, perform
+from metagraph.playback.learning.annotation import SPEECH, Annotation, Label, guess_roles, labels
+from metagraph.playback.learning.learn import Act, learn, performance, sequences
+from metagraph.playback.planning.markov import DEFAULTS
+from metagraph.playback.planning.mode_shares import with_modes
+from metagraph.playback.planning.running_plan import asks_of, perform
 
 FEW = 30  # acts below which a model is a rough one
 

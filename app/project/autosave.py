@@ -11,9 +11,9 @@ from PySide6.QtCore import QStandardPaths
 
 from app.translation import tr, tr_told
 from metagraph.errors import FileError
-from metagraph.formats.journal import Done, How, Journal, journal_path
-from metagraph.formats.journal_register import JournalRegister
 from metagraph.formats.new_file import PRIVATE
+from metagraph.formats.project.journal import Done, How, Journal, journal_path
+from metagraph.formats.project.journal_register import JournalRegister
 from metagraph.graph.model import Project
 
 if TYPE_CHECKING:

@@ -10,9 +10,9 @@ from contextlib import suppress
 from pathlib import Path
 
 from app.project.autosave import state_folder
-from metagraph.budgets import LIST_FILE
+from metagraph.common.budgets import LIST_FILE
+from metagraph.common.files import read_file
 from metagraph.errors import FileError
-from metagraph.files import read_file
 from metagraph.formats.atomic import write_atomically
 
 MOST = 20_000  # the oldest go first

@@ -21,15 +21,15 @@ from app.project.version_count import version_count
 from app.project.writing import Writing, project_name
 from app.translation import in_english, tr
 from metagraph.errors import FileError
-from metagraph.formats.appended_file import Identity, folder_now, identity_of
-from metagraph.formats.history import Step
-from metagraph.formats.journal import Done, How
-from metagraph.formats.limits import refusal
 from metagraph.formats.locking import Lock, new_owner
 from metagraph.formats.new_file import Access, access_of
+from metagraph.formats.project.appended_file import Identity, folder_now, identity_of
+from metagraph.formats.project.history import Step
+from metagraph.formats.project.journal import Done, How
+from metagraph.formats.project.limits import refusal
 from metagraph.formats.store import file_digest, moved
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.listing_edits import listed_otherwise
+from metagraph.graph.editing.listing import listed_otherwise
 from metagraph.graph.model import Project
 
 Edit = Callable[[Project], Project]

@@ -26,17 +26,17 @@ from app.project.saver import Saver
 from app.project.unsaved import Unsaved, not_steps
 from app.project.writing import FolderGoneError
 from app.translation import tr, tr_error
+from metagraph.common.files import is_file
+from metagraph.common.network_paths import allow
 from metagraph.errors import FileError
-from metagraph.files import is_file
 from metagraph.formats.atomic import write_atomically
-from metagraph.formats.history import Step
 from metagraph.formats.locking import Lock
 from metagraph.formats.new_file import PRIVATE
+from metagraph.formats.project.history import Step
+from metagraph.formats.project.versions import is_version
 from metagraph.formats.recovery import Left
 from metagraph.formats.store import SUFFIX, Opened, absolute, read_project
-from metagraph.formats.versions import is_version
 from metagraph.graph.model import Project
-from metagraph.network_paths import allow
 
 if TYPE_CHECKING:
     from app.project.recovering import Choice

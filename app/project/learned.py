@@ -27,7 +27,7 @@ if TYPE_CHECKING:  # arrays and word lists are read when something is first lear
     from metagraph.graph.model import Project
     from metagraph.suggest.alike import Example
     from metagraph.suggest.memory import Memory
-    from metagraph.suggest.words_patterns import Patterns
+    from metagraph.suggest.words.patterns import Patterns
 
 WORDS = "learned-words.json"
 CLIPS = "learned-clips.json"
@@ -68,7 +68,7 @@ class Learned(QObject):
     @property
     def patterns(self) -> Patterns:
         """What words in names mean; without what was learned from corrections while learning is off."""
-        from metagraph.suggest.words_patterns import forget
+        from metagraph.suggest.words.patterns import forget
 
         return self.every_pattern if self.on else forget(self.every_pattern)
 

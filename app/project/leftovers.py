@@ -11,13 +11,13 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from app.project.autosave import shelter, state_folder
+from metagraph.common.files import is_file
 from metagraph.errors import FileError
-from metagraph.files import is_file
 from metagraph.formats.atomic import sweep
-from metagraph.formats.journal_register import JournalRegister
-from metagraph.formats.journal_search import every_journal, journals_for, project_of
 from metagraph.formats.locking import Holder, Lock, Owner
 from metagraph.formats.new_file import access_of
+from metagraph.formats.project.journal_register import JournalRegister
+from metagraph.formats.project.journal_search import every_journal, journals_for, project_of
 from metagraph.formats.recovery import DAMAGED, Left, in_order, journals_in, read_journal, retire
 from metagraph.formats.store import SUFFIX, load_returned, save_project
 from metagraph.graph.model import Project

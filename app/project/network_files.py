@@ -10,9 +10,9 @@ from PySide6.QtWidgets import QMessageBox
 from app.project.jobs import Job
 from app.project.opening import load_whole, take_over
 from app.translation import tr
+from metagraph.common.network_paths import allow
 from metagraph.formats.store import closed_paths, closed_words, reopened
 from metagraph.graph.model import Project
-from metagraph.network_paths import allow
 
 if TYPE_CHECKING:
     from app.project.files import Files

@@ -9,7 +9,7 @@ import re
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
-from metagraph.file_names import file_stem
+from metagraph.common.file_names import file_stem
 from metagraph.graph.edits import free_name
 from metagraph.motion.clip import Clip
 
@@ -32,7 +32,7 @@ def save(clips: Sequence[Clip], folder: Path, inside: str, taken: Collection[str
     Raises FileError.
     """
     from metagraph.formats.clips import digest
-    from metagraph.formats.gltf_writer import write_glb
+    from metagraph.formats.gltf.writer import write_glb
 
     out: list[Loaded] = []
     names = set(taken)

@@ -7,10 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from metagraph.errors import FileError
-from metagraph.formats.history import Step, history, with_motion
+from metagraph.formats.project.history import Step, history, with_motion
 from metagraph.formats.recovery import Left
 from metagraph.formats.store import Opened, load_motions, open_project
-from metagraph.graph.face import with_morphs
+from metagraph.graph.face.rig import with_morphs
 from metagraph.graph.model import Project
 
 Progress = Callable[[int, int], None]
@@ -61,7 +61,7 @@ def faced(project: Project, folder: Path) -> Project:
     """
     if project.character is None:
         return project
-    from metagraph.formats.gltf import morph_targets
+    from metagraph.formats.gltf.reader import morph_targets
 
     try:
         return with_morphs(project, morph_targets(folder / project.character))

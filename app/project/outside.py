@@ -19,7 +19,7 @@ from metagraph.graph.model import Project
 
 if TYPE_CHECKING:
     from app.project.files import Files
-    from metagraph.formats.merging import MergeError
+    from metagraph.formats.project.merging import MergeError
 
 Merging = tuple[Opened, tuple[str, ...]]
 
@@ -101,7 +101,7 @@ class Outside(QObject):
         self._start(changed, lambda job: load_whole(theirs, changed.path.parent, job.tell), done)
 
     def _merge(self, changed: FileChangedError, common: Project, theirs: Project, digest: str) -> None:
-        from metagraph.formats.merging import MergeError, merge
+        from metagraph.formats.project.merging import MergeError, merge
 
         era, mine = self._era, self.document.project
 

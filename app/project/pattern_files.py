@@ -7,20 +7,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.translation import tr, tr_error
-from metagraph.budgets import LIST_FILE
+from metagraph.common.budgets import LIST_FILE
+from metagraph.common.files import read_file
 from metagraph.errors import FileError
-from metagraph.files import read_file
 from metagraph.formats.atomic import write_atomically
 
 if TYPE_CHECKING:
-    from metagraph.suggest.words_patterns import Patterns
+    from metagraph.suggest.words.patterns import Patterns
 
 REMEDY = tr("Export name patterns from the window, or write them as docs/labels.md says.")
 
 
 def read_patterns(path: Path) -> Patterns:
     """Return the patterns a file holds. Raises FileError naming the place."""
-    from metagraph.suggest.words_patterns import Patterns, PatternsError
+    from metagraph.suggest.words.patterns import Patterns, PatternsError
 
     try:
         return Patterns.from_json(json.loads(read_file(path, LIST_FILE).decode("utf-8")))

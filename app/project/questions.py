@@ -23,7 +23,7 @@ from app.look.theme import strengthen
 from app.project.writing import FileChangedError, FolderGoneError
 from app.translation import tr, tr_error, tr_told
 from metagraph.formats.locking import Holder
-from metagraph.graph.differences import differences
+from metagraph.graph.editing.differences import differences
 from metagraph.graph.model import Project
 
 Role = QMessageBox.ButtonRole

@@ -24,10 +24,10 @@ from app.look.theme import strengthen, theme
 from app.project.leftovers import FoundJournal
 from app.project.questions import moment_words
 from app.translation import tr
+from metagraph.common.files import is_file
 from metagraph.errors import FileError
-from metagraph.files import is_file
-from metagraph.formats.journal_records import LostEdit
-from metagraph.formats.journal_search import project_of
+from metagraph.formats.project.journal_records import LostEdit
+from metagraph.formats.project.journal_search import project_of
 from metagraph.formats.recovery import Left
 from metagraph.formats.store import read_project
 from metagraph.graph.model import KINDS, LAYERS, Project

@@ -11,7 +11,7 @@ from pathlib import Path
 from PySide6.QtCore import QUrl
 from PySide6.QtGui import QDesktopServices
 
-from metagraph.programs import run, system_program
+from metagraph.common.programs import run, system_program
 
 
 def how(path: Path, platform: str = sys.platform) -> tuple[str, list[str]] | None:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from app.translation import tr
-from metagraph.graph.conversation import MOST_SPEAKERS
+from metagraph.graph.conversation.model import MOST_SPEAKERS
 
 SOUNDS = (".wav", ".flac", ".ogg", ".mp3")
 # Three sounds or more are of one conversation where they differ in length by so many seconds at most, and are

@@ -19,8 +19,8 @@ from app.project.leftovers import (
 )
 from app.project.opening import load_recovered
 from app.translation import tr
-from metagraph.formats.history import Step
-from metagraph.formats.journal_search import project_of
+from metagraph.formats.project.history import Step
+from metagraph.formats.project.journal_search import project_of
 from metagraph.formats.recovery import Left
 from metagraph.formats.store import Opened, absolute
 

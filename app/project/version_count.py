@@ -6,7 +6,7 @@ import os
 
 from PySide6.QtCore import QSettings
 
-from metagraph.formats.versions import KEPT, MOST
+from metagraph.formats.project.versions import KEPT, MOST
 
 KEY = "versions"
 

@@ -6,15 +6,15 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from metagraph.common.files import is_file
+from metagraph.common.wording import told
 from metagraph.errors import FileError
-from metagraph.files import is_file
-from metagraph.formats.appended_file import Identity, folder_now, identity_of
-from metagraph.formats.journal import Journal
 from metagraph.formats.new_file import Access
+from metagraph.formats.project.appended_file import Identity, folder_now, identity_of
+from metagraph.formats.project.journal import Journal
+from metagraph.formats.project.versions import write_project
 from metagraph.formats.store import SUFFIX, content_digest, encoded, file_digest, moved, read_with_digest
-from metagraph.formats.versions import write_project
 from metagraph.graph.model import Project
-from metagraph.wording import told
 
 
 class FileChangedError(Exception):

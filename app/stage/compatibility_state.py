@@ -23,8 +23,8 @@ from metagraph.graph.model import LAYERS, Action, Layer, Project
 from metagraph.graph.problem import Problem
 
 if TYPE_CHECKING:  # their imports wait for the first job
-    from metagraph.suggest.compatibility import Matrix, Times
-    from metagraph.suggest.jumps import Curves, Jump, Measured
+    from metagraph.suggest.jumps.compatibility import Matrix, Times
+    from metagraph.suggest.jumps.found import Curves, Jump, Measured
 
 AFTER = 400  # milliseconds of quiet after an edit
 EDGES = {
@@ -50,7 +50,7 @@ def judge(
     project: Project, before: Judged | None = None, cancelled: Callable[[], bool] | None = None
 ) -> Judged:
     """Return all jumps of a project, taking what still holds from an earlier judgement."""
-    from metagraph.suggest.jumps import Measured, jumps
+    from metagraph.suggest.jumps.found import Measured, jumps
 
     measured: dict[Layer, Measured] = {}
     known: dict[Layer, dict[Any, tuple[Jump, ...]]] = {}
@@ -114,7 +114,7 @@ def told(project: Project, judged: Judged) -> dict[Problem, Fix | None]:
 
 
 def _few(layer: Layer, measured: Measured) -> Problem:
-    from metagraph.suggest.jumps import FEWEST_CLIPS
+    from metagraph.suggest.jumps.found import FEWEST_CLIPS
     from metagraph.suggest.tracks import RATE
 
     much = many(measured.labelled, "clip")
@@ -279,7 +279,7 @@ class Compatibility(QObject):
         project, measured = self.document.project, self.judged.measured[action.layer]
 
         def work(_: Job) -> Curves | None:
-            from metagraph.suggest.jumps import curves
+            from metagraph.suggest.jumps.found import curves
 
             return curves(project, measured, action)
 
@@ -302,7 +302,7 @@ class Compatibility(QObject):
             return
 
         def work(job: Job) -> dict[str, dict[str, Any]]:
-            from metagraph.suggest.jumps import curves
+            from metagraph.suggest.jumps.found import curves
 
             out = {}
             for n, action in enumerate(chosen):
@@ -383,7 +383,7 @@ def extended(
     """
     import numpy as np
 
-    from metagraph.suggest.compatibility import Matrix, matrix
+    from metagraph.suggest.jumps.compatibility import Matrix, matrix
 
     clips = tuple(project.clips)
     old = (

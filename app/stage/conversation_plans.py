@@ -15,8 +15,8 @@ from app.project.opening import faced, open_whole
 from app.stage.playback_source import Shown
 from app.translation import tr
 from metagraph.errors import FileError
-from metagraph.graph import performance_edits
-from metagraph.graph.conversation import Side
+from metagraph.graph.conversation.model import Side
+from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Performance
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from app.stage.playback_source import Shown
-from metagraph.graph.conversation import Conversation, Word, side_name
+from metagraph.graph.conversation.model import Conversation, Word, side_name
 from metagraph.graph.timeline import Cut
 from metagraph.speech.automatic_cuts import cut_at
 from metagraph.speech.captions import (

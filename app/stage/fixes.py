@@ -32,7 +32,7 @@ class Fix:
     def __call__(self, project: Project) -> Project:
         """Return the project mended; as it is where what was to be mended went meanwhile."""
         if self.stance is not None:
-            from metagraph.suggest.bridges import bridged_at
+            from metagraph.suggest.jumps.bridges import bridged_at
 
             return bridged_at(project, self.stance)[0]
         if self.action is None or project.action(self.action) is None:
@@ -72,7 +72,7 @@ def original_clip(project: Project, action: Action) -> str | None:
 
 def bridges_for(project: Project, problems: Iterable[Problem]) -> dict[Problem, Fix]:
     """Return what joins stances that cannot be reached or left to the others by blending."""
-    from metagraph.suggest import bridges
+    from metagraph.suggest.jumps import bridges
 
     out: dict[Problem, Fix] = {}
     for problem in problems:

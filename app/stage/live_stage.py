@@ -28,7 +28,7 @@ from metagraph.live.relay import Relay
 from metagraph.live.server import LiveError, Options
 from metagraph.live.tape import Tape
 from metagraph.live.tick_work import Out
-from metagraph.playback.extend_performance import Answer, answers
+from metagraph.playback.planning.extend_performance import Answer, answers
 
 TICK = 16  # milliseconds
 SHOWN = 300  # requests that are shown in the timeline, the latest

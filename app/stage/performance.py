@@ -25,11 +25,11 @@ from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest
 from metagraph.graph.timeline import only_noted
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.playback.extend_performance import Answer, answers
 from metagraph.playback.manual_playback import Fire
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.running_plan import asks_of, perform
+from metagraph.playback.planning.extend_performance import Answer, answers
+from metagraph.playback.planning.running_plan import asks_of, perform
 
 LENGTH = 60.0  # seconds planned ahead, and how much more whenever the playhead comes near the end
 AHEAD = 15.0  # seconds before the end at which more is planned

@@ -11,7 +11,7 @@ from PySide6.QtCore import QBuffer, QByteArray, QIODevice, Qt
 from PySide6.QtGui import QImage, QImageWriter, QPainter
 
 from app.stage.picture_process import LARGE, SCALE, SCRUB, SIZE, PictureOrder
-from metagraph.disk_cache import DiskCache, cache_folder
+from metagraph.common.disk_cache import DiskCache, cache_folder
 
 DRAWN = 4  # to be raised when pictures are drawn otherwise
 MOST = 192 * 1024 * 1024  # bytes on disk

@@ -18,12 +18,6 @@ from metagraph.graph.edits import added_actions, place
 from metagraph.graph.model import Action, Layer, Project
 from metagraph.graph.requests import AnyRequest
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.playback.clip_evaluators import (
-    ClipEvaluator,
-    GeneratedEvaluator,
-    MovedEvaluator,
-    OverlaidEvaluator,
-)
 from metagraph.playback.evaluator import Evaluator, Poses
 from metagraph.playback.manual_playback import (
     Fire,
@@ -35,9 +29,15 @@ from metagraph.playback.manual_playback import (
 )
 from metagraph.playback.plan import MetaRequest, Plan
 from metagraph.playback.planner import make_plan
+from metagraph.playback.posing.clip_evaluators import (
+    ClipEvaluator,
+    GeneratedEvaluator,
+    MovedEvaluator,
+    OverlaidEvaluator,
+)
 
 if TYPE_CHECKING:
-    from metagraph.playback.overlay import Overlay
+    from metagraph.playback.posing.overlay import Overlay
     from metagraph.speech.delivered import Delivered
     from metagraph.speech.duet import Stand
     from metagraph.speech.gaze_shares import GazeShare

@@ -12,10 +12,10 @@ from pathlib import Path
 
 from app.project.jobs import Job
 from app.translation import tr
+from metagraph.common.network_paths import is_allowed
+from metagraph.common.programs import python, start
 from metagraph.formats.store import absolute, save_project
 from metagraph.graph.model import Project
-from metagraph.network_paths import is_allowed
-from metagraph.programs import python, start
 
 SUFFIXES = {
     ".mp4": tr("Video with sound"),

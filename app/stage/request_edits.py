@@ -13,8 +13,8 @@ from app.project.document import Document
 from app.stage.live_control import LiveControl
 from app.stage.session import Session
 from app.translation import tr, tr_error
-from metagraph.graph import performance_edits
 from metagraph.graph.edit_error import EditError
+from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import Project
 from metagraph.graph.request_text import Pasted, holds_requests, paste_requests, request_text
 from metagraph.graph.requests import AnyRequest

@@ -14,7 +14,7 @@ from app.stage.onion import Onion
 from app.stage.selection import Selection
 from app.stage.transport import Transport
 from app.stage.watch import Watch
-from metagraph.graph.manual import Manual
+from metagraph.graph.manual.machine import Manual
 from metagraph.graph.model import LAYERS, Layer, Project
 
 OPENED_ON: tuple[Layer, ...] = ("arms", "body", "head")

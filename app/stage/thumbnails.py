@@ -23,9 +23,9 @@ from app.stage.kept_pictures import KeptPictures
 from app.stage.picture_process import LONG, PictureOrder
 from app.stage.picture_store import KEPT
 from app.stage.session import Session
+from metagraph.common.programs import python, start
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
-from metagraph.programs import python, start
 
 Key = tuple[str, str, str]  # clip id, what, theme
 MOST = (

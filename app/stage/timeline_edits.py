@@ -12,7 +12,7 @@ from app.project.document import Document
 from app.stage.session import Session
 from app.translation import tr
 from metagraph.graph import timeline as notes
-from metagraph.graph.conversation import Conversation
+from metagraph.graph.conversation.model import Conversation
 from metagraph.graph.model import Project
 from metagraph.graph.timeline import Cut, Lane, Marker, Shot, Timeline
 

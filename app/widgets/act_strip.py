@@ -15,7 +15,7 @@ from app.stage.session import Session
 from app.translation import tr
 from app.widgets.vocabulary import titled
 from metagraph.graph.model import KINDS, Layer
-from metagraph.playback.learn import Act, state_of, state_words
+from metagraph.playback.learning.learn import Act, state_of, state_words
 
 LEFT, RULER, LANE = 56, 20, 34
 STEPS = (0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 3600.0)

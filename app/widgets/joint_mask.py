@@ -31,7 +31,7 @@ from app.widgets.mask_weights import MaskWeights
 from app.widgets.quiet_fields import DoubleSpinBox, Slider, SpinBox
 from app.widgets.tree_items import items_below
 from metagraph.graph import edits
-from metagraph.graph.manual import State
+from metagraph.graph.manual.machine import State
 from metagraph.graph.model import Action, Project
 
 JOINT = Qt.ItemDataRole.UserRole

@@ -20,8 +20,8 @@ from app.widgets.request_menu import STAGE, kind_of, request_words
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest
 from metagraph.graph.timeline import lane_of
-from metagraph.playback.extend_performance import Answer
 from metagraph.playback.plan import Cue
+from metagraph.playback.planning.extend_performance import Answer
 
 LEFT, RULER, LANE = 84, 28, 104
 NUMBERS = 16  # pixels of the ruler that are its numbers'; the strip below is the range's and the markers'

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from metagraph.graph import anatomy
-from metagraph.graph.manual import State
+from metagraph.graph.manual.machine import State
 from metagraph.graph.model import Action, Project
 from metagraph.motion.skeleton import Skeleton
 

@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
 from app.project.document import Document
 from app.translation import tr
 from app.widgets.quiet_fields import DoubleSpinBox
-from metagraph.graph import performance_edits
+from metagraph.graph.editing import performances as performance_edits
 
 AXES = (
     (tr("To its left"), tr("Metres to the character's left; to its right below 0")),

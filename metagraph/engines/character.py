@@ -25,11 +25,11 @@ from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.offered import offered, tools
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.evaluator import Evaluator
-from metagraph.playback.extend_performance import Answer, answer, answers
 from metagraph.playback.life.line_timing import VisemeMark
 from metagraph.playback.life.streamed_voice import StreamedVoice
 from metagraph.playback.plan import Plan
-from metagraph.playback.running_plan import CUT, RunningPlan
+from metagraph.playback.planning.extend_performance import Answer, answer, answers
+from metagraph.playback.planning.running_plan import CUT, RunningPlan
 
 LEAP = 3600.0  # seconds an update may move on: all that lies between is planned
 SOUNDS = 16  # lines whose sound is remembered

@@ -26,7 +26,7 @@ from metagraph.graph.model import LAYERS, REACH, Action, Layer, MetaGraph, Proje
 from metagraph.motion.character_mesh import Character
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import unique_names
-from metagraph.playback.layers import keep_to
+from metagraph.playback.posing.layers import keep_to
 
 Array = NDArray[Any]
 
@@ -221,7 +221,7 @@ def write_machine_glb(
     """Write the GLB engines' own state machines play: the joints' nodes stand in the base pose, against which
     additive layers are taken, and every state has an animation of its name. Raises FileError.
     """
-    from metagraph.formats.gltf_writer import write_glb
+    from metagraph.formats.gltf.writer import write_glb
 
     assert project.skeleton is not None
     write_glb(path, animations(project, machines), character, stand=anatomy.base_pose(project))

@@ -9,20 +9,21 @@ from pathlib import Path
 
 import msgspec
 
-from metagraph.budgets import SOUND_FILE
+from metagraph.common.budgets import SOUND_FILE
+from metagraph.common.file_names import file_stem, file_stems
+from metagraph.common.files import is_inside, read_file, unforeseen
+from metagraph.common.wording import told
 from metagraph.engines import contract as c
 from metagraph.engines.export_document import to_document, used_clips
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets.placing import Staging
 from metagraph.errors import FileError
-from metagraph.file_names import file_stem, file_stems
-from metagraph.files import is_inside, read_file, unforeseen
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.clips import digest
 from metagraph.formats.store import writable
 from metagraph.graph.check import check
-from metagraph.graph.expression_presets import presets_of
-from metagraph.graph.face_curves import worn
+from metagraph.graph.face.curves import worn
+from metagraph.graph.face.expression_presets import presets_of
 from metagraph.graph.model import (
     Project,
 )
@@ -30,7 +31,6 @@ from metagraph.motion.character_mesh import Character, bound, no_character
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton, unique_names
 from metagraph.speech.sound import sound_ending
-from metagraph.wording import told
 
 Chosen = Callable[[Path], bool]
 
@@ -196,7 +196,7 @@ def _write_glb(
     compress: bool,
 ) -> list[str]:
     """Write the GLB, without the meshes that are hidden; return what is not in it, in words."""
-    from metagraph.formats.gltf_writer import write_glb
+    from metagraph.formats.gltf.writer import write_glb
 
     skeleton = project.skeleton
     assert skeleton is not None
@@ -223,7 +223,7 @@ def mesh_on(
     there is to say about it. One of another skeleton is bound by the names of its joints, as the preview
     draws it, and left out where the preview does not draw it. Raises FileError.
     """
-    from metagraph.formats.gltf import read_character
+    from metagraph.formats.gltf.reader import read_character
 
     body = read_character(given) if isinstance(given, Path) else given
     if body is None or given is None:

@@ -7,8 +7,8 @@ from typing import Any
 from metagraph.engines import contract as c
 from metagraph.engines.export_contacts import contacts_of
 from metagraph.graph.model import MetaGraph, Project
-from metagraph.playback.phases import phases_within
-from metagraph.playback.vigour import speed_within, vigours
+from metagraph.playback.planning.vigour import speed_within, vigours
+from metagraph.playback.timing.phases import phases_within
 
 NONE: list[Any] = []  # as most have it: an export is made to be written, and nothing is added to it
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from metagraph.engines import contract as c
-from metagraph.formats.fields import DataError
+from metagraph.formats.project.fields import DataError
 from metagraph.graph.model import Action, Project
 from metagraph.motion.contact_solve import BodyCapsule, ContactArm, ContactRig
 from metagraph.motion.contact_spans import ContactKey, ContactSpan
 from metagraph.motion.plain_vectors import Vector
 from metagraph.motion.skeleton import Skeleton
-from metagraph.playback.contacts import matters
-from metagraph.playback.rigs import rigs_of
+from metagraph.playback.posing.contacts import matters
+from metagraph.playback.posing.rigs import rigs_of
 
 
 def contacts_of(action: Action) -> list[c.ExportedContact]:

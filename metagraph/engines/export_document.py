@@ -12,11 +12,11 @@ from metagraph.engines.export_rig import rig_of, voices_of
 from metagraph.engines.export_weight import arms_of, feet_of, weight_rig_of
 from metagraph.graph import anatomy
 from metagraph.graph.model import KINDS, LAYERS, REACH, ClipEntry, MetaGraph, Project, Settings
-from metagraph.playback import choice, hashing, markov
-from metagraph.playback.cue_shapes import HURRY
-from metagraph.playback.layer_planning import WINDOW
-from metagraph.playback.phase_times import LEAST_BLEND
-from metagraph.playback.sampling import LOOP_FADE
+from metagraph.playback.planning import choice, hashing, markov
+from metagraph.playback.planning.cue_shapes import HURRY
+from metagraph.playback.planning.layer_planning import WINDOW
+from metagraph.playback.planning.sampling import LOOP_FADE
+from metagraph.playback.timing.phase_times import LEAST_BLEND
 
 _SCALES: tuple[Literal["neither", "smaller", "both"], ...] = ("neither", "smaller", "both")
 

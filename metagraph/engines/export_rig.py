@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from metagraph.engines import contract as c
-from metagraph.graph.face import CHANNELS, FaceRig
+from metagraph.graph.face.rig import CHANNELS, FaceRig
 from metagraph.graph.model import Project
 from metagraph.playback.life.body import Body, EyeAt, Looker, Quaternion, Vector
 from metagraph.playback.life.voice import Voice
-from metagraph.playback.rigs import rigs_of
+from metagraph.playback.posing.rigs import rigs_of
 
 STEPS = 1e4  # a mouth shape's weight is written in steps of this part of one
 

@@ -6,15 +6,15 @@ from collections.abc import Mapping, Sequence
 
 from metagraph.engines import contract as c
 from metagraph.engines.export_contacts import below
-from metagraph.formats.fields import DataError
+from metagraph.formats.project.fields import DataError
 from metagraph.graph.model import Project
 from metagraph.motion.contact_solve import ContactArm, ContactRig
 from metagraph.motion.plain_vectors import Vector
 from metagraph.motion.skeleton import Skeleton
 from metagraph.motion.weight_solve import WeightBend, WeightCollar, WeightRig
-from metagraph.playback.feet import moved_alone
-from metagraph.playback.rigs import rigs_of
-from metagraph.playback.weight import Weight, foot_rows_of, plants, rows_of, sways
+from metagraph.playback.posing.feet import moved_alone
+from metagraph.playback.posing.rigs import rigs_of
+from metagraph.playback.posing.weight import Weight, foot_rows_of, plants, rows_of, sways
 
 
 def weight_rig_of(project: Project) -> c.ExportedWeightRig | None:

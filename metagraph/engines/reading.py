@@ -10,17 +10,18 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from metagraph.budgets import TEXT_FILE
+from metagraph.common.budgets import TEXT_FILE
+from metagraph.common.files import guarded, is_file, read_file
+from metagraph.common.wording import told
 from metagraph.engines import contract as c
 from metagraph.engines.export_contacts import read_contact_rig, read_contacts
 from metagraph.engines.export_rig import read_rig, read_voices
 from metagraph.engines.export_weight import read_weight
 from metagraph.errors import FileError
-from metagraph.files import guarded, is_file, read_file
 from metagraph.formats.clips import digest
-from metagraph.formats.data import markov_from, skeleton_from
-from metagraph.formats.fields import DataError
-from metagraph.graph.face import CHANNELS
+from metagraph.formats.project.data import markov_from, skeleton_from
+from metagraph.formats.project.fields import DataError
+from metagraph.graph.face.rig import CHANNELS
 from metagraph.graph.model import (
     LAYERS,
     PARTS,
@@ -41,9 +42,8 @@ from metagraph.graph.touch import Touch
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.life.body import LIFELESS, Body
-from metagraph.playback.markov import DEFAULTS
-from metagraph.playback.rigs import ResolvedProject
-from metagraph.wording import told
+from metagraph.playback.planning.markov import DEFAULTS
+from metagraph.playback.posing.rigs import ResolvedProject
 
 
 @guarded
@@ -86,7 +86,7 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
     skeleton = _skeleton(document.joints)
     takes: list[Clip] = []
     if motions:
-        from metagraph.formats.gltf import read_gltf_clips
+        from metagraph.formats.gltf.reader import read_gltf_clips
 
         takes = read_gltf_clips(glb_beside(path, document))
     # Clips of one frame are read behind the longer ones.

@@ -12,8 +12,8 @@ from metagraph.engines.script_parts import Ask, Case, ScriptStep, ask, some
 from metagraph.engines.script_parts import once as _with_poses
 from metagraph.graph.model import LAYERS, Action, Layer, Project
 from metagraph.graph.requests import request_from
-from metagraph.playback.extend_performance import hear
 from metagraph.playback.plan import Cue, Plan
+from metagraph.playback.planning.extend_performance import hear
 
 FITS = (-2e-6, -5e-7, 5e-7, 2e-6)  # seconds: either side of `cue_shapes.FITS`
 

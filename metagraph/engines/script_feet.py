@@ -8,9 +8,9 @@ import numpy as np
 
 from metagraph.engines.script_parts import Case, ask, once
 from metagraph.graph.model import Project
-from metagraph.playback.feet import moved_alone
-from metagraph.playback.rigs import rigs_of
-from metagraph.playback.weight import plants
+from metagraph.playback.posing.feet import moved_alone
+from metagraph.playback.posing.rigs import rigs_of
+from metagraph.playback.posing.weight import plants
 
 MOST = 6  # actions in a case
 EDGES = (

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from metagraph.engines.script_parts import Case, ScriptStep, ask, once, some
 from metagraph.graph.model import LAYERS, Project
-from metagraph.playback.mood import MOODS
+from metagraph.playback.planning.mood import MOODS
 
 
 def shade_cases(project: Project) -> Iterator[Case]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from metagraph.playback.hashing import Bits
 from metagraph.playback.life.alphabet import ALPHABET
+from metagraph.playback.planning.hashing import Bits
 from metagraph.speech import word_gestures
 from metagraph.speech.language_packs import languages
 from metagraph.speech.text_gestures import gesture_words

@@ -8,8 +8,8 @@ import numpy as np
 
 from metagraph.engines.script_parts import Case, ask, once
 from metagraph.graph.model import Project
-from metagraph.playback.rigs import rigs_of
-from metagraph.playback.weight import weighs
+from metagraph.playback.posing.rigs import rigs_of
+from metagraph.playback.posing.weight import weighs
 
 MOST = 6  # actions in a case
 

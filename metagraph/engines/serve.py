@@ -20,7 +20,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from metagraph.files import is_file, is_inside
+from metagraph.common.files import is_file, is_inside
 
 WAIT = 10.0  # seconds for a request to be sent
 AT_ONCE = 64  # requests

@@ -31,13 +31,13 @@ from metagraph.graph.offered import offered
 from metagraph.graph.requests import AnyRequest, RequestError, request_from
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.choice import key32
 from metagraph.playback.evaluator import Evaluator
-from metagraph.playback.extend_performance import hear, since
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.plan import LayerPlan, Plan, Report
-from metagraph.playback.rigs import rigs_of
-from metagraph.playback.weight import weighs
+from metagraph.playback.planning.choice import key32
+from metagraph.playback.planning.extend_performance import hear, since
+from metagraph.playback.posing.rigs import rigs_of
+from metagraph.playback.posing.weight import weighs
 
 Array = NDArray[Any]
 

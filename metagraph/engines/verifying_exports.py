@@ -9,21 +9,21 @@ from pathlib import Path
 
 import msgspec
 
-from metagraph.budgets import TEXT_FILE
+from metagraph.common.budgets import TEXT_FILE
+from metagraph.common.files import is_file, is_inside, opened, read_file, unforeseen
+from metagraph.common.network_paths import reason
 from metagraph.engines import contract as c
 from metagraph.engines.reading import read_export
 from metagraph.engines.targets.placing import RECORD, Record, forsaken_staging, read_record
 from metagraph.engines.targets.registry import targets
 from metagraph.errors import FileError, shown
-from metagraph.files import is_file, is_inside, opened, read_file, unforeseen
 from metagraph.formats.clips import digest
-from metagraph.formats.gltf import read_gltf_clips
-from metagraph.formats.gltf_file import open_gltf
+from metagraph.formats.gltf.file import open_gltf
+from metagraph.formats.gltf.reader import read_gltf_clips
+from metagraph.formats.project.verified import Fault, Verified, VerifiedPart, counted, fault_of, whole_of
+from metagraph.formats.project.verifying import BROKEN, unfinished_faults, verify_project
 from metagraph.formats.store import SUFFIX
-from metagraph.formats.verified import Fault, Verified, VerifiedPart, counted, fault_of, whole_of
-from metagraph.formats.verifying import BROKEN, unfinished_faults, verify_project
 from metagraph.graph.check import check
-from metagraph.network_paths import reason
 from metagraph.speech.sound import read_head
 
 AGAIN = "Export it again."

@@ -16,13 +16,13 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import UNSET, Meta, Struct, UnsetType
 
-from metagraph.budgets import TEXT_FILE
+from metagraph.common.budgets import TEXT_FILE
+from metagraph.common.files import read_file
+from metagraph.common.wording import told
 from metagraph.errors import FileError
-from metagraph.files import read_file
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.edits import add_stance, added_actions, move_actions, place, update_actions
 from metagraph.graph.model import Kind, Layer, Limb, Project
-from metagraph.wording import told
 
 Name = Annotated[str, Meta(min_length=1, max_length=300)]
 Seconds = Annotated[float, Meta(ge=0, le=1e6)]

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
+from metagraph.common.files import is_text
 from metagraph.errors import FileError
-from metagraph.files import is_text
-from metagraph.formats.gltf import has_skinned_mesh, read_character
+from metagraph.formats.gltf.reader import has_skinned_mesh, read_character
 from metagraph.graph.edits import hide_meshes, set_character
-from metagraph.graph.face import with_morphs
+from metagraph.graph.face.rig import with_morphs
 from metagraph.graph.model import Project
 from metagraph.motion.character_mesh import Character, no_character
 from metagraph.motion.roles import find_roles

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from metagraph.formats.fields import Data
+from metagraph.formats.project.fields import Data
 
 DIGITS = 12  # of a SHA-256 in hex that tell one file of a project from another
 

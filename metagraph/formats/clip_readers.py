@@ -9,9 +9,9 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
 
+from metagraph.common.wording import told
 from metagraph.formats.live_link_face import is_live_link
 from metagraph.motion.clip import Clip
-from metagraph.wording import told
 
 HEAD = 4096  # bytes that tell what a file is
 
@@ -30,19 +30,19 @@ class ClipReader:
 
 
 def _read_bvh(path: Path, as_is: Collection[str]) -> list[Clip]:
-    from metagraph.formats.bvh import read_bvh
+    from metagraph.formats.bvh.file import read_bvh
 
     return [read_bvh(path, as_is=as_is)]
 
 
 def _read_gltf(path: Path, as_is: Collection[str]) -> list[Clip]:
-    from metagraph.formats.gltf import read_gltf_clips
+    from metagraph.formats.gltf.reader import read_gltf_clips
 
     return read_gltf_clips(path, as_is)
 
 
 def _read_fbx(path: Path, as_is: Collection[str]) -> list[Clip]:
-    from metagraph.formats.fbx import read_fbx_clips
+    from metagraph.formats.fbx.reader import read_fbx_clips
 
     return read_fbx_clips(path, as_is=as_is)
 

@@ -10,9 +10,10 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from metagraph.budgets import MOTION_FILE, SOUND_FILE
+from metagraph.common.budgets import MOTION_FILE, SOUND_FILE
+from metagraph.common.files import guarded, opened, unforeseen
+from metagraph.common.wording import told
 from metagraph.errors import FileError
-from metagraph.files import guarded, opened, unforeseen
 from metagraph.formats.clip_readers import (
     HEAD,
     LIVE_LINK,
@@ -24,7 +25,6 @@ from metagraph.formats.clip_readers import (
 from metagraph.formats.stray_poses import is_bind_pose
 from metagraph.formats.takes import NAME, ONE_FRAME, repaired
 from metagraph.motion.clip import Clip, ClipError, Repair
-from metagraph.wording import told
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,7 +177,7 @@ def reading_together(paths: Iterable[Path]) -> Iterator[Mapping[Path, Future[lis
     if len(fbx) < 2:
         yield {}
         return
-    from metagraph.formats.fbx_readers import batch
+    from metagraph.formats.fbx.processes import batch
 
     with batch():
         pool = ThreadPoolExecutor(min(4, os.cpu_count() or 1))

@@ -21,12 +21,12 @@ from typing import Any, Literal
 
 from numpy.typing import NDArray
 
+from metagraph.common.files import unforeseen
 from metagraph.errors import FileError
-from metagraph.files import unforeseen
 from metagraph.formats.clips import find_clip_files, read_clips
-from metagraph.formats.conversations import SOUNDS, read_conversation
-from metagraph.formats.transcript_words import SUFFIXES as TRANSCRIPTS
-from metagraph.graph.conversation import Conversation
+from metagraph.formats.conversations.files import SOUNDS, read_conversation
+from metagraph.formats.transcripts.words import SUFFIXES as TRANSCRIPTS
+from metagraph.graph.conversation.model import Conversation
 from metagraph.motion.clip import Clip
 
 Array = NDArray[Any]

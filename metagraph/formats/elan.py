@@ -12,11 +12,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from xml.parsers import expat
 
-from metagraph.budgets import MARKS, MARKS_FILE, NESTING
+from metagraph.common.budgets import MARKS, MARKS_FILE, NESTING
+from metagraph.common.files import guarded, read_file
+from metagraph.common.wording import told
 from metagraph.errors import FileError
-from metagraph.files import guarded, read_file
-from metagraph.playback.annotation import Annotation, Interval, Tier
-from metagraph.wording import told
+from metagraph.playback.learning.annotation import Annotation, Interval, Tier
 
 LONGEST = 1e7  # seconds, four months
 UNITS: Mapping[str, float] = {

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+from metagraph.common.wording import joined, told
 from metagraph.formats.imports import Imported, Strangers
 from metagraph.formats.takes import BIND_POSE, NAME, ONE_FRAME, UNIT, UP
-from metagraph.wording import joined, told
 
 _RIGHT = {
     BIND_POSE: told("bind poses on first frames"),

@@ -9,20 +9,20 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from metagraph.common.files import unforeseen
+from metagraph.common.wording import told
 from metagraph.errors import FileError, error_words
-from metagraph.files import unforeseen
 from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clips
 from metagraph.formats.store import kept_path, relative
+from metagraph.graph.editing.retargeting import Bringing
 from metagraph.graph.edits import add_clips
-from metagraph.graph.face_curves import curves_told
-from metagraph.graph.face_takes import is_face_take, on_body
+from metagraph.graph.face.curves import curves_told
+from metagraph.graph.face.takes import is_face_take, on_body
 from metagraph.graph.model import Project
-from metagraph.graph.project_retargeting import Bringing
 from metagraph.motion.adopt import SkeletonMismatchError, adopt, bone_difference, difference
 from metagraph.motion.clip import Clip, ClipError
 from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint
 from metagraph.motion.skeleton import Skeleton
-from metagraph.wording import told
 
 if TYPE_CHECKING:
     from metagraph.formats.characters import CharacterFile

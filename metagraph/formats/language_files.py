@@ -7,10 +7,10 @@ from pathlib import Path
 
 import msgspec
 
+from metagraph.common.files import guarded
 from metagraph.errors import FileError
-from metagraph.files import guarded
-from metagraph.formats.text import TextError, parse
-from metagraph.formats.transcript_words import text_of
+from metagraph.formats.project.text import TextError, parse
+from metagraph.formats.transcripts.words import text_of
 from metagraph.graph.requests import words_of
 from metagraph.speech.language_packs import Language, PackError, PackFile, language_of, languages
 

@@ -7,7 +7,7 @@ Their first line names the columns: `Timecode`, `BlendShapeCount`, the shapes (E
 drop-frame timecode. A row whose count is 0 is of a moment without a face.
 
 The clip is on a skeleton of its own, a head and two eyes, whose directions are those of a character that
-looks along +Z; `metagraph.graph.face_takes` brings it onto a project's.
+looks along +Z; `metagraph.graph.face.takes` brings it onto a project's.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.budgets import CLIP_SECONDS, MOTION_FILE
+from metagraph.common.budgets import CLIP_SECONDS, MOTION_FILE
+from metagraph.common.files import guarded, opened
 from metagraph.errors import FileError, shown
-from metagraph.files import guarded, opened
-from metagraph.graph.arkit import ARKIT
-from metagraph.graph.face_takes import FACE_SKELETON
+from metagraph.graph.face.arkit import ARKIT
+from metagraph.graph.face.takes import FACE_SKELETON
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 

@@ -23,8 +23,8 @@ from pathlib import Path
 
 import msgspec
 
+from metagraph.common.programs import run, system_program
 from metagraph.formats.new_file import Access, access_of, open_new
-from metagraph.programs import run, system_program
 
 REFRESH = 30.0  # seconds
 STALE = 150.0  # seconds; a computer may be busy, and a drive away for a while

@@ -16,15 +16,15 @@ from io import StringIO
 from pathlib import Path
 from typing import Any
 
-from metagraph.csv_text import csv_text, restored
+from metagraph.common.csv_text import csv_text, restored
+from metagraph.common.files import guarded, read_file
+from metagraph.common.wording import told
 from metagraph.errors import FileError
-from metagraph.files import guarded, read_file
-from metagraph.graph import manual_groups
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.manual import ANY, WHENS, Alias, Link, Manual, State
-from metagraph.graph.manual_edits import add_link, link_refusal, machine, name_of, update_links
+from metagraph.graph.manual import groups as manual_groups
+from metagraph.graph.manual.edits import add_link, link_refusal, machine, name_of, update_links
+from metagraph.graph.manual.machine import ANY, WHENS, Alias, Link, Manual, State
 from metagraph.graph.model import Layer, Project
-from metagraph.wording import told
 
 COLUMNS = ("from", "to", "when", "trigger", "weight", "exit", "blend")
 ALSO = {"source": "from", "target": "to", "condition": "when", "exit time": "exit", "duration": "blend"}

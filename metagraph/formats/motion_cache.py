@@ -23,7 +23,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.disk_cache import DiskCache, cache_folder
+from metagraph.common.disk_cache import DiskCache, cache_folder
 from metagraph.formats.clips import read_clips
 from metagraph.motion.clip import Clip, Repair
 from metagraph.motion.skeleton import Skeleton
@@ -113,8 +113,8 @@ def _key(path: Path, digest: str, as_is: Collection[str]) -> str:
 def _readers() -> str:
     """Return what stands for the programs that read: files' names, sizes and times of theirs."""
     here = Path(__file__).parent
-    found = sorted([*here.glob("*.py"), *(here.parent / "motion").glob("*.py")])
-    told = [(p.name, (s := p.stat()).st_size, s.st_mtime_ns) for p in found]
+    found = sorted([*here.rglob("*.py"), *(here.parent / "motion").rglob("*.py")])
+    told = [(str(p), (s := p.stat()).st_size, s.st_mtime_ns) for p in found]
     return hashlib.sha256(repr(told).encode()).hexdigest()
 
 

@@ -19,12 +19,12 @@ from urllib.parse import unquote
 
 import msgspec
 
-from metagraph.budgets import TEXT_FILE
+from metagraph.common.budgets import TEXT_FILE
+from metagraph.common.files import read_file
+from metagraph.common.user_folders import user_folder
 from metagraph.errors import FileError
-from metagraph.files import read_file
 from metagraph.formats.locking import holder, lock_path
 from metagraph.formats.replacing import replace_file
-from metagraph.user_folders import user_folder
 
 STAGED = ".exporting-"  # how folders begin in which an export is staged
 MOST = 4000  # notes that are kept; beyond them the oldest go

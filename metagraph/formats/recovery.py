@@ -13,17 +13,17 @@ from pathlib import Path
 
 import msgspec
 
-from metagraph.budgets import TEXT_FILE
+from metagraph.common.budgets import TEXT_FILE
+from metagraph.common.files import is_file, read_file
 from metagraph.errors import FileError
-from metagraph.files import is_file, read_file
-from metagraph.formats.appended_file import Identity
-from metagraph.formats.canonical_text import canonical
 from metagraph.formats.clip_identity import without_clip_identities
-from metagraph.formats.data import FORMAT, from_data, to_data
-from metagraph.formats.fields import Data, DataError
-from metagraph.formats.journal_records import LostEdit, Record, Records, read_records
 from metagraph.formats.locking import Owner, is_gone
-from metagraph.formats.replay import Replay
+from metagraph.formats.project.appended_file import Identity
+from metagraph.formats.project.canonical_text import canonical
+from metagraph.formats.project.data import FORMAT, from_data, to_data
+from metagraph.formats.project.fields import Data, DataError
+from metagraph.formats.project.journal_records import LostEdit, Record, Records, read_records
+from metagraph.formats.project.replay import Replay
 from metagraph.formats.store import content_digest, file_digest, from_text, read_project
 from metagraph.graph.model import Project
 

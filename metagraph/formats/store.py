@@ -16,28 +16,9 @@ from typing import Any
 
 import msgspec
 
-from metagraph.budgets import TEXT_FILE
-from metagraph.errors import FileError, shown
-from metagraph.files import is_file, is_text, read_file, unforeseen
-from metagraph.formats.atomic import write_atomically
-from metagraph.formats.clip_identity import with_clip_identity
-from metagraph.formats.clips import digest
-from metagraph.formats.data import FORMAT, from_data, to_data
-from metagraph.formats.fbx_readers import batch
-from metagraph.formats.fields import Data, DataError
-from metagraph.formats.motion_cache import read_or_kept
-from metagraph.formats.new_file import Access
-from metagraph.formats.text import TextError, as_text, read, to_text
-from metagraph.graph.clip_source import source_of, with_source
-from metagraph.graph.conversation import Conversation, Side
-from metagraph.graph.face_takes import FACE_TAKE, is_face_take, on_body
-from metagraph.graph.model import ClipEntry, Project
-from metagraph.graph.project_retargeting import Bringing
-from metagraph.graph.requests import Line
-from metagraph.motion.adopt import SkeletonMismatchError, adopt
-from metagraph.motion.clip import Clip, ClipError
-from metagraph.motion.joint_map import RetargetError
-from metagraph.network_paths import (
+from metagraph.common.budgets import TEXT_FILE
+from metagraph.common.files import is_file, is_text, read_file, unforeseen
+from metagraph.common.network_paths import (
     ANOTHER,
     is_allowed,
     is_closed,
@@ -46,7 +27,26 @@ from metagraph.network_paths import (
     original,
     reason,
 )
-from metagraph.wording import told
+from metagraph.common.wording import told
+from metagraph.errors import FileError, shown
+from metagraph.formats.atomic import write_atomically
+from metagraph.formats.clip_identity import with_clip_identity
+from metagraph.formats.clips import digest
+from metagraph.formats.fbx.processes import batch
+from metagraph.formats.motion_cache import read_or_kept
+from metagraph.formats.new_file import Access
+from metagraph.formats.project.data import FORMAT, from_data, to_data
+from metagraph.formats.project.fields import Data, DataError
+from metagraph.formats.project.text import TextError, as_text, read, to_text
+from metagraph.graph.clip_source import source_of, with_source
+from metagraph.graph.conversation.model import Conversation, Side
+from metagraph.graph.editing.retargeting import Bringing
+from metagraph.graph.face.takes import FACE_TAKE, is_face_take, on_body
+from metagraph.graph.model import ClipEntry, Project
+from metagraph.graph.requests import Line
+from metagraph.motion.adopt import SkeletonMismatchError, adopt
+from metagraph.motion.clip import Clip, ClipError
+from metagraph.motion.joint_map import RetargetError
 
 SUFFIX = ".metagraph.yaml"
 SEARCHED = 20_000  # files looked at when a clip has moved

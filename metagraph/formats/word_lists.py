@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from metagraph.common.files import guarded
 from metagraph.errors import FileError
-from metagraph.files import guarded
-from metagraph.formats.transcript_words import text_of
+from metagraph.formats.transcripts.words import text_of
 from metagraph.synthesis.iconic_words import WordWish, word_wish
 
 REMEDY = "Write a line for each: big, or big = huge, tall, or big, huge where each may stand for the other."

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from metagraph.generation.loudness import gain_of
 from metagraph.generation.networks import ACTIVITY, FPS
 from metagraph.generation.poses import Scale
-from metagraph.graph.conversation import Conversation, others_of
+from metagraph.graph.conversation.model import Conversation, others_of
 from metagraph.speech.activity import activity as spoken
 from metagraph.speech.pitch import pitch
 from metagraph.speech.sound import hear

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.common.wording import told
 from metagraph.generation.chunks import GUIDANCE
 from metagraph.generation.features import RATE as SOUND_RATE
 from metagraph.generation.features import (
@@ -26,13 +27,12 @@ from metagraph.generation.poses import PoseError, PoseRig, rig_of
 from metagraph.generation.sampler import Sampler, clip_of, heard_activity
 from metagraph.generation.stored import Model
 from metagraph.graph import anatomy
-from metagraph.graph.conversation import Conversation, others_of, side_name
+from metagraph.graph.conversation.model import Conversation, others_of, side_name
+from metagraph.graph.editing.retargeting import Bringing
 from metagraph.graph.model import Project
-from metagraph.graph.project_retargeting import Bringing
 from metagraph.motion.clip import Clip
 from metagraph.motion.joint_map import RetargetError
 from metagraph.speech.sound import read_recording
-from metagraph.wording import told
 
 Array = NDArray[Any]
 

@@ -26,7 +26,7 @@ from metagraph.generation.loudness import gain_of
 from metagraph.generation.networks import FPS, MatchingSizes
 from metagraph.generation.poses import PoseError, decode, encode
 from metagraph.generation.stored import Model
-from metagraph.graph.conversation import Conversation
+from metagraph.graph.conversation.model import Conversation
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose

@@ -14,7 +14,7 @@ import numpy as np
 from msgspec import Struct
 
 from metagraph.errors import FileError
-from metagraph.formats.kernel_lock import try_hold
+from metagraph.formats.project.kernel_lock import try_hold
 from metagraph.generation.stored import SUFFIX
 from metagraph.generation.train_plan import FOLDER, PLAN, TrainingPlan, read_plan
 

@@ -24,9 +24,9 @@ import numpy as np
 from msgspec import Meta, Struct
 from numpy.typing import NDArray
 
-from metagraph.budgets import ARRAYS
+from metagraph.common.budgets import ARRAYS
+from metagraph.common.files import check_file, guarded
 from metagraph.errors import FileError
-from metagraph.files import check_file, guarded
 from metagraph.formats.atomic import write_atomically
 from metagraph.generation.features import MELS, as_heard
 from metagraph.generation.networks import (

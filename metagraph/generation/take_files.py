@@ -18,17 +18,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.budgets import CONVERSATION_SECONDS as LONGEST
+from metagraph.common.budgets import CONVERSATION_SECONDS as LONGEST
+from metagraph.common.files import unforeseen
 from metagraph.errors import FileError
-from metagraph.files import unforeseen
 from metagraph.formats.clips import digest, find_clip_files, read_clips
-from metagraph.formats.conversation_languages import Speaking
-from metagraph.formats.conversations import SOUNDS, read_conversation
-from metagraph.formats.transcript_words import SUFFIXES as TRANSCRIPTS
+from metagraph.formats.conversations.files import SOUNDS, read_conversation
+from metagraph.formats.conversations.languages import Speaking
+from metagraph.formats.transcripts.words import SUFFIXES as TRANSCRIPTS
 from metagraph.generation.features import RATE, at_rate
 from metagraph.generation.poses import PoseError, PoseRig, rig_of
 from metagraph.generation.takes import Source, Take, TakeError, take_of
-from metagraph.graph.conversation import Conversation
+from metagraph.graph.conversation.model import Conversation
 from metagraph.motion.clip import Clip
 from metagraph.speech.sound import read_recording
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.common.wording import told
 from metagraph.generation.features import (
     MELS,
     NONE,
@@ -24,10 +25,9 @@ from metagraph.generation.features import (
 from metagraph.generation.loudness import gain_of, loudness
 from metagraph.generation.networks import ACTIVITY, FPS
 from metagraph.generation.poses import PoseError, PoseRig, Scale, gram_schmidt, poses_of, scale_of
-from metagraph.graph.conversation import Conversation, heard_by
+from metagraph.graph.conversation.model import Conversation, heard_by
 from metagraph.motion.clip import Clip
 from metagraph.motion.mirror import mirror, pairs_of
-from metagraph.wording import told
 
 Array = NDArray[Any]
 

@@ -15,6 +15,7 @@ import msgspec
 import numpy as np
 from msgspec import Meta, Struct
 
+from metagraph.common.network_paths import refused
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.generation.features import MELS
@@ -22,7 +23,6 @@ from metagraph.generation.networks import Kind, Size, Sizes, sizes_of
 from metagraph.generation.poses import PoseRig
 from metagraph.generation.stored import SkeletonCard, TakeCard, skeleton_card
 from metagraph.generation.takes import Marks, Source, Take, check_split
-from metagraph.network_paths import refused
 
 Loss = Literal["paper", "whitened", "finished", "matching", "evidence"]
 PLAN, TAKES, STOP = "plan.json", "takes.npz", "stop"

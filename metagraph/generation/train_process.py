@@ -16,8 +16,8 @@ from time import monotonic
 import msgspec
 from msgspec import Struct
 
+from metagraph.common.programs import python, start
 from metagraph.generation.train_plan import STOP, folder_of
-from metagraph.programs import python, start
 
 TORCH = (
     "Training needs torch, which is not installed: 200 MB to download, 750 MB on disk. Install it with\n"

@@ -11,7 +11,7 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.graph.manual import State
+from metagraph.graph.manual.machine import State
 from metagraph.graph.model import Action, Part, Project
 from metagraph.motion.roles import body_parts, find_roles, joint_sides
 from metagraph.motion.skeleton import Pose, Skeleton

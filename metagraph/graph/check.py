@@ -10,14 +10,15 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from metagraph.graph import anatomy, end_gaps
-from metagraph.graph.base_check import check_base, stance_name
+from metagraph.common.network_paths import ANOTHER, original, reason
+from metagraph.common.wording import told
+from metagraph.graph import anatomy
+from metagraph.graph.checks import end_gaps
+from metagraph.graph.checks.base import check_base, stance_name
 from metagraph.graph.expand import reachable
-from metagraph.graph.manual_check import check_manual
+from metagraph.graph.manual.check import check_manual
 from metagraph.graph.model import KINDS, LAYERS, Action, ClipEntry, MetaGraph, Project
 from metagraph.graph.problem import Problem, Severity
-from metagraph.network_paths import ANOTHER, original, reason
-from metagraph.wording import told
 
 Array = NDArray[Any]
 

@@ -12,11 +12,12 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from metagraph.common.wording import told
 from metagraph.graph import ids
 from metagraph.graph.clip_source import with_source
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.face_takes import FACE_TAKE, face_joints
-from metagraph.graph.manual import without_clips
+from metagraph.graph.face.takes import FACE_TAKE, face_joints
+from metagraph.graph.manual.machine import without_clips
 from metagraph.graph.model import (
     PARTS,
     Action,
@@ -34,7 +35,6 @@ from metagraph.graph.model import (
 )
 from metagraph.motion.clip import Clip
 from metagraph.motion.features import loop_error
-from metagraph.wording import told
 
 SEAM = 0.01  # metres a loop may be open before its seam gets blended
 _LIMB_WORDS: tuple[tuple[Limb, str], ...] = (

@@ -13,9 +13,9 @@ from types import MappingProxyType
 from typing import Any
 
 from metagraph.graph.clip_mark import ClipMark
-from metagraph.graph.conversation import AUTO, Conversation
+from metagraph.graph.conversation.model import AUTO, Conversation
 from metagraph.graph.life import Face, Life
-from metagraph.graph.manual import Alias, Link, Manual, State
+from metagraph.graph.manual.machine import Alias, Link, Manual, State
 from metagraph.graph.requests import Line, Performance, Point
 from metagraph.graph.timeline import Timeline
 from metagraph.graph.touch import Touch

@@ -12,11 +12,11 @@ from typing import Any
 
 import msgspec
 
+from metagraph.common.wording import told
 from metagraph.graph import requests as a
 from metagraph.graph.edit_error import EditError
+from metagraph.graph.editing.performances import asked_at, change_performance, move_requests
 from metagraph.graph.model import LAYERS, Project
-from metagraph.graph.performance_edits import asked_at, change_performance, move_requests
-from metagraph.wording import told
 
 KIND, VERSION = "requests", 1
 MOST = 100_000  # requests of one text

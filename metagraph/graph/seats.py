@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from metagraph.graph import anatomy
-from metagraph.graph.end_gaps import motion_of
-from metagraph.graph.face import made_of
+from metagraph.graph.checks.end_gaps import motion_of
+from metagraph.graph.face.rig import made_of
 from metagraph.graph.model import Action, Project
 from metagraph.graph.remembered import Remembered
 

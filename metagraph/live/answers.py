@@ -1,5 +1,5 @@
-"""What a plan does about many asks at once: `metagraph.playback.extend_performance.answer` for a whole tick,
-in one pass over what is near.
+"""What a plan does about many asks at once: `extend_performance.answer` for a whole tick, in one pass over
+what is near.
 """
 
 from __future__ import annotations
@@ -8,9 +8,9 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from math import inf
 
-from metagraph.playback.extend_performance import served_by
 from metagraph.playback.life.track import Item, LookAt, Speech
 from metagraph.playback.plan import MetaAction, Plan, Report
+from metagraph.playback.planning.extend_performance import served_by
 
 ENDLESS = 1e8  # seconds; what ends later than this ends when something else begins
 

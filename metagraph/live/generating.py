@@ -12,8 +12,8 @@ from metagraph.live.generated_motion import GeneratedMotion
 from metagraph.live.graph_motion import MOST_TOLD, GraphMotion, KeptMotion, LiveGraph
 from metagraph.live.laid_motion import LaidMotion
 from metagraph.live.messages import Generate, Hear, Reply, rounded
-from metagraph.playback.overlay import Overlay
 from metagraph.playback.plan import Plan
+from metagraph.playback.posing.overlay import Overlay
 
 if TYPE_CHECKING:
     from metagraph.generation.stored import Model

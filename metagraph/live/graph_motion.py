@@ -2,7 +2,7 @@
 clients hear and with what they say is going to be said.
 
 It goes by in frames, 30 a second. What became known is noted with its frame, so that the same motion can be
-made again of it (`metagraph.synthesis.extending.replayed`).
+made again of it (`metagraph.synthesis.extending.path.replayed`).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from metagraph.graph.conversation import Segment, heard_by
+from metagraph.graph.conversation.model import Segment, heard_by
 from metagraph.graph.model import Project
 from metagraph.live.heard_voice import RATE as SAMPLES
 from metagraph.live.heard_voice import SIZE, HeardVoice
@@ -25,15 +25,15 @@ from metagraph.live.laid_motion import LaidMotion, voices_of
 from metagraph.live.messages import Comes, Generate, Hear
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.playback.composer import Reach, find_composer
-from metagraph.playback.layers import sample
 from metagraph.playback.life.track import Speech
 from metagraph.playback.life.voice import voice_of
-from metagraph.playback.overlay import reached
 from metagraph.playback.plan import Plan
+from metagraph.playback.posing.composer import Reach, find_composer
+from metagraph.playback.posing.layers import sample
+from metagraph.playback.posing.overlay import reached
 from metagraph.suggest.tracks import RATE, times_of
-from metagraph.synthesis.extending import FADE, DriverGraph, PathExtender, Told, driver_graph
-from metagraph.synthesis.speech_so_far import SpeechNews
+from metagraph.synthesis.extending.path import FADE, DriverGraph, PathExtender, Told, driver_graph
+from metagraph.synthesis.extending.speech_so_far import SpeechNews
 
 Array = NDArray[Any]
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from metagraph.live.voice_detector import GOES_ON, VoiceDetector
 from metagraph.speech.pitch import HIGHEST, JUMP, LOWEST, REPEATS
 from metagraph.speech.yin import yin
-from metagraph.synthesis.speech_so_far import SpeechNews
+from metagraph.synthesis.extending.speech_so_far import SpeechNews
 
 Array = NDArray[Any]
 

@@ -60,7 +60,7 @@ def made_again(graph: LiveGraph, kept: KeptMotion, name: str) -> Clip:
     those it was made of.
     """
     from metagraph.synthesis.assemble import assemble
-    from metagraph.synthesis.extending import replayed
+    from metagraph.synthesis.extending.path import replayed
 
     size = graph.size
     if kept.size != size:

@@ -15,9 +15,9 @@ from metagraph.graph.model import Project
 from metagraph.live.ledger import asked_by_client
 from metagraph.live.messages import Generate, Hear
 from metagraph.motion import rotation
-from metagraph.playback.layers import ease
-from metagraph.playback.overlay import BLEND, Overlay, reached
 from metagraph.playback.plan import LayerPlan, Plan
+from metagraph.playback.posing.layers import ease
+from metagraph.playback.posing.overlay import BLEND, Overlay, reached
 
 Array = NDArray[Any]
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Project
-from metagraph.playback.understand import find_action, find_stance
+from metagraph.playback.planning.understand import find_action, find_stance
 
 FARTHEST = 3600.0  # seconds ahead of now, and seconds anything may last
 PENDING = 1000  # requests that have not begun, of all clients

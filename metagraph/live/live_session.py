@@ -2,7 +2,7 @@
 what becomes of it.
 
 No threads and no clock: time is passed in, seconds since the session began. The plan of a session is the plan
-of a performance (`metagraph.playback.extend_performance`): what was asked, with when it became known, is kept
+of a performance (`playback.planning.extend_performance`): what was asked, with when it became known, is kept
 and performs again as it was played.
 """
 
@@ -61,15 +61,15 @@ from metagraph.live.said_sound import SaidSounds, said_on
 from metagraph.live.tape import Tape
 from metagraph.live.tick_work import Client, Open, Out, TickWork, in_turn, thinned
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.bml import Block, read_block
+from metagraph.playback.bml.reader import Block, read_block
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.life.track import Speech
-from metagraph.playback.overlay import Overlay
-from metagraph.playback.phases import phases
 from metagraph.playback.plan import Plan
-from metagraph.playback.plan_head import RECENT
-from metagraph.playback.running_plan import CUT, RunningPlan
-from metagraph.playback.weight import LOOKS_BACK
+from metagraph.playback.planning.plan_head import RECENT
+from metagraph.playback.planning.running_plan import CUT, RunningPlan
+from metagraph.playback.posing.overlay import Overlay
+from metagraph.playback.posing.weight import LOOKS_BACK
+from metagraph.playback.timing.phases import phases
 
 AGAIN = 0.25  # seconds for which a layer without room is not tried again
 TIDY = 0.25  # seconds between two looks at what is over

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from metagraph.graph.conversation import Rates
+from metagraph.graph.conversation.model import Rates
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Feel
 from metagraph.live.messages import Partner
 from metagraph.playback.life.sympathy import DELAY, Laugh, laughs_along, taken_up
 from metagraph.playback.life.track import Track
 from metagraph.playback.life.wanted import moods_of
-from metagraph.playback.mood import Mood, Moods, mood_at
-from metagraph.playback.understand import felt
+from metagraph.playback.planning.mood import Mood, Moods, mood_at
+from metagraph.playback.planning.understand import felt
 
 MOOD, LAUGH = "partner", "partner laugh"  # ids, where the client gives none
 # How far, or how often, where the client does not say.

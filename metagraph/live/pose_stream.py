@@ -11,14 +11,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.graph.face_curves import worn
+from metagraph.graph.face.curves import worn
 from metagraph.graph.model import Project
 from metagraph.graph.requests import RequestError
 from metagraph.live.messages import Poses, encode
 from metagraph.live.osc_bytes import padded
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.evaluator import Evaluator
-from metagraph.playback.overlay import Overlay
+from metagraph.playback.posing.overlay import Overlay
 
 Array = NDArray[Any]
 

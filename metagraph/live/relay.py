@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from metagraph.child_channel import Channel, Child
+from metagraph.common.child_channel import Channel, Child
 from metagraph.live.server import Options, checked
 from metagraph.live.wire import Batch, Ready, pack, unpack_batch
 

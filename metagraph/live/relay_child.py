@@ -14,7 +14,7 @@ import time
 
 import msgspec
 
-from metagraph.child_channel import Channel, parent
+from metagraph.common.child_channel import Channel, parent
 from metagraph.live.relay import send
 from metagraph.live.server import LiveError, Options, Server
 from metagraph.live.wire import Batch, Ready, Result, pack, unpack_result

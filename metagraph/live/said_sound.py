@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.requests import RequestError, Say
-from metagraph.playback.told_timing import told_timing
+from metagraph.playback.timing.told_timing import told_timing
 
 Array = NDArray[Any]
 

@@ -14,8 +14,8 @@ from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest, Performance
 from metagraph.mimicry.keypoint_layouts import Keypoints
 from metagraph.mimicry.mimic import Mimic, Sighting
-from metagraph.playback.extend_performance import hear
 from metagraph.playback.plan import Plan
+from metagraph.playback.planning.extend_performance import hear
 
 AHEAD = 10.0  # seconds that are planned ahead while a recording is gone through
 REST = 2.0  # seconds a performance goes on after the recording has ended

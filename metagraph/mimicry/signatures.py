@@ -17,9 +17,9 @@ from metagraph.mimicry.keypoint_layouts import PLACE, POINTS, swap
 from metagraph.mimicry.pose_measures import frame_of, measured
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.playback.composer import playable
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.plan import LayerPlan, Plan, Rest
+from metagraph.playback.posing.composer import playable
 
 Array = NDArray[Any]
 

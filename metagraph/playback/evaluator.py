@@ -14,14 +14,14 @@ from numpy.typing import NDArray
 
 from metagraph.graph.model import LAYERS, Action, Project
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.composer import playable
-from metagraph.playback.contacts import ContactStage
-from metagraph.playback.layers import LayersStage, cue_weight, loop_seconds
 from metagraph.playback.life.evaluate import LifeStage, Playing
-from metagraph.playback.overlay import Overlay, lay_over
 from metagraph.playback.plan import Plan
-from metagraph.playback.rigs import Rigs, rigs_of
-from metagraph.playback.weight import WeightStage
+from metagraph.playback.posing.composer import playable
+from metagraph.playback.posing.contacts import ContactStage
+from metagraph.playback.posing.layers import LayersStage, cue_weight, loop_seconds
+from metagraph.playback.posing.overlay import Overlay, lay_over
+from metagraph.playback.posing.rigs import Rigs, rigs_of
+from metagraph.playback.posing.weight import WeightStage
 
 Array = NDArray[Any]
 

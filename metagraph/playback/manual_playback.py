@@ -17,20 +17,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
-from metagraph.graph.manual import Link, Manual, State
-from metagraph.graph.manual_timing import exit_moment
+from metagraph.graph.manual.machine import Link, Manual, State
+from metagraph.graph.manual.timing import exit_moment
 from metagraph.graph.model import LAYERS, Action, Kind, Layer, Project, Timing
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.choice import pick
-from metagraph.playback.composer import Ground, Reach, playable
 from metagraph.playback.evaluator import add_life
-from metagraph.playback.layers import Sample, ease, keep_to, mix, no_offsets, sample
 from metagraph.playback.life.evaluate import LifeStage
 from metagraph.playback.life.schedule import Schedule, schedule
 from metagraph.playback.life.track import Track
 from metagraph.playback.plan import Cue, LayerPlan, Plan, Report
-from metagraph.playback.rigs import rigs_of
+from metagraph.playback.planning.choice import pick
+from metagraph.playback.posing.composer import Ground, Reach, playable
+from metagraph.playback.posing.layers import Sample, ease, keep_to, mix, no_offsets, sample
+from metagraph.playback.posing.rigs import rigs_of
 
 Array = NDArray[Any]
 LEAST = 1 / 30  # seconds a state plays at least: links in a circle without length take their time

@@ -9,15 +9,15 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 
 from metagraph.graph.model import LAYERS, Layer, Markov, Project
-from metagraph.playback import markov
-from metagraph.playback.layer_planning import draft
 from metagraph.playback.life.near_life import with_past
 from metagraph.playback.life.schedule import schedule
 from metagraph.playback.life.wanted import moods_of
-from metagraph.playback.mood import Moods, mood_at, stirs
 from metagraph.playback.plan import LayerPlan, MetaAction, MetaRequest, Plan, Report
-from metagraph.playback.plan_head import head_of, keep_head, shared
-from metagraph.playback.strand import joined
+from metagraph.playback.planning import markov
+from metagraph.playback.planning.layer_planning import draft
+from metagraph.playback.planning.mood import Moods, mood_at, stirs
+from metagraph.playback.planning.plan_head import head_of, keep_head, shared
+from metagraph.playback.planning.strand import joined
 
 
 def make_plan(

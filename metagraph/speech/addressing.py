@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 from itertools import groupby, pairwise
 from typing import Literal
 
-from metagraph.graph.conversation import EVERYBODY, Conversation, Segment, others_of
+from metagraph.graph.conversation.model import EVERYBODY, Conversation, Segment, others_of
 from metagraph.graph.vocabulary import tokens
 
 TURN = 0.6  # seconds of silence that part two turns of one speaker

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from metagraph.graph.conversation import Conversation
+from metagraph.graph.conversation.model import Conversation
 from metagraph.graph.timeline import Cut, Shot
 
 OPENING = 2.0  # seconds at least that all are seen at the beginning

@@ -14,7 +14,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from metagraph.errors import FileError
-from metagraph.graph.conversation import Conversation, Word
+from metagraph.graph.conversation.model import Conversation, Word
 from metagraph.graph.requests import Line
 from metagraph.playback.life.items import Speech
 from metagraph.speech.textgrid import TextGrid, read_textgrid

@@ -25,7 +25,7 @@ import numpy as np
 from msgspec.structs import replace
 from numpy.typing import NDArray
 
-from metagraph.graph.conversation import SHORTEST, Segment, Spoken, Word
+from metagraph.graph.conversation.model import SHORTEST, Segment, Spoken, Word
 from metagraph.graph.vocabulary import Vocabulary, joined, kinds_of_words, tokens
 from metagraph.speech.activity import PAUSE, Stretch, activity
 from metagraph.speech.language_packs import Language, english

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from metagraph.graph.conversation import SPOKEN, Conversation, Segment, Spoken, heard_by
+from metagraph.graph.conversation.model import SPOKEN, Conversation, Segment, Spoken, heard_by
 from metagraph.graph.model import Project
-from metagraph.playback.phases import phases
 from metagraph.playback.plan import Cue, Plan
+from metagraph.playback.timing.phases import phases
 from metagraph.speech.drive import TOLERANCE, drawn_of, keyed, peak_of
 
 NAMES = {

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from metagraph.graph.conversation import Conversation, Segment, heard_by, others_of
+from metagraph.graph.conversation.model import Conversation, Segment, heard_by, others_of
 from metagraph.graph.model import Action, Layer, Mode, Project
 from metagraph.graph.requests import (
     AnyRequest,
@@ -29,10 +29,10 @@ from metagraph.graph.requests import (
     Point,
     Say,
 )
-from metagraph.playback.choice import uniform
-from metagraph.playback.phases import phases
 from metagraph.playback.plan import Plan
-from metagraph.playback.running_plan import perform
+from metagraph.playback.planning.choice import uniform
+from metagraph.playback.planning.running_plan import perform
+from metagraph.playback.timing.phases import phases
 from metagraph.speech.addressing import TURN, spans
 from metagraph.speech.gesture_choice import Clause, choose
 from metagraph.speech.group_gaze import looks_of

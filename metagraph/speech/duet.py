@@ -16,14 +16,14 @@ from numpy.typing import NDArray
 
 from metagraph.errors import FileError
 from metagraph.graph import anatomy
-from metagraph.graph.conversation import Conversation, Side, others_of
+from metagraph.graph.conversation.model import Conversation, Side, others_of
 from metagraph.graph.model import Project
 from metagraph.graph.requests import AnyRequest, Line, Performance, Point
 from metagraph.motion import rotation
 from metagraph.playback.life.body import LIFELESS
 from metagraph.playback.life.voice import Voice
 from metagraph.playback.plan import Plan
-from metagraph.playback.rigs import rigs_of
+from metagraph.playback.posing.rigs import rigs_of
 from metagraph.speech.delivered import Delivered, delivered
 from metagraph.speech.drive import drive
 from metagraph.speech.gaze_shares import GazeShare, gaze_shares

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from math import asin, atan, atan2, hypot
 from typing import Literal
 
-from metagraph.graph.conversation import EVERYBODY, Conversation
+from metagraph.graph.conversation.model import EVERYBODY, Conversation
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Point
 from metagraph.playback.life.gaze import Gaze
 from metagraph.playback.plan import Plan
-from metagraph.playback.rigs import rigs_of
+from metagraph.playback.posing.rigs import rigs_of
 from metagraph.speech.addressing import roles_of
 from metagraph.speech.drive import partner_points
 

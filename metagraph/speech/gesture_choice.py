@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.model import Action, Project
-from metagraph.playback.choice import uniform
-from metagraph.playback.cue_shapes import HURRY
-from metagraph.playback.phases import phases
+from metagraph.playback.planning.choice import uniform
+from metagraph.playback.planning.cue_shapes import HURRY
+from metagraph.playback.timing.phases import phases
 
 Array = NDArray[Any]
 

@@ -18,8 +18,8 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from metagraph.graph.conversation import EVERYBODY, Conversation, others_of
-from metagraph.playback.choice import uniform
+from metagraph.graph.conversation.model import EVERYBODY, Conversation, others_of
+from metagraph.playback.planning.choice import uniform
 from metagraph.speech.addressing import ANSWER, OVERLAP, Role, Turn, roles_of, turns_of
 
 AT_SPEAKER, AT_ADDRESSEE = 0.88, 0.77  # of looks at faces, listening and speaking (Vertegaal et al. 2001)

@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.budgets import CONVERSATION_SECONDS, LINE_SECONDS
+from metagraph.common.budgets import CONVERSATION_SECONDS, LINE_SECONDS
+from metagraph.common.files import unforeseen
+from metagraph.common.wording import told
 from metagraph.errors import FileError
-from metagraph.files import unforeseen
-from metagraph.graph.conversation import Word
+from metagraph.graph.conversation.model import Word
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Line
 from metagraph.playback.life.mouth import MouthPiece
@@ -21,7 +22,6 @@ from metagraph.playback.life.voice import Voice, silent, voiced
 from metagraph.speech.phones import pieces_of
 from metagraph.speech.sound import hear, read_sound, shapes_heard, syllables
 from metagraph.speech.textgrid import Interval, TextGrid, Tier, read_textgrid
-from metagraph.wording import told
 
 Array = NDArray[Any]
 

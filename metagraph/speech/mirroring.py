@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
-from metagraph.graph.conversation import Conversation
+from metagraph.graph.conversation.model import Conversation
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Go
-from metagraph.playback.choice import uniform
 from metagraph.playback.plan import Cue, Plan
+from metagraph.playback.planning.choice import uniform
 from metagraph.speech.addressing import roles_of
 
 Array = NDArray[Any]

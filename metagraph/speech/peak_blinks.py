@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from metagraph.playback.choice import uniform
+from metagraph.playback.planning.choice import uniform
 
 AFTER = 1.0  # seconds since the last blink at which a peak brings another
 WITHOUT = 5.0  # seconds without a blink, in which one is keyed at random

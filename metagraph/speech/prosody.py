@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.graph.conversation import Segment, Sound, Word
+from metagraph.graph.conversation.model import Segment, Sound, Word
 from metagraph.speech.loudness import loudness_within
 from metagraph.speech.sound import hear, syllables
 

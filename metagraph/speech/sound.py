@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.budgets import (
+from metagraph.common.budgets import (
     LINE_SECONDS,
     SOUND_BLOCK,
     SOUND_CHANNELS,
@@ -24,11 +24,11 @@ from metagraph.budgets import (
     SOUND_RATES,
     SOUND_SAMPLES,
 )
+from metagraph.common.files import check_file, guarded, is_file, opened
+from metagraph.common.wording import told
 from metagraph.errors import FileError
-from metagraph.files import check_file, guarded, is_file, opened
 from metagraph.playback.life.mouth import MouthPiece
 from metagraph.speech.quantile import percentile
-from metagraph.wording import told
 
 Array = NDArray[Any]
 

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.common.wording import told
 from metagraph.errors import FileError
 from metagraph.graph.requests import Line
 from metagraph.playback.plan import Plan
 from metagraph.speech.sound import read_sound
-from metagraph.wording import told
 
 Array = NDArray[Any]
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.graph.conversation import Word
+from metagraph.graph.conversation.model import Word
 from metagraph.speech.language_packs import Language
 from metagraph.speech.sound import HeardSound
 

@@ -9,12 +9,12 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from metagraph.graph.conversation import Conversation, Side
+from metagraph.graph.conversation.model import Conversation, Side
 from metagraph.graph.requests import Feel
 from metagraph.playback.life.sympathy import Laugh, laughs_along, moods_taken_up
 from metagraph.playback.life.wanted import moods_of
-from metagraph.playback.mood import MoodFrom
 from metagraph.playback.plan import Plan
+from metagraph.playback.planning.mood import MoodFrom
 from metagraph.speech.mirroring import Mover
 
 LAUGHING = "laugh"  # tag of actions that laugh

@@ -15,12 +15,12 @@ from typing import Any, Literal
 import msgspec
 from msgspec import Struct
 
+from metagraph.common.files import read_file
 from metagraph.errors import FileError
-from metagraph.files import read_file
 from metagraph.graph.model import Layer
-from metagraph.playback.hashing import Bits
 from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.graphemes import read_aloud
+from metagraph.playback.planning.hashing import Bits
 from metagraph.speech import word_gestures
 from metagraph.speech.language_detection import language_spoken
 from metagraph.speech.language_packs import languages

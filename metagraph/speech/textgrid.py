@@ -13,10 +13,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from metagraph.budgets import MARKS, MARKS_FILE
+from metagraph.common.budgets import MARKS, MARKS_FILE
+from metagraph.common.files import guarded, read_file
+from metagraph.common.wording import told
 from metagraph.errors import FileError
-from metagraph.files import guarded, read_file
-from metagraph.wording import told
 
 _TOKEN = re.compile(
     r'"(?:[^"]|"")*"|<[a-z]+>|(?<![^\s=])[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?%?(?!\S)'

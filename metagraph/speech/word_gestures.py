@@ -12,10 +12,10 @@ from collections.abc import Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 
-from metagraph.playback.choice import uniform
-from metagraph.playback.hashing import Bits
 from metagraph.playback.life.alphabet import Alphabet
 from metagraph.playback.life.graphemes import read_aloud
+from metagraph.playback.planning.choice import uniform
+from metagraph.playback.planning.hashing import Bits
 
 APART: dict[str, float] = {"arms": 2.4, "head": 1.8}  # seconds between two strokes of a layer, at least
 AGAIN = 1.6  # and so many times as far where both are of the same tag

@@ -7,15 +7,15 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from metagraph.common.wording import told
 from metagraph.errors import error_words
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import LAYERS, Kind, Layer, Project
-from metagraph.playback.phases import phases
+from metagraph.playback.timing.phases import phases
+from metagraph.suggest.jumps.soft_blends import softened
 from metagraph.suggest.proposal import Place, Proposal, Proposals, Rest, plain
-from metagraph.suggest.soft_blends import softened
 from metagraph.suggest.whole_body import CARRIER
-from metagraph.wording import told
 
 
 @dataclass(frozen=True)

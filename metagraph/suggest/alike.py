@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.common.wording import told
 from metagraph.suggest.estimate import Belief
-from metagraph.wording import told
 
 Array = NDArray[Any]
 

@@ -8,10 +8,10 @@ from collections.abc import Mapping
 from dataclasses import replace
 from math import log, sqrt
 
+from metagraph.common.wording import told
 from metagraph.graph.words import Layer
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.traits import Traits
-from metagraph.wording import told
 
 TYPICAL: Mapping[Layer, float] = {
     "arms": 0.12,

@@ -12,16 +12,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.common.wording import told
 from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Action, Kind, Layer, Project, Timing
 from metagraph.motion.clip import Clip
-from metagraph.playback.phases import phases
-from metagraph.suggest import compatibility
+from metagraph.playback.timing.phases import phases
 from metagraph.suggest.estimate import Belief
+from metagraph.suggest.jumps import compatibility
 from metagraph.suggest.motion_guess import MotionGuess
 from metagraph.suggest.proposal import Place, Proposal, Rest, words_of
 from metagraph.suggest.traits import Traits
-from metagraph.wording import told
 
 Array = NDArray[Any]
 

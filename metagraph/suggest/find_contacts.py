@@ -15,14 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy, edits
-from metagraph.graph.end_gaps import motion_of
+from metagraph.graph.checks.end_gaps import motion_of
 from metagraph.graph.model import Action, Project
 from metagraph.motion import rotation
 from metagraph.motion.character_mesh import Character
 from metagraph.motion.contact_solve import HAND, OBSTACLE, ContactRig
 from metagraph.motion.contact_spans import EASE, HANDS, ContactKey, ContactSpan
-from metagraph.playback.contacts import ends, nearest, parts_of
-from metagraph.playback.rigs import rigs_of
+from metagraph.playback.posing.contacts import ends, nearest, parts_of
+from metagraph.playback.posing.rigs import rigs_of
 
 Array = NDArray[Any]
 

@@ -8,14 +8,14 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
+from metagraph.common.wording import told
 from metagraph.suggest.clip_measures import nothing, walks
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.motion_guess import MotionGuess
-from metagraph.suggest.name_words import NameGuess
 from metagraph.suggest.proposal import Place, Proposals, plain
-from metagraph.suggest.stances import Stances, likely
+from metagraph.suggest.stances.known import Stances, likely
 from metagraph.suggest.traits import Traits
-from metagraph.wording import told
+from metagraph.suggest.words.names import NameGuess
 
 # Words that mean nothing else; others may be a beat in another language, or in another mouth
 SURELY = frozenset(

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from metagraph.suggest.alike import Example, example_from
-from metagraph.suggest.name_words import learn
-from metagraph.suggest.words_patterns import Patterns, PatternsError, forget
+from metagraph.suggest.words.names import learn
+from metagraph.suggest.words.patterns import Patterns, PatternsError, forget
 
 VERSION: Final = 1
 PROJECTS: Final = 50  # of which examples are kept, the latest

@@ -10,12 +10,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import exp, log
 
+from metagraph.common.wording import told
 from metagraph.graph.words import LAYERS, Kind, Layer, Limb
 from metagraph.suggest.clip_measures import SUREST, TYPICAL, energy, layer_of, moves_most, resting, walks
 from metagraph.suggest.estimate import Belief
-from metagraph.suggest.stances import Shape, Stances, distance, likely, nearest
+from metagraph.suggest.stances.known import Shape, Stances, distance, likely, nearest
 from metagraph.suggest.traits import LayerTraits, Traits
-from metagraph.wording import told
 
 # of the way of a clip that ends in no other stance, the share from end to end from which on it is a
 # transition

@@ -10,9 +10,9 @@ from typing import Any
 
 from metagraph.graph.model import Kind, Layer, Limb
 from metagraph.suggest.estimate import Belief
-from metagraph.suggest.name_words import Patterns
-from metagraph.suggest.stances import Shape
-from metagraph.suggest.words_tokens import take_apart
+from metagraph.suggest.stances.known import Shape
+from metagraph.suggest.words.names import Patterns
+from metagraph.suggest.words.tokens import take_apart
 
 _USUAL = Patterns()
 

@@ -14,6 +14,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from metagraph.common.wording import told
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, Action, Layer, Limb, Project
 from metagraph.suggest.accept import Taken, accept
 from metagraph.suggest.alike import Alike, Example
@@ -22,14 +23,13 @@ from metagraph.suggest.details import masked, rest_of, stroked, timed, weighted
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.left_aside import MANY, left_aside
 from metagraph.suggest.motion_guess import MotionGuess, guess
-from metagraph.suggest.name_words import NameGuess, Patterns, read_names
-from metagraph.suggest.places import Heard, Places
 from metagraph.suggest.proposal import Place, Proposal, Proposals, Rest, Spare, plain, words_of
-from metagraph.suggest.stances import Shape, discover, discovered, known, nearest, parted, settled
+from metagraph.suggest.stances.known import Shape, discover, discovered, known, nearest, parted, settled
+from metagraph.suggest.stances.places import Heard, Places
 from metagraph.suggest.traits import Traits, traits_of
 from metagraph.suggest.vote_fusion import Agreed, combine
 from metagraph.suggest.whole_body import CARRIER, carried, recorded_whole, whole_of
-from metagraph.wording import told
+from metagraph.suggest.words.names import NameGuess, Patterns, read_names
 
 __all__ = [
     "SOURCES",

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 from statistics import median
 from typing import Any, Literal
 
+from metagraph.common.wording import told
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, Layer, Project
@@ -22,7 +23,6 @@ from metagraph.suggest.estimate import Belief
 from metagraph.suggest.flags import gain
 from metagraph.suggest.proposal import Place, Proposal, Proposals, plain
 from metagraph.suggest.propose import waiting
-from metagraph.wording import told
 
 Field = Literal["kind", "layer", "stance", "end_stance", "limb", "tags", "timing"]
 DECIDING: tuple[Field, ...] = (

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from math import exp, log
 from typing import Generic, TypeVar
 
+from metagraph.common.wording import joined, told
 from metagraph.suggest.estimate import Belief
-from metagraph.wording import joined, told
 
 T = TypeVar("T")
 

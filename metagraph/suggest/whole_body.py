@@ -20,7 +20,7 @@ from metagraph.graph.model import Project
 from metagraph.graph.words import LAYERS, Layer
 from metagraph.suggest.body_points import NAMES
 from metagraph.suggest.clip_measures import TYPICAL, layer_of, nothing, resting
-from metagraph.suggest.stances import SETTLED, Shape, discover, likely
+from metagraph.suggest.stances.known import SETTLED, Shape, discover, likely
 from metagraph.suggest.traits import LayerTraits, Traits
 
 Array = NDArray[Any]

@@ -17,7 +17,7 @@ from metagraph.motion.skeleton import Pose
 from metagraph.suggest.tracks import RATE, poses_of, rig_of, stands
 from metagraph.synthesis.graph import BLEND
 from metagraph.synthesis.retiming import Retiming
-from metagraph.synthesis.search_path import Path
+from metagraph.synthesis.search.path import Path
 from metagraph.synthesis.standing_feet import held_feet, standing
 from metagraph.synthesis.states import States, SynthesisError
 

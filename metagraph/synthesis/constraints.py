@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.graph.conversation import SOUNDS, Segment, Sound
+from metagraph.graph.conversation.model import SOUNDS, Segment, Sound
 from metagraph.suggest.tracks import RATE
 from metagraph.synthesis.states import States, SynthesisError
 

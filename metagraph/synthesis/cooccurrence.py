@@ -18,7 +18,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.graph.conversation import Segment, Sound
+from metagraph.graph.conversation.model import Segment, Sound
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.suggest.johnson import JohnsonSB, fit
+from metagraph.suggest.jumps.johnson import JohnsonSB, fit
 from metagraph.synthesis.blocks import transitions, work_of
 from metagraph.synthesis.states import LEVEL, STEP, States, SynthesisError, costs_apart, key_states
 

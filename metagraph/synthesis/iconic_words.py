@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.graph.conversation import Word
+from metagraph.graph.conversation.model import Word
 from metagraph.graph.vocabulary import Vocabulary, tokens
 from metagraph.suggest.tracks import RATE
 from metagraph.synthesis.constraints import TOLERANCE
-from metagraph.synthesis.frame_costs import FrameCost
 from metagraph.synthesis.graph import BLEND
 from metagraph.synthesis.prosody_costs import SpokenTake
+from metagraph.synthesis.search.frame_costs import FrameCost
 from metagraph.synthesis.states import States, SynthesisError
 
 Array = NDArray[Any]

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from metagraph.compiling import compiler
+from metagraph.common.compiling import compiler
 
 Array = Any
 

@@ -14,10 +14,10 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.graph.conversation import Segment, Word
+from metagraph.graph.conversation.model import Segment, Word
 from metagraph.speech.prosody import OWN, Prosody
 from metagraph.suggest.tracks import RATE
-from metagraph.synthesis.frame_costs import FrameCost
+from metagraph.synthesis.search.frame_costs import FrameCost
 from metagraph.synthesis.states import States, SynthesisError
 
 Array = NDArray[Any]

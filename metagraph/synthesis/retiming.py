@@ -19,8 +19,8 @@ from metagraph.motion.clip import Clip
 from metagraph.suggest.tracks import RATE, poses_of, times_of
 from metagraph.synthesis.constraints import EDGE, STRESS, HeardStates, WantedSegment
 from metagraph.synthesis.cooccurrence import activation, speeds
-from metagraph.synthesis.frame_costs import FrameCost
 from metagraph.synthesis.graph import BLEND
+from metagraph.synthesis.search.frame_costs import FrameCost
 from metagraph.synthesis.standing_feet import standing
 from metagraph.synthesis.states import SynthesisError
 

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from metagraph.motion.clip import Clip
 from metagraph.suggest.tracks import RATE
 from metagraph.synthesis.constraints import TOLERANCE, HeardStates, WantedSegment
-from metagraph.synthesis.frame_costs import FrameCosts, together
 from metagraph.synthesis.iconic_words import (
     PRICE,
     WordPlace,
@@ -37,7 +36,8 @@ from metagraph.synthesis.prosody_costs import (
     prosody_match,
 )
 from metagraph.synthesis.retiming import Retiming, checked_share, retimable, retime
-from metagraph.synthesis.search_path import Path
+from metagraph.synthesis.search.frame_costs import FrameCosts, together
+from metagraph.synthesis.search.path import Path
 from metagraph.synthesis.states import States, SynthesisError
 
 Array = NDArray[Any]

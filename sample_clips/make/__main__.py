@@ -11,7 +11,7 @@ import argparse
 import time
 from pathlib import Path
 
-from metagraph.formats.gltf_writer import write_glb
+from metagraph.formats.gltf.writer import write_glb
 from sample_clips.make.catalogue import RECIPES, SEATED
 from sample_clips.make.clip_sheet import sheet
 from sample_clips.make.recipe import animate

@@ -17,7 +17,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from metagraph.formats.gltf import read_character, read_gltf_clips
+from metagraph.formats.gltf.reader import read_character, read_gltf_clips
 from metagraph.formats.store import open_project
 from metagraph.graph.model import Action, ClipEntry, Layer, Project, Timing
 from metagraph.motion.clip import Clip

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import edits
-from metagraph.graph.face import with_morphs
+from metagraph.graph.face.rig import with_morphs
 from metagraph.graph.life import Life, Manner
 from metagraph.graph.model import Action, Kind, Layer, Limb, Markov, Project
 from metagraph.graph.requests import Gesture, Line, Nod

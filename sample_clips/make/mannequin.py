@@ -234,7 +234,7 @@ def _turned_along(normals: Array, before: Array, after: Array, triangles: Array)
 def main() -> None:
     import sys
 
-    from metagraph.formats.gltf import write_glb
+    from metagraph.formats.gltf.reader import write_glb
 
     folder = Path(__file__).parents[1]
     for look in LOOKS:

@@ -11,14 +11,15 @@ from typing import cast
 
 import msgspec
 
-from metagraph.formats.conversations import read_conversation
-from metagraph.formats.gltf import read_character
+from metagraph.formats.conversations.files import read_conversation
+from metagraph.formats.gltf.reader import read_character
 from metagraph.formats.imports import import_files
 from metagraph.formats.store import SUFFIX, save_project
-from metagraph.graph import edits, performance_edits
+from metagraph.graph import edits
 from metagraph.graph import requests as a
-from metagraph.graph.conversation import Conversation
-from metagraph.graph.conversation_edits import add_conversation
+from metagraph.graph.conversation.edits import add_conversation
+from metagraph.graph.conversation.model import Conversation
+from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import LAYERS, Kind, Layer, Limb, Project, Timing
 from metagraph.suggest.find_contacts import measured, with_contacts
 from sample_clips.make.babble import sample_lines

@@ -7,11 +7,11 @@ from dataclasses import replace
 from typing import get_args
 
 from metagraph.graph import edits
-from metagraph.graph.face import with_morphs
+from metagraph.graph.face.rig import with_morphs
 from metagraph.graph.life import Life, Manner
 from metagraph.graph.model import LAYERS, LIMBS, PARTS, Action, Layer, Markov, Project
 from metagraph.graph.words import Mode
-from metagraph.playback.markov import KINDS as MODEL_KINDS
+from metagraph.playback.planning.markov import KINDS as MODEL_KINDS
 from sample_clips.make.conformance_projects import stick
 from sample_clips.make.numbered_ids import numbered_ids
 

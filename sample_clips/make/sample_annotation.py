@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
 
-from metagraph.playback.choice import pick, uniform
+from metagraph.playback.planning.choice import pick, uniform
 
 OUT = Path(__file__).resolve().parents[1] / "annotation" / "conversation.eaf"
 WORDS = """ Made up: nobody was filmed and nobody annotated this. Written by sample_clips/make/sample_annotation.py as an example of

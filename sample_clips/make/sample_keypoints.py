@@ -24,7 +24,7 @@ from metagraph.mimicry.signatures import BodySignature
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.plan import Plan
-from metagraph.playback.running_plan import perform
+from metagraph.playback.planning.running_plan import perform
 
 SAMPLE = Path(__file__).resolve().parents[1] / "sample.metagraph.yaml"
 OUT = Path(__file__).resolve().parents[1] / "keypoints"

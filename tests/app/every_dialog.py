@@ -8,7 +8,7 @@ from pathlib import Path
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication, QDialog
 
-from metagraph.formats.bvh import write_bvh
+from metagraph.formats.bvh.file import write_bvh
 from metagraph.graph import edits, requests
 from tests.app.handles import Handles
 
@@ -50,7 +50,7 @@ def _joints(w: Handles, _: Path) -> None:
 
 def _state_joints(w: Handles, _: Path) -> None:
     from app.features.manual.manual_mask import StateMask
-    from metagraph.graph import manual_edits
+    from metagraph.graph.manual import edits as manual_edits
 
     layer = w.session.place.layer
     if not w.document.project.manual.get(layer) or not w.document.project.manual[layer].states:
@@ -128,7 +128,7 @@ def _report(w: Handles, _: Path) -> None:
 def _take(w: Handles, folder: Path) -> None:
     from app.features.taking.taking_dialog import TakingDialog
     from app.look.theme import theme
-    from metagraph.formats.project_pieces import read_other_project
+    from metagraph.formats.project.pieces import read_other_project
 
     piece = read_other_project(ROOT / "seated.metagraph.yaml", None)
     TakingDialog(w.document, w.shell.jobs, piece, "seated", theme("dark"), w.window).open()

@@ -17,10 +17,10 @@ from PySide6.QtWidgets import QApplication, QInputDialog, QLineEdit
 
 from metagraph.graph import edits
 from metagraph.graph.edits import limb_of
-from metagraph.graph.manual import ANY
+from metagraph.graph.manual.machine import ANY
 from metagraph.graph.model import LIMBS, Project
-from metagraph.study.by_hand import Drawing, Way, Work, works
-from metagraph.study.finding import Words
+from metagraph.research.study.machines.by_hand import Drawing, Way, Work, works
+from metagraph.research.study.machines.finding import Words
 from metagraph.suggest.review import DECIDING
 from tests.app.participant import LEFT, Participant, Task
 

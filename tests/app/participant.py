@@ -24,9 +24,9 @@ from metagraph.graph import edits
 from metagraph.graph.edits import limb_of
 from metagraph.graph.expand import ends_in
 from metagraph.graph.model import LAYERS, LIMBS, Layer, Project
-from metagraph.study.klm import predicted
-from metagraph.study.normal_machine import normal
-from metagraph.study.score import Score, score
+from metagraph.research.study.machines.klm import predicted
+from metagraph.research.study.machines.normal_machine import normal
+from metagraph.research.study.scores.machines import Score, score
 
 LEFT = Qt.MouseButton.LeftButton
 CONDITIONS = ("meta", "manual", "manual, every connection")

@@ -9,7 +9,7 @@ import pytest
 from PySide6.QtCore import QPoint, QPointF
 
 from metagraph.graph.model import BasePose
-from metagraph.playback.markov import ARMS
+from metagraph.playback.planning.markov import ARMS
 from tests.app.pointer import DOWN, UP, choose, from_menu, middle_of, press
 from tests.thorough import many
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from metagraph.formats.store import open_project
-from metagraph.study.by_hand import Way
-from metagraph.study.counted_hand import try_way
-from metagraph.study.normal_machine import normal
-from metagraph.study.score import score
+from metagraph.research.study.machines.by_hand import Way
+from metagraph.research.study.machines.counted_hand import try_way
+from metagraph.research.study.machines.normal_machine import normal
+from metagraph.research.study.scores.machines import score
 from tests.app.expert import Expert, Reviewer, hidden, without_times
 from tests.app.participant import CONDITIONS, Participant, bare, task
 from tests.thorough import THOROUGH, many, some

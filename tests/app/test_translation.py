@@ -21,11 +21,12 @@ from app import translation
 from app.features.labelling import review_words
 from app.look.plural import many
 from app.translation import tr, tr_error, tr_told
+from metagraph.common.wording import Told, told
 from metagraph.engines.targets import registry
 from metagraph.errors import FileError
 from metagraph.formats import import_words
 from metagraph.formats.clip_readers import clip_suffixes
-from metagraph.formats.conversations import read_conversation
+from metagraph.formats.conversations.files import read_conversation
 from metagraph.formats.imports import import_files
 from metagraph.formats.store import open_project
 from metagraph.graph import edits
@@ -34,7 +35,6 @@ from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
 from metagraph.suggest.details import timed
 from metagraph.suggest.propose import propose
-from metagraph.wording import Told, told
 from tests.speech import talk
 
 APP = Path(translation.__file__).parent
@@ -44,7 +44,7 @@ OTHERS = sorted(set(translation.NAMES) - {translation.ENGLISH})
 
 
 def templates() -> Iterator[tuple[str, str, set[str]]]:
-    """Yield where, what, and the names of values, for each template of `metagraph.wording`."""
+    """Yield where, what, and the names of values, for each template of `metagraph.common.wording`."""
     for path in sorted(
         p for folder in (DOMAIN, DOMAIN.parent / "preview", APP) for p in folder.rglob("*.py")
     ):

@@ -25,8 +25,8 @@ from metagraph.motion import rotation
 from metagraph.motion.contact_solve import ContactRig, HandGoal
 from metagraph.motion.contact_spans import contact_key, contact_weight
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.contacts import depths, goals_at, solved
 from metagraph.playback.planner import make_plan
+from metagraph.playback.posing.contacts import depths, goals_at, solved
 from metagraph.suggest.find_contacts import find_contacts
 from tests.posing import contact_rig, pose_at
 

@@ -26,24 +26,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from metagraph.formats.gltf import read_character
+from metagraph.formats.gltf.reader import read_character
 from metagraph.formats.store import open_project
-from metagraph.graph.face import with_morphs
-from metagraph.graph.face_names import VISEMES, find_morphs
+from metagraph.graph.face.names import VISEMES, find_morphs
+from metagraph.graph.face.rig import with_morphs
 from metagraph.graph.life import Life
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Say
 from metagraph.motion.character_mesh import Character
-from metagraph.playback.extend_performance import hear
 from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.graphemes import spelled
 from metagraph.playback.life.lips import mouth
 from metagraph.playback.life.mouth import MouthPiece
 from metagraph.playback.life.track import Speech, Track
 from metagraph.playback.life.voice import Voice, voiced
-from metagraph.playback.mood import MOODS
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
+from metagraph.playback.planning.extend_performance import hear
+from metagraph.playback.planning.mood import MOODS
 from metagraph.speech.phones import pieces_of
 from metagraph.speech.textgrid import read_textgrid
 from tests.posing import face_weights

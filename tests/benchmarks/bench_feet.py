@@ -22,7 +22,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from metagraph.formats.store import open_project
 from metagraph.graph.model import Project
-from metagraph.playback.foot_slides import (
+from metagraph.playback.plan import Plan
+from metagraph.playback.planner import make_plan
+from metagraph.playback.posing.foot_slides import (
     RATE,
     SLIDES,
     WINDOW,
@@ -31,8 +33,6 @@ from metagraph.playback.foot_slides import (
     clip_speeds,
     slide_speeds,
 )
-from metagraph.playback.plan import Plan
-from metagraph.playback.planner import make_plan
 from tests.benchmarks.bench_weight import FPS, SAMPLE, STANDS, Watched, shared_project
 from tests.posing import pose_at, weight_of
 

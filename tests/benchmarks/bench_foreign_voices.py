@@ -22,16 +22,16 @@ import numpy as np  # noqa: E402
 from msgspec.structs import replace as changed  # noqa: E402
 
 from app.cli.command_output import opened  # noqa: E402
-from metagraph.formats.conversation_languages import Speaking  # noqa: E402
-from metagraph.formats.conversations import read_conversation  # noqa: E402
-from metagraph.generation.evaluation import Manner, generated  # noqa: E402
+from metagraph.formats.conversations.files import read_conversation  # noqa: E402
+from metagraph.formats.conversations.languages import Speaking  # noqa: E402
 from metagraph.generation.features import conversation_activity, features, frames_of  # noqa: E402
 from metagraph.generation.performing import side_sound  # noqa: E402
-from metagraph.generation.planted import AGAIN, performed  # noqa: E402
 from metagraph.generation.poses import poses_of  # noqa: E402
 from metagraph.generation.statistics import Performance, measures, mismatched, performance  # noqa: E402
 from metagraph.generation.stored import Model, read_model  # noqa: E402
 from metagraph.generation.takes import Source, Take, _marks  # noqa: E402
+from metagraph.research.generation.evaluation import Manner, generated  # noqa: E402
+from metagraph.research.generation.planted import AGAIN, performed  # noqa: E402
 from sample_clips.make import talk as maker  # noqa: E402
 
 SHOWN = ("speed", "acceleration", "distance", "still", "trembling", "role", "stroke", "nods_responses")

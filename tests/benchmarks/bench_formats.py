@@ -25,9 +25,9 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from metagraph.formats.bvh import read_bvh, write_bvh  # noqa: E402
+from metagraph.formats.bvh.file import read_bvh, write_bvh  # noqa: E402
 from metagraph.formats.clips import import_clips  # noqa: E402
-from metagraph.formats.gltf import read_gltf_clips, write_glb  # noqa: E402
+from metagraph.formats.gltf.reader import read_gltf_clips, write_glb  # noqa: E402
 from metagraph.motion import rotation  # noqa: E402
 from metagraph.motion.clip import Clip  # noqa: E402
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton  # noqa: E402

@@ -78,7 +78,7 @@ def main(count: int = 1000, pictures: int = 500) -> None:
     from app.stage.figures import Figures
     from app.stage.session import Session
     from app.stage.thumbnails import Thumbnails
-    from metagraph.graph.marks import mark, mark_of
+    from metagraph.graph.editing.marks import mark, mark_of
 
     app = prepare()
     folder = Path(tempfile.mkdtemp()) / "pictures"

@@ -13,13 +13,13 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from metagraph.exhibits.material import made  # noqa: E402
 from metagraph.formats.store import open_project  # noqa: E402
-from metagraph.generation.planted_speech import converse  # noqa: E402
-from metagraph.graph.conversation import Segment, heard_by  # noqa: E402
+from metagraph.graph.conversation.model import Segment, heard_by  # noqa: E402
 from metagraph.motion.clip import Clip  # noqa: E402
+from metagraph.research.exhibits.material import made  # noqa: E402
+from metagraph.research.generation.planted_speech import converse  # noqa: E402
+from metagraph.research.motion_graph.extending_evaluation import rows_of, table_of  # noqa: E402
 from metagraph.synthesis.constraints import changes, heard  # noqa: E402
-from metagraph.synthesis.extending_evaluation import rows_of, table_of  # noqa: E402
 from metagraph.synthesis.graph import build  # noqa: E402
 from metagraph.synthesis.states import key_states, states_of  # noqa: E402
 from tests.synthesis.talking import speech, talking  # noqa: E402

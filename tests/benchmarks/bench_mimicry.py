@@ -16,7 +16,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from metagraph.formats.keypoints import read_keypoints  # noqa: E402
+from metagraph.formats.keypoints.reader import read_keypoints  # noqa: E402
 from metagraph.formats.store import open_project  # noqa: E402
 from metagraph.mimicry.keypoint_layouts import Keypoints  # noqa: E402
 from metagraph.mimicry.mimic import Mimic  # noqa: E402

@@ -26,11 +26,11 @@ from metagraph.formats.store import open_project
 from metagraph.graph import anatomy
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Feel, Gesture
-from metagraph.playback.extend_performance import hear
-from metagraph.playback.mood import MOODS
-from metagraph.playback.phases import phases
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
+from metagraph.playback.planning.extend_performance import hear
+from metagraph.playback.planning.mood import MOODS
+from metagraph.playback.timing.phases import phases
 from tests.posing import pose_at
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / "sample.metagraph.yaml"

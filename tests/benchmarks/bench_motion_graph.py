@@ -29,11 +29,11 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
 
-from metagraph.graph.conversation import SOUNDS, Segment  # noqa: E402
+from metagraph.graph.conversation.model import SOUNDS, Segment  # noqa: E402
 from metagraph.synthesis.constraints import HeardStates, wanted  # noqa: E402
-from metagraph.synthesis.exact_search import best  # noqa: E402
 from metagraph.synthesis.graph import MotionGraph, Threshold, build, largest, threshold  # noqa: E402
-from metagraph.synthesis.greedy_search import greedy  # noqa: E402
+from metagraph.synthesis.search.exact_search import best  # noqa: E402
+from metagraph.synthesis.search.greedy_search import greedy  # noqa: E402
 from metagraph.synthesis.states import States, key_states, states_of, terms_of, with_velocity  # noqa: E402
 
 Array = Any

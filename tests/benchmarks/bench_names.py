@@ -22,7 +22,7 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from metagraph.suggest.name_words import read_names  # noqa: E402
+from metagraph.suggest.words.names import read_names  # noqa: E402
 
 FIELDS = ("kind", "stance", "end_stance", "layer", "limb")
 TRUTH = ROOT / "tests" / "suggest" / "truth"

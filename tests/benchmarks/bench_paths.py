@@ -18,7 +18,7 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from metagraph.study.klm import predicted  # noqa: E402
+from metagraph.research.study.machines.klm import predicted  # noqa: E402
 from metagraph.suggest.propose import propose  # noqa: E402
 from tests.benchmarks.bench_labels import real_sets  # noqa: E402
 from tests.label_zoo.measure import LabelSet, meanings, none_of_the_four, verdict  # noqa: E402

@@ -35,8 +35,8 @@ import bench_motion_graph  # noqa: E402
 from bench_preview import crowd as standing  # noqa: E402
 
 from metagraph.engines.export_document import to_document  # noqa: E402
-from metagraph.formats.bvh import read_bvh  # noqa: E402
-from metagraph.formats.gltf import read_character, read_gltf_clips, write_glb  # noqa: E402
+from metagraph.formats.bvh.file import read_bvh  # noqa: E402
+from metagraph.formats.gltf.reader import read_character, read_gltf_clips, write_glb  # noqa: E402
 
 Work = Callable[[], object]
 SAMPLE = ROOT / "sample_clips" / "sample.metagraph.yaml"
@@ -92,7 +92,9 @@ def files(folder: Path) -> Iterator[Row]:
         peer, _, holds = name.partition(": ")
         own_holds = "names, rests, float32 quaternions, checks"
         yield Row(f"BVH, 10,000 frames ({what}), warm", own_holds, peer, holds, ours[1], reader)
-    own = process("import sys; from metagraph.formats.bvh import read_bvh; read_bvh(sys.argv[1])", str(path))
+    own = process(
+        "import sys; from metagraph.formats.bvh.file import read_bvh; read_bvh(sys.argv[1])", str(path)
+    )
     code = "import sys, pymotion.io.bvh as b; f = b.BVH(); f.load(sys.argv[1]); f.get_data()"
     other = process(code, str(path)) if "upc-pymotion: quaternions" in readers else None
     yield Row(

@@ -18,7 +18,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from metagraph.formats.gltf import read_character  # noqa: E402
+from metagraph.formats.gltf.reader import read_character  # noqa: E402
 from metagraph.motion import rotation  # noqa: E402
 from metagraph.motion.skeleton import Pose, Skeleton  # noqa: E402
 from preview.camera import Camera  # noqa: E402

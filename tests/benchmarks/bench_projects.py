@@ -20,11 +20,11 @@ sys.path.insert(0, str(ROOT))
 
 from metagraph.engines.export import export  # noqa: E402
 from metagraph.engines.reading import read_export  # noqa: E402
-from metagraph.formats.data import from_data, to_data  # noqa: E402
-from metagraph.formats.journal import Journal, journal_path  # noqa: E402
+from metagraph.formats.project.data import from_data, to_data  # noqa: E402
+from metagraph.formats.project.journal import Journal, journal_path  # noqa: E402
+from metagraph.formats.project.text import read, to_text  # noqa: E402
 from metagraph.formats.recovery import recover  # noqa: E402
 from metagraph.formats.store import SUFFIX, open_project, read_project, save_project  # noqa: E402
-from metagraph.formats.text import read, to_text  # noqa: E402
 from metagraph.graph import edits  # noqa: E402
 from metagraph.graph.model import LAYERS, Project  # noqa: E402
 

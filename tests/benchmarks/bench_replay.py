@@ -16,7 +16,7 @@ sys.path.insert(0, str(ROOT))
 
 from metagraph.formats.store import open_project  # noqa: E402
 from metagraph.graph import requests as a  # noqa: E402
-from metagraph.playback.running_plan import perform  # noqa: E402
+from metagraph.playback.planning.running_plan import perform  # noqa: E402
 
 EVERY = 4.0  # seconds between two requests
 

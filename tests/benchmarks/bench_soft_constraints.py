@@ -19,17 +19,17 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from metagraph.graph.conversation import Segment  # noqa: E402
+from metagraph.graph.conversation.model import Segment  # noqa: E402
+from metagraph.research.motion_graph.search_evaluation import Setting, cut, evaluate  # noqa: E402
 from metagraph.speech.prosody import prosody  # noqa: E402
 from metagraph.synthesis.assemble import assemble  # noqa: E402
 from metagraph.synthesis.constraints import changes, heard  # noqa: E402
 from metagraph.synthesis.cooccurrence import speeds  # noqa: E402
 from metagraph.synthesis.graph import build  # noqa: E402
 from metagraph.synthesis.iconic_words import word_wish  # noqa: E402
-from metagraph.synthesis.path_quality import quality  # noqa: E402
 from metagraph.synthesis.prosody_costs import SpokenTake  # noqa: E402
-from metagraph.synthesis.relaxing import answer  # noqa: E402
-from metagraph.synthesis.search_evaluation import Setting, cut, evaluate  # noqa: E402
+from metagraph.synthesis.search.path_quality import quality  # noqa: E402
+from metagraph.synthesis.search.relaxing import answer  # noqa: E402
 from metagraph.synthesis.soft_constraints import SoftMaterial, SoftWish, soft_report  # noqa: E402
 from metagraph.synthesis.states import key_states, states_of  # noqa: E402
 from tests.synthesis.talking import VOICE, aloud, speech, talking  # noqa: E402

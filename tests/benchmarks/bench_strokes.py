@@ -19,9 +19,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from metagraph.formats.store import open_project
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Gesture, Go
-from metagraph.playback.extend_performance import answers, hear
-from metagraph.playback.phases import phases
 from metagraph.playback.plan import Plan
+from metagraph.playback.planning.extend_performance import answers, hear
+from metagraph.playback.timing.phases import phases
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / "sample.metagraph.yaml"
 BEGIN, LEAD, SENTENCES = 20.0, 0.5, 200

@@ -29,10 +29,10 @@ from metagraph.graph.model import LAYERS, Project  # noqa: E402
 from metagraph.motion import rotation  # noqa: E402
 from metagraph.motion.clip import Clip  # noqa: E402
 from metagraph.suggest.alike import Alike, Example  # noqa: E402
-from metagraph.suggest.compatibility import matrix  # noqa: E402
+from metagraph.suggest.jumps.compatibility import matrix  # noqa: E402
 from metagraph.suggest.motion_guess import guess  # noqa: E402
 from metagraph.suggest.propose import accept, examples_of, propose  # noqa: E402
-from metagraph.suggest.stances import discovered, distance, known  # noqa: E402
+from metagraph.suggest.stances.known import discovered, distance, known  # noqa: E402
 from metagraph.suggest.traits import Traits, traits_of  # noqa: E402
 
 SAMPLE = ROOT / "sample_clips" / "sample.metagraph.yaml"

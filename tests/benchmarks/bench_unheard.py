@@ -24,11 +24,11 @@ sys.path.insert(0, str(ROOT))
 import numpy as np  # noqa: E402
 from numpy.typing import NDArray  # noqa: E402
 
-from metagraph.generation.evaluation import Manner, generated, unseen  # noqa: E402
 from metagraph.generation.features import RATE, features  # noqa: E402
 from metagraph.generation.statistics import measures, mismatched, performance  # noqa: E402
 from metagraph.generation.stored import read_model  # noqa: E402
 from metagraph.generation.take_files import find_takes, read_speech, read_takes  # noqa: E402
+from metagraph.research.generation.evaluation import Manner, generated, unseen  # noqa: E402
 
 Array = NDArray[Any]
 

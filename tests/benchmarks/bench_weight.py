@@ -23,9 +23,9 @@ from metagraph.formats.store import open_project
 from metagraph.graph import anatomy, edits
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
-from metagraph.playback.foot_slides import SIDES, WINDOW, clip_speeds, feet_joints, slide_speeds
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
+from metagraph.playback.posing.foot_slides import SIDES, WINDOW, clip_speeds, feet_joints, slide_speeds
 from tests.posing import pose_at, weight_of
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / "sample.metagraph.yaml"

@@ -26,7 +26,7 @@ from metagraph.engines.runtimes.blender.metagraph_blender import glb, labels, li
 from metagraph.engines.targets import registry
 from metagraph.engines.targets.blender import ADDON
 from metagraph.engines.targets.runtimes import RUNTIMES
-from metagraph.formats.gltf import read_gltf_clips
+from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.formats.store import open_project, save_project
 from metagraph.graph.model import Project
 from metagraph.motion import rotation

@@ -24,8 +24,8 @@ from metagraph.engines.reading import read_export
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Gesture
-from metagraph.playback.extend_performance import hear
 from metagraph.playback.plan import Plan
+from metagraph.playback.planning.extend_performance import hear
 from tests.posing import pose_at
 
 STICK = Path(metagraph.__file__).parent / "engines" / "conformance" / "stick" / "stick.json"
@@ -116,7 +116,7 @@ def test_a_fault_of_the_planner_does_not_stop_the_game(
     character = Character(stick)
     plan = character.plan
     with monkeypatch.context() as broken:
-        broken.setattr("metagraph.playback.running_plan.hear", lambda *_: 1 // 0)
+        broken.setattr("metagraph.playback.planning.running_plan.hear", lambda *_: 1 // 0)
         ident = character.ask({"do": "nod"})
         character.update(1.0)
         assert character.answer(ident).state == "refused"

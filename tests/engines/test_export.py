@@ -29,7 +29,7 @@ from metagraph.engines.export_error import ExportError
 from metagraph.engines.export_rig import read_voices, voices_of
 from metagraph.engines.reading import read_export
 from metagraph.errors import FileError
-from metagraph.formats.gltf import read_character, read_gltf_clips
+from metagraph.formats.gltf.reader import read_character, read_gltf_clips
 from metagraph.formats.imports import gather, import_files
 from metagraph.formats.store import open_project, save_project
 from metagraph.graph import edits
@@ -38,10 +38,10 @@ from metagraph.graph.expand import connections, size
 from metagraph.graph.model import LAYERS, Markov, Project
 from metagraph.graph.requests import Line
 from metagraph.motion.skeleton import unique_names
-from metagraph.playback import choice, hashing, markov
-from metagraph.playback.layers import ease
 from metagraph.playback.life.voice import silent
 from metagraph.playback.planner import make_plan
+from metagraph.playback.planning import choice, hashing, markov
+from metagraph.playback.posing.layers import ease
 from sample_clips.make.conformance_projects import stick
 from tests.posing import pose_at
 from tests.projects import clip, projects

@@ -21,7 +21,7 @@ from tests.browsing import MODULES, Browser
 from tests.engines import cpp_program, csharp_runtime, godot_runtime
 from tests.engines.godot_runtime import needs_godot
 from tests.engines.web_tools_kept import kept_web_tools
-from tests.formats.test_gltf_packed import BODY, parts, rewritten
+from tests.formats.gltf.test_gltf_packed import BODY, parts, rewritten
 from tests.thorough import many
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -18,9 +18,9 @@ import pytest
 from metagraph.engines.reading import read_export
 from metagraph.graph.model import LAYERS
 from metagraph.graph.requests import request_from
-from metagraph.playback.extend_performance import hear, since
 from metagraph.playback.life.voice import voice_from_text
 from metagraph.playback.plan import Plan
+from metagraph.playback.planning.extend_performance import hear, since
 from tests.engines.cpp_program import MUTANTS, needs_compiler, ran
 from tests.engines.mutants import PLAYED, folders_to_try, share_of
 from tests.engines.requests_asked import ASKED, SENSELESS

@@ -16,9 +16,9 @@ from metagraph.engines.reading import read_export
 from metagraph.graph.model import LAYERS
 from metagraph.graph.requests import request_from
 from metagraph.motion import rotation
-from metagraph.playback.extend_performance import hear, since
 from metagraph.playback.life.voice import voice_from_text
 from metagraph.playback.plan import Plan
+from metagraph.playback.planning.extend_performance import hear, since
 from tests.engines.csharp_runtime import RUNTIME, STICK, Host, compiled, mono, needs_mono
 from tests.engines.mutants import PLAYED, share_of
 from tests.engines.requests_asked import ASKED, SENSELESS

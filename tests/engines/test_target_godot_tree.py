@@ -22,7 +22,7 @@ from metagraph.engines.export import stem_of
 from metagraph.engines.targets import godot_tree
 from metagraph.engines.targets.godot_tree import TARGETS, old_name, owned, paths_of
 from metagraph.engines.targets.target import ExportOrder
-from metagraph.formats.gltf import read_gltf_clips
+from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.graph import edits
 from metagraph.graph.anatomy import base_pose
 from metagraph.graph.expand import chain, ends_in

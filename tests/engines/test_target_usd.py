@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from metagraph.engines.targets import registry
-from metagraph.formats import usda
-from metagraph.formats.gltf import read_character, read_gltf_clips
-from metagraph.formats.usd_writer import joint_paths, write_usd
+from metagraph.formats.gltf.reader import read_character, read_gltf_clips
+from metagraph.formats.usd import usda
+from metagraph.formats.usd.writer import joint_paths, write_usd
 from metagraph.graph.edits import add_clips, add_stance, place, update_actions
 from metagraph.graph.model import Project
 from metagraph.motion import rotation

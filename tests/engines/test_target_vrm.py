@@ -14,7 +14,7 @@ from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets import registry
 from metagraph.engines.targets.vrm import META
 from metagraph.errors import FileError
-from metagraph.formats.gltf import read_character, read_gltf_clips
+from metagraph.formats.gltf.reader import read_character, read_gltf_clips
 from metagraph.graph.edits import add_clips, add_stance
 from metagraph.graph.model import Project
 from metagraph.motion import rotation

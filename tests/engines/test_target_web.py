@@ -17,8 +17,8 @@ from PIL import Image
 from metagraph.engines.reading import read_export
 from metagraph.engines.targets import registry, web
 from metagraph.graph.model import Project
-from metagraph.playback.extend_performance import hear
 from metagraph.playback.plan import Plan
+from metagraph.playback.planning.extend_performance import hear
 from tests.browsing import Browser
 from tests.engines.web_tools_kept import kept_web_tools
 from tests.posing import pose_at

@@ -21,15 +21,15 @@ from metagraph.engines.engine_machine import animations, machines
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets import registry
 from metagraph.engines.targets.target import Report
-from metagraph.formats.bvh import read_bvh
-from metagraph.formats.gltf import read_gltf_clips
+from metagraph.formats.bvh.file import read_bvh
+from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.graph import edits
 from metagraph.graph.anatomy import base_pose, roles
 from metagraph.graph.expand import chain, connections, ends_in
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.requests import Nod, Performance, Say
 from metagraph.motion import rotation
-from metagraph.playback.bml import read_bml
+from metagraph.playback.bml.reader import read_bml
 from metagraph.playback.planner import make_plan
 from tests.engines.test_export import gltf, khronos
 from tests.posing import pose_at

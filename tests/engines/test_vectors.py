@@ -19,9 +19,16 @@ from metagraph.engines.export import export
 from metagraph.engines.reading import read_export
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
-from metagraph.playback import choice, hashing, layers, markov, replan, sampling
 from metagraph.playback.life import evaluate, gaze, solve
 from metagraph.playback.planner import make_plan
+from metagraph.playback.planning import (
+    choice,
+    hashing,
+    markov,
+    replan,
+    sampling,
+)
+from metagraph.playback.posing import layers
 from sample_clips.make import conformance
 from sample_clips.make.conformance_projects import sparse
 from tests.engines.mutants import PLAYED, folders_to_try
@@ -195,7 +202,7 @@ def test_breaking_a_rule_fails_some_vector(rule: str, single: Path, monkeypatch:
     module, name, broken = MUTATIONS[rule]
     monkeypatch.setattr(module, name, broken)
     if rule == "how late a request may start":
-        monkeypatch.setattr("metagraph.playback.layer_planning.delay", broken)
+        monkeypatch.setattr("metagraph.playback.planning.layer_planning.delay", broken)
     for folder in folders_to_try(HINTS[rule], FOLDERS, single):
         project = read_export(folder / read(folder)["export"], resolved=True)
         if any(vectors.differences(project, case) for case in read(folder)["cases"]):

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from metagraph import programs
+from metagraph.common import programs
 from metagraph.engines.runtimes import __path__ as RUNTIMES  # noqa: N812
 from metagraph.engines.targets import registry, web, web_tools
 from metagraph.graph.model import Project

@@ -11,11 +11,11 @@ from typing import Any
 import msgspec
 import pytest
 
+from metagraph.common.file_names import folded
 from metagraph.engines.export import export
 from metagraph.engines.targets import placing, registry
 from metagraph.engines.targets.placing import RECORD, Staging
 from metagraph.errors import FileError
-from metagraph.file_names import folded
 from metagraph.formats.store import open_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from metagraph.formats.characters import held_meshes
-from metagraph.formats.gltf import read_character
-from metagraph.formats.gltf_writer import write_glb
+from metagraph.formats.gltf.reader import read_character
+from metagraph.formats.gltf.writer import write_glb
 from metagraph.formats.imports import import_files
 from metagraph.graph.model import Project
 from metagraph.motion.character_mesh import Character, Surface

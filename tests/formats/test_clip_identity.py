@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from metagraph.formats.clip_identity import DIGITS, with_clip_identity, without_clip_identity
-from metagraph.formats.data import from_data, to_data
+from metagraph.formats.project.data import from_data, to_data
 from metagraph.formats.store import encoded, from_text
 from metagraph.graph import edits
 from metagraph.graph.check import check

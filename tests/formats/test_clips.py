@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from metagraph.errors import FileError
-from metagraph.formats.bvh import write_bvh
+from metagraph.formats.bvh.file import write_bvh
 from metagraph.formats.clip_readers import clip_suffixes
 from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clips
-from metagraph.formats.gltf import write_glb
+from metagraph.formats.gltf.reader import write_glb
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton

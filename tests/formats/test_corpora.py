@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from metagraph.errors import FileError
-from metagraph.formats.bvh import write_bvh
+from metagraph.formats.bvh.file import write_bvh
 from metagraph.formats.corpora import Corpus, read_corpus
-from metagraph.graph.conversation import Conversation, heard_by
+from metagraph.graph.conversation.model import Conversation, heard_by
 from metagraph.synthesis.cooccurrence import table
 from tests.synthesis.talking import speech, talking
 from tests.wavs import wav

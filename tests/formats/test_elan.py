@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from metagraph.errors import FileError
 from metagraph.formats.elan import read_elan
-from metagraph.playback.annotation import Annotation, Interval
+from metagraph.playback.learning.annotation import Annotation, Interval
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / "annotation" / "conversation.eaf"
 

@@ -13,10 +13,10 @@ import pytest
 from msgspec import inspect
 
 from metagraph.errors import FileError
-from metagraph.formats.data import FORMAT, STRUCTS, to_data
-from metagraph.formats.fields import Data
+from metagraph.formats.project.data import FORMAT, STRUCTS, to_data
+from metagraph.formats.project.fields import Data
+from metagraph.formats.project.text import to_text
 from metagraph.formats.store import SUFFIX, encoded, from_text
-from metagraph.formats.text import to_text
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 

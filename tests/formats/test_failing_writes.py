@@ -14,8 +14,8 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
-from metagraph.formats.data import to_data
-from metagraph.formats.journal import Journal
+from metagraph.formats.project.data import to_data
+from metagraph.formats.project.journal import Journal
 from metagraph.formats.recovery import read_journal
 from metagraph.formats.store import SUFFIX, content_digest, encoded, read_project, save_project
 from metagraph.graph import edits

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from metagraph.formats.characters import CharacterFile
-from metagraph.formats.gltf_writer import write_glb
+from metagraph.formats.gltf.writer import write_glb
 from metagraph.formats.import_words import counted, remedies, said
 from metagraph.formats.imports import Imported, import_files
 from metagraph.graph.model import Project

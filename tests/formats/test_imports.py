@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from metagraph.formats.bvh import write_bvh
-from metagraph.formats.gltf import write_glb
+from metagraph.formats.bvh.file import write_bvh
+from metagraph.formats.gltf.reader import write_glb
 from metagraph.formats.imports import gather, import_files
 from metagraph.graph import edits
 from metagraph.graph.model import Project

@@ -11,16 +11,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from metagraph.formats.bvh import write_bvh
-from metagraph.formats.data import from_data, to_data
-from metagraph.formats.gltf import write_glb
+from metagraph.formats.bvh.file import write_bvh
+from metagraph.formats.gltf.reader import write_glb
 from metagraph.formats.imports import bring_over, import_files, strangers_of
-from metagraph.formats.journal import changes
-from metagraph.formats.replay import apply
+from metagraph.formats.project.data import from_data, to_data
+from metagraph.formats.project.journal import changes
+from metagraph.formats.project.replay import apply
 from metagraph.formats.store import open_project, relocate, save_project
 from metagraph.graph.check import check
+from metagraph.graph.editing.retargeting import Bringing
 from metagraph.graph.model import Project
-from metagraph.graph.project_retargeting import Bringing
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint, proposed

@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from metagraph.budgets import JOINTS, JOINTS_DEEP
+from metagraph.common.budgets import JOINTS, JOINTS_DEEP
 from metagraph.errors import FileError
 from metagraph.formats import elan
-from metagraph.formats.bvh import read_bvh
+from metagraph.formats.bvh.file import read_bvh
 from metagraph.formats.elan import read_elan
-from metagraph.formats.gltf import read_gltf_clips
-from metagraph.formats.transcripts_text import _BRACKETED
+from metagraph.formats.gltf.reader import read_gltf_clips
+from metagraph.formats.transcripts.text_files import _BRACKETED
 from metagraph.motion.roles import body_parts, find_roles, joint_sides
 from metagraph.motion.skeleton import Skeleton
 from metagraph.speech.sympathies import _LAUGHED

@@ -9,15 +9,15 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.formats.clips import find_clip_files, read_clips
-from metagraph.formats.gltf import morph_targets
+from metagraph.formats.gltf.reader import morph_targets
 from metagraph.formats.imports import import_files
 from metagraph.formats.live_link_face import TURNS, read_live_link
 from metagraph.formats.store import open_project, save_project
 from metagraph.graph import edits
-from metagraph.graph.arkit import ARKIT
-from metagraph.graph.face import with_morphs
-from metagraph.graph.face_curves import worn
-from metagraph.graph.face_takes import face_joints
+from metagraph.graph.face.arkit import ARKIT
+from metagraph.graph.face.curves import worn
+from metagraph.graph.face.rig import with_morphs
+from metagraph.graph.face.takes import face_joints
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.playback.planner import make_plan

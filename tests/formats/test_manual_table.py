@@ -6,14 +6,14 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.formats import manual_table as t
-from metagraph.formats.data import from_data, to_data
-from metagraph.formats.fields import DataError
-from metagraph.formats.journal import changes
-from metagraph.formats.replay import apply
-from metagraph.graph import manual_edits as m
-from metagraph.graph import manual_groups as g
-from metagraph.graph.manual import ANY, links_expanded
-from tests.graph.test_manual import linked
+from metagraph.formats.project.data import from_data, to_data
+from metagraph.formats.project.fields import DataError
+from metagraph.formats.project.journal import changes
+from metagraph.formats.project.replay import apply
+from metagraph.graph.manual import edits as m
+from metagraph.graph.manual import groups as g
+from metagraph.graph.manual.machine import ANY, links_expanded
+from tests.graph.manual.test_machine import linked
 
 
 def drawn(text: str):

@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from metagraph.common.wording import told
 from metagraph.errors import FileError
 from metagraph.formats import motion_cache, store
 from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.motion_cache import finish, read_or_kept
 from metagraph.motion.clip import Clip, Repair
-from metagraph.wording import told
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips"
 CLIP = sorted((SAMPLE / "clips").glob("*.glb"))[0]

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from metagraph.formats.atomic import write_atomically
-from metagraph.formats.journal import Journal
 from metagraph.formats.locking import Lock, new_owner
 from metagraph.formats.new_file import Access, access_of, open_new
+from metagraph.formats.project.journal import Journal
 from metagraph.formats.store import SUFFIX, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project

@@ -12,14 +12,15 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from metagraph.formats import recovery
-from metagraph.formats.data import FORMAT, from_data, to_data
-from metagraph.formats.fields import Data
-from metagraph.formats.journal import Journal, changes, journal_path
+from metagraph.formats.project.data import FORMAT, from_data, to_data
+from metagraph.formats.project.fields import Data
+from metagraph.formats.project.journal import Journal, changes, journal_path
+from metagraph.formats.project.replay import apply
+from metagraph.formats.project.text import read
 from metagraph.formats.recovery import read_journal
-from metagraph.formats.replay import apply
 from metagraph.formats.store import SUFFIX, read_project, save_project
-from metagraph.formats.text import read
-from metagraph.graph import conversation_edits, edits
+from metagraph.graph import edits
+from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.model import Project
 from tests.formats.test_every_field import whole
 from tests.projects import clip, histories

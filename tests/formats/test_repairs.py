@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from metagraph.formats.bvh import read_bvh, write_bvh
+from metagraph.formats.bvh.file import read_bvh, write_bvh
 from metagraph.formats.clips import read_clips
-from metagraph.formats.data import from_data, to_data
-from metagraph.formats.fields import DataError
-from metagraph.formats.gltf import write_glb
+from metagraph.formats.gltf.reader import write_glb
 from metagraph.formats.imports import import_files
+from metagraph.formats.project.data import from_data, to_data
+from metagraph.formats.project.fields import DataError
 from metagraph.formats.repairs import Repaired, repairs_of, reread
 from metagraph.formats.store import open_project, save_project
 from metagraph.formats.takes import BIND_POSE, NAME, ONE_FRAME, UNIT, UP

@@ -10,10 +10,10 @@ import pytest
 
 from metagraph.engines.export import write
 from metagraph.formats.clips import read_clips
-from metagraph.formats.data import DataError, from_data, to_data
+from metagraph.formats.project.data import DataError, from_data, to_data
 from metagraph.formats.store import open_project, save_project
 from metagraph.graph import edits
-from metagraph.graph.retiming import set_retime
+from metagraph.graph.editing.retiming import set_retime
 from metagraph.motion.retime import Hold, Retime
 
 CLIPS = Path(__file__).resolve().parents[2] / "sample_clips" / "clips"
@@ -85,7 +85,7 @@ def test_a_plain_clip_says_nothing_of_it(saved):
 
 
 def test_hands_that_are_kept_are_kept_in_the_file(saved, tmp_path):
-    from metagraph.graph.retiming import keep_hand
+    from metagraph.graph.editing.retiming import keep_hand
 
     project, _, clip = saved
     project = keep_hand(project, clip, "right", 0.4, 0.9)

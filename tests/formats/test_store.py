@@ -17,10 +17,10 @@ from hypothesis import strategies as st
 from metagraph.errors import FileError
 from metagraph.formats import store
 from metagraph.formats.atomic import write_atomically
-from metagraph.formats.bvh import write_bvh
-from metagraph.formats.data import to_data
-from metagraph.formats.gltf import write_glb
+from metagraph.formats.bvh.file import write_bvh
+from metagraph.formats.gltf.reader import write_glb
 from metagraph.formats.imports import import_files
+from metagraph.formats.project.data import to_data
 from metagraph.formats.store import (
     SUFFIX,
     absolute,

@@ -21,9 +21,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from metagraph import files
+from metagraph.common import files
 from metagraph.errors import FileError
-from metagraph.formats import fbx_readers
+from metagraph.formats.fbx import processes as fbx_readers
 from tests.fuzz.seed_files import BML, ascii_fbx, model_file, spoilt_archive
 from tests.fuzz.spoiling import JSON, NUMBERS, XML, spoilt_glb, spoilt_json, spoilt_words
 
@@ -79,8 +79,8 @@ _LIVE_LINK = b"Timecode,BlendShapeCount,JawOpen,EyeLookOutLeft,HeadYaw,LeftEyeYa
 
 def _clip_seeds(ending: str) -> Callable[[], dict[str, bytes]]:
     def make() -> dict[str, bytes]:
-        from metagraph.formats.bvh import write_bvh
-        from metagraph.formats.gltf import write_glb
+        from metagraph.formats.bvh.file import write_bvh
+        from metagraph.formats.gltf.reader import write_glb
         from tests.fuzz.test_clip_files import sample
 
         clip, character = sample()
@@ -100,7 +100,7 @@ def _fixed(**seeds: bytes) -> Callable[[], dict[str, bytes]]:
 
 
 def _talks() -> dict[str, bytes]:
-    from metagraph.formats.conversation_writers import write_elan, write_json, write_textgrid
+    from metagraph.formats.conversations.writers import write_elan, write_json, write_textgrid
     from tests.fuzz import test_transcripts as talks
 
     with tempfile.TemporaryDirectory() as name:
@@ -137,8 +137,8 @@ def _wav() -> dict[str, bytes]:
 
 
 def _project() -> dict[str, bytes]:
-    from metagraph.formats.data import to_data
-    from metagraph.formats.text import to_text
+    from metagraph.formats.project.data import to_data
+    from metagraph.formats.project.text import to_text
     from tests.conftest import Toy
 
     return {"a.metagraph.yaml": to_text(to_data(Toy().project())).encode()}
@@ -155,7 +155,7 @@ def _export() -> dict[str, bytes]:
 def _journal() -> dict[str, bytes]:
     from dataclasses import replace
 
-    from metagraph.formats.journal import Journal
+    from metagraph.formats.project.journal import Journal
     from tests.conftest import Toy
 
     with tempfile.TemporaryDirectory() as name:
@@ -168,7 +168,7 @@ def _journal() -> dict[str, bytes]:
 
 
 def _log() -> dict[str, bytes]:
-    from metagraph.study.log import Writer
+    from metagraph.research.study.logs.log import Writer
 
     with tempfile.TemporaryDirectory() as name:
         log = Writer(Path(name) / "log.jsonl")
@@ -190,7 +190,7 @@ def _answers() -> dict[str, bytes]:
 
 
 def _perceive() -> dict[str, bytes]:
-    from tests.study.perceive.perceive_makers import CHOICE, RATING, text
+    from tests.research.study.perceive.perceive_makers import CHOICE, RATING, text
 
     more = "compare: [[all, deaf]]\nchecks: {told: 2, same: 1}\nvideo: {width: 64}\n"
     return {"perceive.yaml": text(asked=CHOICE + RATING, more=more).encode()}
@@ -205,27 +205,27 @@ def _keypoints() -> dict[str, bytes]:
 def _readers() -> dict[str, Fuzzed]:
     from app.features.lines.line_files import read_lines
     from app.project.pattern_files import read_patterns
+    from metagraph.common.pictures import picture_size
     from metagraph.engines.reading import read_export
     from metagraph.formats.clips import read_clips
     from metagraph.formats.elan import read_elan
-    from metagraph.formats.fbx import read_fbx_clips
-    from metagraph.formats.gltf import has_skinned_mesh, morph_targets, read_character, vrm_roles
-    from metagraph.formats.keypoints import read_keypoints
+    from metagraph.formats.fbx.reader import read_fbx_clips
+    from metagraph.formats.gltf.reader import has_skinned_mesh, morph_targets, read_character, vrm_roles
+    from metagraph.formats.keypoints.reader import read_keypoints
     from metagraph.formats.language_files import read_pack
     from metagraph.formats.live_link_face import read_live_link
     from metagraph.formats.recovery import read_journal
     from metagraph.formats.store import read_project
-    from metagraph.formats.transcripts import read_transcript
+    from metagraph.formats.transcripts.reader import read_transcript
     from metagraph.generation.stored import read_card, read_model
     from metagraph.graph.requests import RequestError
     from metagraph.live.osc_bytes import OscError, messages_of, padded
-    from metagraph.pictures import picture_size
-    from metagraph.playback.bml import read_bml
+    from metagraph.playback.bml.reader import read_bml
+    from metagraph.research.study.logs.log import read as read_log
+    from metagraph.research.study.perceive.answers import read_answers
+    from metagraph.research.study.perceive.perceive_plan import read_plan
+    from metagraph.research.study.study_plan import read_study
     from metagraph.speech.lines import read_voice, voice_from_phones
-    from metagraph.study.log import read as read_log
-    from metagraph.study.perceive.answers import read_answers
-    from metagraph.study.perceive.perceive_plan import read_plan
-    from metagraph.study.study_plan import read_study
 
     def drawn(path: Path) -> None:
         for read in (read_character, vrm_roles, morph_targets, has_skinned_mesh):

@@ -15,15 +15,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from metagraph import budgets
+from metagraph.common import budgets
+from metagraph.common.pictures import picture_size
 from metagraph.errors import FileError
 from metagraph.formats.clips import read_clips
 from metagraph.formats.elan import read_elan
-from metagraph.formats.gltf import read_character, read_gltf_clips, vrm_roles
+from metagraph.formats.gltf.reader import read_character, read_gltf_clips, vrm_roles
 from metagraph.formats.imports import import_files
-from metagraph.formats.keypoints import read_keypoints
+from metagraph.formats.keypoints.reader import read_keypoints
 from metagraph.graph.model import Project
-from metagraph.pictures import picture_size
 from metagraph.speech.lines import read_voice, voice_from_phones
 from tests.fuzz.spoiling import packed
 from tests.wavs import wav
@@ -267,7 +267,7 @@ def test_long_chains_of_annotations_are_read_in_their_length_and_not_its_square(
 def test_depth_is_refused_by_every_reader_of_json(tmp_path: Path, inner: str) -> None:
     from app.project.pattern_files import read_patterns
     from metagraph.engines.reading import read_export
-    from metagraph.formats.transcripts import read_transcript
+    from metagraph.formats.transcripts.reader import read_transcript
 
     (tmp_path / "a.json").write_text(inner)
     for read in (read_transcript, read_keypoints, read_export, read_patterns):

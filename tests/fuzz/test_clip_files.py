@@ -19,9 +19,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from metagraph.errors import FileError
-from metagraph.formats.bvh import read_bvh, write_bvh
+from metagraph.formats.bvh.file import read_bvh, write_bvh
 from metagraph.formats.clips import read_clips
-from metagraph.formats.gltf import read_character, read_gltf_clips, vrm_roles, write_glb
+from metagraph.formats.gltf.reader import read_character, read_gltf_clips, vrm_roles, write_glb
 from metagraph.motion import rotation
 from metagraph.motion.character_mesh import Character, Material, Surface
 from metagraph.motion.clip import Clip
@@ -270,7 +270,7 @@ def test_takes_that_are_too_long_together_are_refused_before_any_is_made(
     def made(*_: Any) -> None:
         raise AssertionError("a take was made")
 
-    monkeypatch.setattr("metagraph.formats.gltf_clips._clips", made)
+    monkeypatch.setattr("metagraph.formats.gltf.clips._clips", made)
     body = np.array([0, 21000, *[0, 0, 0, 1] * 2], "<f4").tobytes()
     document = hostile_documents()["many takes of six hours"]
     document["buffers"] = [{"byteLength": len(body)}]

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from metagraph.formats import fbx_readers
+from metagraph.formats.fbx import processes as fbx_readers
 from tests.fuzz import readers
 from tests.thorough import THOROUGH
 

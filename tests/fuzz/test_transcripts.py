@@ -12,9 +12,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from metagraph.errors import FileError
-from metagraph.formats.conversation_writers import write_elan, write_json, write_textgrid
-from metagraph.formats.transcripts import read_transcript
-from metagraph.graph.conversation import Conversation, Segment, Side, Word
+from metagraph.formats.conversations.writers import write_elan, write_json, write_textgrid
+from metagraph.formats.transcripts.reader import read_transcript
+from metagraph.graph.conversation.model import Conversation, Segment, Side, Word
 
 TALK = Conversation(
     name="t",

@@ -24,7 +24,7 @@ from metagraph.generation.networks import (
 )
 from metagraph.generation.poses import PoseRig, rig_of
 from metagraph.generation.stored import Model, ModelCard, skeleton_card, versions
-from metagraph.graph.conversation import Conversation, Segment, Side
+from metagraph.graph.conversation.model import Conversation, Segment, Side
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton

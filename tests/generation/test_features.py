@@ -27,7 +27,7 @@ from metagraph.generation.features import (
     with_edges,
 )
 from metagraph.generation.poses import Scale
-from metagraph.graph.conversation import Conversation, Segment, Side
+from metagraph.graph.conversation.model import Conversation, Segment, Side
 from tests.generation.makers import babble
 
 SOUND = np.stack([babble(1.3, 1), babble(1.3, 2)])

@@ -10,10 +10,10 @@ import pytest
 import soundfile
 
 from metagraph.errors import FileError
-from metagraph.formats.bvh import write_bvh
+from metagraph.formats.bvh.file import write_bvh
 from metagraph.formats.clips import digest
-from metagraph.formats.conversation_writers import write_json
-from metagraph.formats.gltf_writer import write_glb
+from metagraph.formats.conversations.writers import write_json
+from metagraph.formats.gltf.writer import write_glb
 from metagraph.generation.features import RATE
 from metagraph.generation.take_files import (
     UNLICENSED,

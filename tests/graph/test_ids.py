@@ -9,9 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.graph import edits, manual_edits, manual_groups, performance_edits
+from metagraph.graph import edits
 from metagraph.graph import timeline as t
+from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.ids import derived_id, new_id
+from metagraph.graph.manual import edits as manual_edits
+from metagraph.graph.manual import groups as manual_groups
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Nod, Performance
 from tests.projects import clip

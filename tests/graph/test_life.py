@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.formats.data import from_data, struct_data, struct_from, to_data
+from metagraph.formats.project.data import from_data, struct_data, struct_from, to_data
 from metagraph.graph.life import (
     DIALS,
     MANNER_DIALS,

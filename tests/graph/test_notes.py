@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from metagraph.formats.data import from_data, to_data
-from metagraph.formats.journal import changes
+from metagraph.formats.project.data import from_data, to_data
+from metagraph.formats.project.journal import changes
+from metagraph.formats.project.text import to_text
 from metagraph.formats.store import from_text
-from metagraph.formats.text import to_text
 from metagraph.graph import edits
-from metagraph.graph.differences import differences
+from metagraph.graph.editing.differences import differences
 from metagraph.graph.model import Project
 from metagraph.graph.notes import PROJECT, set_note
 

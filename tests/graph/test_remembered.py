@@ -9,10 +9,10 @@ from weakref import ref
 import pytest
 
 from metagraph.graph import edits
-from metagraph.graph.face import find_face
+from metagraph.graph.face.rig import find_face
 from metagraph.graph.model import Project
 from metagraph.graph.remembered import Remembered
-from metagraph.playback.phases import phases
+from metagraph.playback.timing.phases import phases
 from tests.posing import body_of, rig
 
 

@@ -6,9 +6,9 @@ import json
 
 import pytest
 
-from metagraph.graph import performance_edits as edits
 from metagraph.graph import requests as a
 from metagraph.graph.edit_error import EditError
+from metagraph.graph.editing import performances as edits
 from metagraph.graph.request_text import holds_requests, paste_requests, request_text
 
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from metagraph.formats.data import from_data, to_data
-from metagraph.formats.journal import changes
-from metagraph.graph import performance_edits as edits
+from metagraph.formats.project.data import from_data, to_data
+from metagraph.formats.project.journal import changes
 from metagraph.graph import requests as a
 from metagraph.graph import timeline as t
 from metagraph.graph.edit_error import EditError
+from metagraph.graph.editing import performances as edits
 from metagraph.graph.model import Project
 
 pytestmark = pytest.mark.usefixtures("numbered_ids")

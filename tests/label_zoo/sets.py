@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from metagraph.formats.bvh import write_bvh
-from metagraph.formats.gltf_writer import write_glb
+from metagraph.formats.bvh.file import write_bvh
+from metagraph.formats.gltf.writer import write_glb
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip

@@ -11,8 +11,8 @@ from metagraph.graph import requests as a
 from metagraph.graph.model import Project
 from metagraph.live.answers import find, owner_of
 from metagraph.live.messages import HeardMessage, read
-from metagraph.playback.extend_performance import answer
-from metagraph.playback.running_plan import perform
+from metagraph.playback.planning.extend_performance import answer
+from metagraph.playback.planning.running_plan import perform
 from tests.live.traffic import valid
 
 

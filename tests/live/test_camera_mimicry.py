@@ -12,7 +12,7 @@ from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Project
 from metagraph.live.live_session import LiveSession
 from metagraph.live.messages import Reply, encode
-from metagraph.playback.running_plan import perform
+from metagraph.playback.planning.running_plan import perform
 from sample_clips.make.sample_keypoints import View, played, seen
 
 TICK = 1 / 60

@@ -19,7 +19,7 @@ from metagraph.live.kept_motion import made_again, read_kept, write_kept
 from metagraph.live.live_session import LiveSession
 from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.life.track import Speech
-from metagraph.synthesis.extending import FADE, replayed
+from metagraph.synthesis.extending.path import FADE, replayed
 from tests.live.test_heard_voice import voice
 from tests.posing import pose_at
 from tests.synthesis.talking import talkers, talkers_graph

@@ -12,7 +12,7 @@ from metagraph.speech.clauses import by_sound
 from metagraph.speech.pitch import pitch
 from metagraph.speech.sound import hear, read_sound
 from metagraph.speech.soundtrack import resampled
-from metagraph.synthesis.speech_so_far import SpeechNews
+from metagraph.synthesis.extending.speech_so_far import SpeechNews
 
 REAL = Path(__file__).resolve().parents[3] / "shared" / "data" / "praatio-speech"
 

@@ -9,7 +9,7 @@ import pytest
 from metagraph.errors import FileError
 from metagraph.live.graph_motion import KeptMotion
 from metagraph.live.kept_motion import read_kept, write_kept
-from metagraph.synthesis.speech_so_far import SpeechNews
+from metagraph.synthesis.extending.speech_so_far import SpeechNews
 
 ONE = KeptMotion(
     graph="takes",

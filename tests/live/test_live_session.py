@@ -20,7 +20,7 @@ from metagraph.live import limits
 from metagraph.live.live_session import LiveSession
 from metagraph.live.messages import Event, Reply, encode
 from metagraph.live.tick_work import Out
-from metagraph.playback.running_plan import perform
+from metagraph.playback.planning.running_plan import perform
 from tests.live.traffic import mixed, valid
 from tests.posing import pose_at
 from tests.thorough import many

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from metagraph.errors import FileError
-from metagraph.graph.conversation import Segment
+from metagraph.graph.conversation.model import Segment
 from metagraph.graph.model import Project
 from metagraph.live.graph_motion import GraphMotion, LiveGraph
 from metagraph.live.live_session import LiveSession

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from metagraph.graph import requests as a
+from metagraph.graph.editing.performances import add_performance
 from metagraph.graph.model import LAYERS, Project
-from metagraph.graph.performance_edits import add_performance
 from metagraph.mimicry.keypoint_layouts import POINTS, Keypoints
 from metagraph.mimicry.performing import goals, mimic_performance, placed
-from metagraph.playback.extend_performance import answer
-from metagraph.playback.running_plan import perform
+from metagraph.playback.planning.extend_performance import answer
+from metagraph.playback.planning.running_plan import perform
 from sample_clips.make.sample_keypoints import SECONDS, View, played, seen, truth
 from tests.mimicry import people
 

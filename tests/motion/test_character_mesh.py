@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from metagraph.formats.gltf import read_character
+from metagraph.formats.gltf.reader import read_character
 from metagraph.motion import rotation
 from metagraph.motion.character_mesh import Character, Surface, no_character
 from metagraph.motion.skeleton import Skeleton

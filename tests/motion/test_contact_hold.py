@@ -8,7 +8,7 @@ import pytest
 from metagraph.graph import anatomy, edits
 from metagraph.graph.clip_source import source_of
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.retiming import keep_hand
+from metagraph.graph.editing.retiming import keep_hand
 from metagraph.motion.contact_hold import Contact, held
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from metagraph.formats.gltf import read_gltf_clips
+from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.motion.features import pose_distance
 from metagraph.motion.rig_controls import rig_controls
 from metagraph.motion.skeleton import Pose, Skeleton

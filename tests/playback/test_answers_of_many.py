@@ -7,8 +7,8 @@ from typing import Any
 
 from metagraph.graph import requests as a
 from metagraph.graph.model import Project
-from metagraph.playback.extend_performance import answer, answers
-from metagraph.playback.running_plan import perform
+from metagraph.playback.planning.extend_performance import answer, answers
+from metagraph.playback.planning.running_plan import perform
 
 
 class Counted(tuple[Any, ...]):

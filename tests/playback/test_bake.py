@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from metagraph.formats.bvh import read_bvh, write_bvh
-from metagraph.formats.gltf import read_gltf_clips, write_glb
+from metagraph.formats.bvh.file import read_bvh, write_bvh
+from metagraph.formats.gltf.reader import read_gltf_clips, write_glb
 from metagraph.formats.store import open_project
 from metagraph.graph.model import Project
 from metagraph.playback.bake import bake

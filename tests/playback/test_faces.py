@@ -2,7 +2,7 @@ import numpy as np
 
 from app.project.files import SAMPLE
 from app.project.opening import open_whole
-from metagraph.playback.running_plan import asks_of, perform
+from metagraph.playback.planning.running_plan import asks_of, perform
 from tests.posing import faces_at, morphs_at
 
 

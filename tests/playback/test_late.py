@@ -9,10 +9,10 @@ import pytest
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Gesture, Go, Play, request_from
-from metagraph.playback.extend_performance import answers, hear
-from metagraph.playback.phases import phases
 from metagraph.playback.plan import Cue, MetaRequest, Plan, Report
 from metagraph.playback.planner import make_plan
+from metagraph.playback.planning.extend_performance import answers, hear
+from metagraph.playback.timing.phases import phases
 
 
 def stroke_of(project: Project, cue: Cue) -> float:

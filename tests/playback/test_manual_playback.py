@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from metagraph.graph import edits
-from metagraph.graph import manual_edits as m
-from metagraph.graph.manual import ANY
+from metagraph.graph.manual import edits as m
+from metagraph.graph.manual.machine import ANY
 from metagraph.graph.model import PARTS, Life, Project
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose

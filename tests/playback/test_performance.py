@@ -13,11 +13,11 @@ import pytest
 
 from metagraph.graph.model import LAYERS, Action, Layer, Project
 from metagraph.motion import rotation
-from metagraph.playback import sampling
-from metagraph.playback.mood import Mood
 from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.sampling import Performer
+from metagraph.playback.planning import sampling
+from metagraph.playback.planning.mood import Mood
+from metagraph.playback.planning.sampling import Performer
 from tests.posing import pose_at, rig
 
 LENGTH = 600.0

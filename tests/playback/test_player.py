@@ -14,9 +14,9 @@ from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, PARTS, Project
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.layers import cue_weight, ease, keep_to, loop_seconds
 from metagraph.playback.plan import LayerPlan, MetaRequest, Plan, Rest
 from metagraph.playback.planner import make_plan
+from metagraph.playback.posing.layers import cue_weight, ease, keep_to, loop_seconds
 from tests.posing import morphs_at, pose_at
 
 pytestmark = pytest.mark.usefixtures("numbered_ids")

@@ -15,9 +15,9 @@ from hypothesis import strategies as st
 
 from metagraph.graph import edits
 from metagraph.graph.model import Project
-from metagraph.playback.phases import phases
 from metagraph.playback.plan import Cue, LayerPlan, MetaRequest, Plan
 from metagraph.playback.planner import extend, make_plan
+from metagraph.playback.timing.phases import phases
 from tests.posing import pose_at
 
 

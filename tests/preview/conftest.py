@@ -29,7 +29,7 @@ def offscreen() -> Iterator[Offscreen]:
 
 @pytest.fixture(scope="session")
 def mannequin() -> Character:
-    from metagraph.formats.gltf import read_character
+    from metagraph.formats.gltf.reader import read_character
 
     return read_character(Path(__file__).parents[2] / "sample_clips" / "mannequin.glb")
 

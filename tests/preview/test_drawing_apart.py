@@ -8,7 +8,7 @@ import time
 import numpy as np
 import pytest
 
-from metagraph.child_channel import Child
+from metagraph.common.child_channel import Child
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from preview import drawing_apart

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import sample_clips
-from metagraph.formats.gltf import read_character, read_gltf_clips
+from metagraph.formats.gltf.reader import read_character, read_gltf_clips
 from metagraph.motion import rotation
 from metagraph.motion.character_mesh import Character, Material, Surface, bound
 from metagraph.motion.skeleton import Pose, Skeleton

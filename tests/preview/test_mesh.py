@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 import sample_clips
-from metagraph.formats.gltf import read_character
+from metagraph.formats.gltf.reader import read_character
 from preview.figure import SkinnedFigure
 from preview.mesh import VERTEX, Mesh, arranged, pieces
 

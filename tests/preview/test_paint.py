@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import sample_clips
-from metagraph.formats.gltf import read_character
+from metagraph.formats.gltf.reader import read_character
 from preview import gpu
 from preview.camera import whole_figure
 from preview.figure import SkinnedFigure

@@ -9,7 +9,7 @@ import moderngl
 import numpy as np
 import pytest
 
-from metagraph.formats.gltf import read_character
+from metagraph.formats.gltf.reader import read_character
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from preview import renderer

@@ -17,13 +17,14 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from metagraph.errors import FileError
-from metagraph.formats.data import to_data
-from metagraph.formats.journal import Journal
 from metagraph.formats.locking import new_owner
+from metagraph.formats.project.data import to_data
+from metagraph.formats.project.journal import Journal
 from metagraph.formats.recovery import Left, read_journal
 from metagraph.formats.store import SUFFIX, content_digest, encoded, save_project
-from metagraph.graph import conversation_edits, edits
-from metagraph.graph.conversation import Conversation, Segment, Side, Word
+from metagraph.graph import edits
+from metagraph.graph.conversation import edits as conversation_edits
+from metagraph.graph.conversation.model import Conversation, Segment, Side, Word
 from metagraph.graph.model import Project
 from sample_clips.make.numbered_ids import numbered_ids
 from tests.projects import clip

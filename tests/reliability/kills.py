@@ -32,7 +32,7 @@ from app.project.unsaved import not_steps  # noqa: E402
 from metagraph.engines.export import export  # noqa: E402
 from metagraph.engines.reading import read_export  # noqa: E402
 from metagraph.formats.atomic import sweep  # noqa: E402
-from metagraph.formats.bvh import write_bvh  # noqa: E402
+from metagraph.formats.bvh.file import write_bvh  # noqa: E402
 from metagraph.formats.imports import import_files  # noqa: E402
 from metagraph.formats.recovery import Left, left_journals, read_journal  # noqa: E402
 from metagraph.formats.store import SUFFIX, open_project, read_project, save_project  # noqa: E402

@@ -34,12 +34,12 @@ HELPERS = """
 import queue, sys, time
 from pathlib import Path
 from metagraph import programs
-from metagraph.child_channel import Child
+from metagraph.common.child_channel import Child
 from metagraph.live.relay import Relay
 from metagraph.live.server import Options
 
 done = {}
-for module in ("app.stage.picture_process", "metagraph.formats.fbx_child", "metagraph.generation.training",
+for module in ("app.stage.picture_process", "metagraph.formats.fbx.child", "metagraph.generation.training",
                "preview.drawing_child", "metagraph.live.relay_child"):
     done[module] = programs.run(programs.python(module), 100)
 relay = Relay(Options(port=0, osc=None))

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from metagraph.engines.export import export
-from metagraph.formats.gltf import read_character
-from metagraph.graph.arkit import ARKIT
+from metagraph.formats.gltf.reader import read_character
 from metagraph.graph.edits import add_clips, add_stance
-from metagraph.graph.face import LIDS, find_face
+from metagraph.graph.face.arkit import ARKIT
+from metagraph.graph.face.rig import LIDS, find_face
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 from sample_clips.make.looks import LOOKS

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from metagraph.formats.data import struct_data
+from metagraph.formats.project.data import struct_data
 from metagraph.speech.lines import read_voice
 from metagraph.speech.phones import pieces_of
 from metagraph.speech.sound import read_sound

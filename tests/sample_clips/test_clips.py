@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from metagraph.formats.gltf import read_gltf_clips
+from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from sample_clips.make.catalogue import BASE, RECIPES, Entry, catalogue

@@ -6,9 +6,9 @@ import pytest
 
 from metagraph.formats.store import open_project, read_project
 from metagraph.graph.check import check
-from metagraph.study.sitting import phases
-from metagraph.study.study_plan import read_study
-from metagraph.study.task_projects import make
+from metagraph.research.study.plan.task_projects import make
+from metagraph.research.study.sitting import phases
+from metagraph.research.study.study_plan import read_study
 from sample_clips.make.study import FOLDER, TASKS, text
 
 

@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from metagraph.formats.keypoints import read_keypoints
+from metagraph.formats.keypoints.reader import read_keypoints
 from metagraph.graph.model import LAYERS, Project
 from metagraph.mimicry.keypoint_layouts import LAYOUTS
 from metagraph.mimicry.mimic import Mimic

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from metagraph.formats.gltf import read_character
-from metagraph.graph.face_names import VISEMES, find_morphs
+from metagraph.formats.gltf.reader import read_character
+from metagraph.graph.face.names import VISEMES, find_morphs
 from metagraph.motion.character_mesh import no_character
 from sample_clips.make import face_targets
 from sample_clips.make.build import built

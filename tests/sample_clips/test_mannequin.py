@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from metagraph.formats.gltf import read_character
+from metagraph.formats.gltf.reader import read_character
 from metagraph.motion import rotation
 from sample_clips.make import mannequin, sculpt, shapes
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton

@@ -8,15 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from metagraph.formats.gltf import read_gltf_clips
+from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.formats.store import open_project
 from metagraph.graph.model import Project
 from metagraph.graph.seats import seat_of
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.playback.contacts import depths
 from metagraph.playback.plan import MetaRequest
 from metagraph.playback.planner import make_plan
+from metagraph.playback.posing.contacts import depths
 from sample_clips.make.catalogue import RECIPES, SEATED, catalogue
 from sample_clips.make.mannequin_rig import REACH, REST, SKELETON, at
 from sample_clips.make.measure import Measures, measure

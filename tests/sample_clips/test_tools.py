@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from metagraph.formats.gltf import read_gltf_clips
+from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.motion import rotation
-from metagraph.playback.contacts import depths
+from metagraph.playback.posing.contacts import depths
 from sample_clips.make import before_after, ik, key_poses, motion_tracks, secondary
 from sample_clips.make.hands import SHAPES, finger_rotations
 from sample_clips.make.mannequin_rig import REST, SIDES, SKELETON, at

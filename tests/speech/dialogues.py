@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from metagraph.graph.conversation import Segment, Word
+from metagraph.graph.conversation.model import Segment, Word
 from metagraph.graph.vocabulary import is_unspaced
 from tests.speech import talk
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 
-from metagraph.graph.conversation import Conversation, Segment, Side
+from metagraph.graph.conversation.model import Conversation, Segment, Side
 from sample_clips.make.talk import SpeakingVoice
 from tests.speech.talk import Talk, Turn, speak
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.graph.conversation import EVERYBODY, Conversation, Segment, Side
+from metagraph.graph.conversation.model import EVERYBODY, Conversation, Segment, Side
 from metagraph.speech.addressing import floor, roles_of, turns_of
 from tests.speech.group import group, made_up, said
 

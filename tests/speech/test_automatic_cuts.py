@@ -7,7 +7,7 @@ from itertools import pairwise
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.graph.conversation import Conversation, Segment, Side
+from metagraph.graph.conversation.model import Conversation, Segment, Side
 from metagraph.graph.timeline import Cut, with_cut
 from metagraph.speech import automatic_cuts as c
 

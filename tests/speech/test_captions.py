@@ -7,7 +7,7 @@ from itertools import pairwise
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.graph.conversation import Conversation, Side, Word
+from metagraph.graph.conversation.model import Conversation, Side, Word
 from metagraph.graph.requests import Line
 from metagraph.playback.life.items import Speech
 from metagraph.playback.life.line_timing import LineTiming, SpokenWord

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.graph.conversation import HESITATIONS, RESPONSES, Segment, Side, Word
+from metagraph.graph.conversation.model import HESITATIONS, RESPONSES, Segment, Side, Word
 from metagraph.graph.vocabulary import Vocabulary, tokens
 from metagraph.speech.clauses import in_order, segments
 from metagraph.speech.pitch import Pitch, pitch

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from metagraph.formats.conversation_languages import Speaking
-from metagraph.formats.conversations import Read, read_conversation
-from metagraph.graph.conversation import Segment, Word
+from metagraph.formats.conversations.files import Read, read_conversation
+from metagraph.formats.conversations.languages import Speaking
+from metagraph.graph.conversation.model import Segment, Word
 from metagraph.speech.clauses import by_sound, segments
 from metagraph.speech.language_packs import Language, languages
 from metagraph.speech.pitch import Pitch

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from metagraph.graph.conversation import Segment
+from metagraph.graph.conversation.model import Segment
 from metagraph.graph.model import Project
 from metagraph.playback.plan import Plan
 from metagraph.speech.delivered import delivered

@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.graph.conversation import SPOKEN, Conversation, Rates, Segment, Side, Spoken, heard_by
+from metagraph.graph.conversation.model import SPOKEN, Conversation, Rates, Segment, Side, Spoken, heard_by
 from metagraph.graph.model import Project
 from metagraph.graph.requests import AnyRequest, Behave, Change, Fidget, Gesture, Nod, Play
-from metagraph.playback.running_plan import perform
+from metagraph.playback.planning.running_plan import perform
 from metagraph.speech.drive import TOLERANCE, asks_of, drawn_of, drive, strokes
 
 

@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from metagraph.graph.conversation import Conversation, Rates, Segment, Side, Word, heard_by
+from metagraph.graph.conversation.model import Conversation, Rates, Segment, Side, Word, heard_by
 from metagraph.graph.model import Project
 from metagraph.playback.plan import Plan
 from metagraph.speech.drive import drive, partner_points

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.graph.model import Action, Project
-from metagraph.playback.running_plan import perform
+from metagraph.playback.planning.running_plan import perform
 from metagraph.speech import gesture_choice
 from metagraph.speech.delivered import delivered
 from metagraph.speech.drive import TOLERANCE, drive, strokes

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.graph.anatomy import base_pose
-from metagraph.graph.conversation import EVERYBODY, Conversation
+from metagraph.graph.conversation.model import EVERYBODY, Conversation
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.speech.duet import duet

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.graph.conversation import HESITATIONS, RESPONSES, Word
+from metagraph.graph.conversation.model import HESITATIONS, RESPONSES, Word
 from metagraph.graph.vocabulary import kinds_of_words, tokens
 from metagraph.speech.clauses import segments
 from metagraph.speech.language_packs import (

@@ -7,7 +7,7 @@ from dataclasses import replace
 import msgspec
 import numpy as np
 
-from metagraph.graph.conversation import Conversation, Rates, Segment, Side
+from metagraph.graph.conversation.model import Conversation, Rates, Segment, Side
 from metagraph.graph.model import Project
 from metagraph.playback.plan import Plan
 from metagraph.speech.drive import drive

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.graph.face_names import VISEMES
+from metagraph.graph.face.names import VISEMES
 from metagraph.speech.phones import is_arpabet, pieces_of, visemes_of
 from metagraph.speech.textgrid import Interval, TextGrid, Tier
 

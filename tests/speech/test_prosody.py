@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from metagraph.formats.transcripts import read_transcript
-from metagraph.graph.conversation import Segment, Word
+from metagraph.formats.transcripts.reader import read_transcript
+from metagraph.graph.conversation.model import Segment, Word
 from metagraph.speech.loudness import loudness, loudness_within
 from metagraph.speech.prosody import letters, prosody
 from metagraph.speech.sound import read_sound

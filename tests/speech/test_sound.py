@@ -14,8 +14,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from metagraph.errors import FileError
-from metagraph.graph.face import OPENING
-from metagraph.graph.face_names import VISEMES
+from metagraph.graph.face.names import VISEMES
+from metagraph.graph.face.rig import OPENING
 from metagraph.speech.lines import read_voice
 from metagraph.speech.phones import pieces_of
 from metagraph.speech.sound import hear, read_recording, read_sound, shapes_heard, syllables

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from metagraph.graph import requests as a
 from metagraph.graph.model import Project
-from metagraph.playback.running_plan import perform
+from metagraph.playback.planning.running_plan import perform
 from metagraph.speech.lines import load_voices
 from metagraph.speech.soundtrack import RATE, line_sounds, mixed, placed, resampled
 

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from metagraph.errors import FileError
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import Say, request_from
-from metagraph.playback.extend_performance import answers, hear
 from metagraph.playback.plan import Plan
+from metagraph.playback.planning.extend_performance import answers, hear
 from metagraph.speech.text_gestures import (
     TextStream,
     gesture_requests,

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from metagraph.formats.gltf import read_character
+from metagraph.formats.gltf.reader import read_character
 from metagraph.formats.store import open_project
 from metagraph.graph.model import Action, Project
 from metagraph.motion.contact_spans import ContactSpan
-from metagraph.playback.contacts import parts_of
+from metagraph.playback.posing.contacts import parts_of
 from metagraph.suggest.find_contacts import find_contacts, measured, with_contacts
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_clips"

@@ -14,10 +14,10 @@ from metagraph.suggest.accept import accept
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.left_aside import left_aside, reasons, taken_up
 from metagraph.suggest.motion_guess import guess
-from metagraph.suggest.name_words import NameGuess
 from metagraph.suggest.propose import propose
 from metagraph.suggest.review import Review
-from metagraph.suggest.stances import discovered
+from metagraph.suggest.stances.known import discovered
+from metagraph.suggest.words.names import NameGuess
 from tests.label_zoo.catalogue import named
 from tests.label_zoo.sets import MadeSet
 from tests.suggest.test_traits import chain, of

@@ -10,7 +10,7 @@ import pytest
 from metagraph.suggest import memory
 from metagraph.suggest.alike import Example
 from metagraph.suggest.memory import Memory, MemoryFormatError
-from metagraph.suggest.name_words import PatternsError, read_names
+from metagraph.suggest.words.names import PatternsError, read_names
 
 NAMES = ["idle_arms_shrug", "idle_arms_wobble", "idle_arms"]
 

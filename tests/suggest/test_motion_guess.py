@@ -18,7 +18,7 @@ from metagraph.motion.skeleton import Skeleton
 from metagraph.suggest.clip_measures import walks
 from metagraph.suggest.motion_guess import guess
 from metagraph.suggest.propose import accept, propose
-from metagraph.suggest.stances import known
+from metagraph.suggest.stances.known import known
 from metagraph.suggest.traits import traits_known, traits_of
 
 RATE = 30.0

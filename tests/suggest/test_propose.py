@@ -252,8 +252,8 @@ def test_walks_and_fights_are_left_aside_with_a_word() -> None:
 def test_a_clip_called_after_a_stance_alone_that_comes_from_elsewhere_leads_there():
     from metagraph.suggest.estimate import Belief
     from metagraph.suggest.motion_guess import MotionGuess
-    from metagraph.suggest.name_words import NameGuess
     from metagraph.suggest.propose import _leading
+    from metagraph.suggest.words.names import NameGuess
 
     said = NameGuess(kind=Belief("stance", 0.7, "x"), stance=Belief("sitting", 0.9, "name says 'Sitting'"))
 

@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 
 from metagraph.formats.clips import read_clips
-from metagraph.graph.conversation import Segment, Word
+from metagraph.graph.conversation.model import Segment, Word
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
 from metagraph.synthesis.constraints import changes, heard
-from metagraph.synthesis.extending import DriverGraph, driver_graph
+from metagraph.synthesis.extending.path import DriverGraph, driver_graph
 from metagraph.synthesis.graph import build
 from metagraph.synthesis.states import key_states, states_of
 

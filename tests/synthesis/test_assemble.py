@@ -15,9 +15,9 @@ from metagraph.motion.clip import Clip
 from metagraph.suggest.tracks import rig_of, stands
 from metagraph.synthesis.assemble import BLEND, assemble
 from metagraph.synthesis.constraints import ALL, HeardStates, WantedSegment
-from metagraph.synthesis.exact_search import best
 from metagraph.synthesis.graph import build
-from metagraph.synthesis.search_path import Path
+from metagraph.synthesis.search.exact_search import best
+from metagraph.synthesis.search.path import Path
 from metagraph.synthesis.states import SynthesisError, states_of
 
 CLIPS = FilePath(__file__).resolve().parents[2] / "sample_clips" / "clips"

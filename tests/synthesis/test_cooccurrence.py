@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.formats.clips import read_clips
-from metagraph.graph.conversation import Segment
+from metagraph.graph.conversation.model import Segment
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from metagraph.generation.poses import rig_of
-from metagraph.graph.conversation import Segment
+from metagraph.graph.conversation.model import Segment
 from metagraph.motion import rotation
 from metagraph.synthesis.cut import candidates, moments, pace, smoothed, uncut
 from metagraph.synthesis.graph import threshold

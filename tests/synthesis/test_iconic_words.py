@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from metagraph.graph.conversation import Word
+from metagraph.graph.conversation.model import Word
 from metagraph.synthesis.constraints import HeardStates, wanted
-from metagraph.synthesis.frame_costs import together
 from metagraph.synthesis.iconic_words import (
     AROUND,
     WordWish,
@@ -21,8 +20,9 @@ from metagraph.synthesis.iconic_words import (
     words_told,
 )
 from metagraph.synthesis.prosody_costs import SpokenTake
-from metagraph.synthesis.relaxing import Constraints, answer
-from metagraph.synthesis.ruled_search import FREE, find_path
+from metagraph.synthesis.search.frame_costs import together
+from metagraph.synthesis.search.relaxing import Constraints, answer
+from metagraph.synthesis.search.ruled_search import FREE, find_path
 from metagraph.synthesis.soft_constraints import SoftConstraints
 from metagraph.synthesis.states import SynthesisError
 from tests.synthesis.test_search import graph_of

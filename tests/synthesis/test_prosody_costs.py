@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from metagraph.graph.conversation import Segment
+from metagraph.graph.conversation.model import Segment
 from metagraph.speech.prosody import Prosody
 from metagraph.synthesis.prosody_costs import (
     FARTHEST,

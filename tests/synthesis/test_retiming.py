@@ -12,15 +12,15 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from metagraph.formats.clips import read_clips
-from metagraph.graph.conversation import Segment
+from metagraph.graph.conversation.model import Segment
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
 from metagraph.synthesis.assemble import assemble
 from metagraph.synthesis.constraints import HeardStates, WantedSegment, heard, wanted
 from metagraph.synthesis.graph import BLEND
-from metagraph.synthesis.relaxing import Constraints, answer, misses
 from metagraph.synthesis.retiming import keeps_to, retimable, retime, timing_cost
-from metagraph.synthesis.search_path import Path
+from metagraph.synthesis.search.path import Path
+from metagraph.synthesis.search.relaxing import Constraints, answer, misses
 from metagraph.synthesis.soft_constraints import SoftConstraints, SoftWish
 from metagraph.synthesis.standing_feet import standing
 from metagraph.synthesis.states import SynthesisError, states_of

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.graph.conversation import SOUNDS, Segment
+from metagraph.graph.conversation.model import SOUNDS, Segment
 from metagraph.synthesis.constraints import (
     ALL,
     EDGE,
@@ -24,11 +24,11 @@ from metagraph.synthesis.constraints import (
     heard,
     wanted,
 )
-from metagraph.synthesis.exact_search import ExactSearch, best
-from metagraph.synthesis.frame_costs import FrameCost, FrameCosts, together
 from metagraph.synthesis.graph import MotionGraph, Threshold
-from metagraph.synthesis.greedy_search import greedy
-from metagraph.synthesis.search_path import Path
+from metagraph.synthesis.search.exact_search import ExactSearch, best
+from metagraph.synthesis.search.frame_costs import FrameCost, FrameCosts, together
+from metagraph.synthesis.search.greedy_search import greedy
+from metagraph.synthesis.search.path import Path
 from metagraph.synthesis.states import States, SynthesisError
 
 IDLE, CLAUSE, RESPONSE = (1 << SOUNDS.index(k) for k in ("idle", "clause", "response"))
@@ -258,7 +258,7 @@ def test_the_best_path_is_the_same_whatever_bound_it_is_searched_within() -> Non
 def test_the_best_path_is_the_same_wherever_the_first_guess_leaves_somebody_out(
     monkeypatch: pytest.MonkeyPatch, charged: bool
 ) -> None:
-    module = "metagraph.synthesis.exact_search"
+    module = "metagraph.synthesis.search.exact_search"
     found = went_on = 0
     for seed in range(8):
         chance = np.random.default_rng(100 + seed)
@@ -306,7 +306,7 @@ def test_a_search_that_is_given_up_after_its_first_guess_ends_its_threads() -> N
 def test_the_best_path_is_the_same_from_whichever_side_jumps_are_looked_for_and_wherever_the_halves_meet(
     monkeypatch: pytest.MonkeyPatch, charged: bool
 ) -> None:
-    module = "metagraph.synthesis.exact_search"
+    module = "metagraph.synthesis.search.exact_search"
     found = 0
     for seed in range(6):
         chance = np.random.default_rng(seed)

@@ -5,18 +5,18 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from metagraph.graph.conversation import Segment
+from metagraph.graph.conversation.model import Segment
 from metagraph.motion.clip import Clip
+from metagraph.research.motion_graph.evaluation_table import csv_of, table_of
+from metagraph.research.motion_graph.search_evaluation import SETTINGS, cut, evaluate
 from metagraph.speech.prosody import prosody
 from metagraph.synthesis.assemble import assemble
 from metagraph.synthesis.constraints import changes, heard
 from metagraph.synthesis.cooccurrence import speeds
-from metagraph.synthesis.evaluation_table import csv_of, table_of
 from metagraph.synthesis.graph import MotionGraph, build
 from metagraph.synthesis.iconic_words import word_wish
 from metagraph.synthesis.prosody_costs import SpokenTake
-from metagraph.synthesis.relaxing import answer
-from metagraph.synthesis.search_evaluation import SETTINGS, cut, evaluate
+from metagraph.synthesis.search.relaxing import answer
 from metagraph.synthesis.soft_constraints import NO_WISH, SoftMaterial, SoftWish, soft_report
 from metagraph.synthesis.states import SynthesisError, key_states, states_of
 from tests.synthesis.talking import VOICE, aloud, speech, talking

@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from metagraph.graph.conversation import Segment
+from metagraph.graph.conversation.model import Segment
 from metagraph.motion.clip import Clip
+from metagraph.research.motion_graph.search_evaluation import cut
 from metagraph.synthesis.assemble import assemble
 from metagraph.synthesis.constraints import changes, heard, wanted
 from metagraph.synthesis.cooccurrence import activation, speeds
-from metagraph.synthesis.exact_search import best
 from metagraph.synthesis.graph import build
-from metagraph.synthesis.greedy_search import greedy
-from metagraph.synthesis.search_evaluation import cut
+from metagraph.synthesis.search.exact_search import best
+from metagraph.synthesis.search.greedy_search import greedy
 from metagraph.synthesis.states import key_states, states_of
 from tests.synthesis.talking import speech, talking
 

@@ -12,12 +12,12 @@ from typing import Any
 
 import pytest
 
-from metagraph.formats.data import FORMAT, from_data, to_data
+from metagraph.formats.project.data import FORMAT, from_data, to_data
+from metagraph.formats.project.text import parse
 from metagraph.formats.recovery import read_journal
 from metagraph.formats.store import UPGRADES, read_project, save_project
-from metagraph.formats.text import parse
 from metagraph.motion.joint_map import JointMap
-from metagraph.study.log import read as read_log
+from metagraph.research.study.logs.log import read as read_log
 from metagraph.suggest.memory import Memory
 
 HERE = Path(__file__).parent

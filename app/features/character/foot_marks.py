@@ -15,7 +15,7 @@ from app.features.character.over_view import lie_over
 from app.features.character.plates import draw_plate
 from app.look.theme import Theme, theme
 from app.translation import tr
-from metagraph.playback.foot_slides import RATE, SLIDES, FeetSeen, FeetWatch, FootState, worst_slide
+from metagraph.playback.posing.foot_slides import RATE, SLIDES, FeetSeen, FeetWatch, FootState, worst_slide
 
 if TYPE_CHECKING:
     from app.features.character.character_panel import PreviewPanel

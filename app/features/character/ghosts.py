@@ -19,7 +19,7 @@ from app.stage.playback_source import Shown
 from app.widgets.vocabulary import word
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.composer import playable
+from metagraph.playback.posing.composer import playable
 from preview.figure import Figure
 from preview.scene import Actor
 

@@ -18,8 +18,8 @@ from app.features.character.plates import draw_plate
 from app.look.theme import Theme, theme
 from app.translation import tr
 from metagraph.motion.skeleton import Skeleton
-from metagraph.playback.foot_slides import FootState
-from metagraph.playback.hand_touches import HandTouch, hand_touches, plan_of_clip
+from metagraph.playback.posing.foot_slides import FootState
+from metagraph.playback.posing.hand_touches import HandTouch, hand_touches, plan_of_clip
 
 if TYPE_CHECKING:
     from app.features.character.character_panel import PreviewPanel

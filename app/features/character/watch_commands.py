@@ -293,7 +293,7 @@ def fill_onion(shell: Shell, menu: QMenu) -> None:
 def next_slide(shell: Shell) -> None:
     """Go to where a foot that stands slides next, after now; searched beside the window."""
     from app.features.character.foot_marks import watch_of
-    from metagraph.playback.foot_slides import RATE
+    from metagraph.playback.posing.foot_slides import RATE
 
     session, shown = shell.stage.session, shell.stage.performance.shown
     watch, now = watch_of(shown), session.transport.seconds

@@ -316,7 +316,7 @@ class MatrixDialog(QDialog):
         measured = judged.measured[layer] if judged is not None else None
 
         def work(_: Job) -> Mapping[str, Any]:
-            from metagraph.suggest.jumps import curves
+            from metagraph.suggest.jumps.found import curves
 
             after = edits.place(project, [clip], layer, kind, stance, end)
             action = _newest(project, after)

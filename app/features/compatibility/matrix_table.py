@@ -18,7 +18,7 @@ from app.translation import tr
 from metagraph.graph.model import KINDS, Kind, Project
 
 if TYPE_CHECKING:
-    from metagraph.suggest.compatibility import Matrix
+    from metagraph.suggest.jumps.compatibility import Matrix
 
 Index = QModelIndex | QPersistentModelIndex
 CELL = Qt.ItemDataRole.UserRole

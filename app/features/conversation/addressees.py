@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QMenu
 
 from app.features.conversation.segment_editing import Editing
 from app.translation import tr
-from metagraph.graph.conversation import EVERYBODY, Conversation, others_of, side_name
+from metagraph.graph.conversation.model import EVERYBODY, Conversation, others_of, side_name
 from metagraph.speech.addressing import turns_of
 
 

@@ -15,8 +15,8 @@ from app.project.files import Files
 from app.project.speech_files import SOUNDS, TRANSCRIPTS, beside, kinds_of
 from app.translation import tr, tr_error
 from metagraph.errors import FileError
-from metagraph.graph import conversation_edits
-from metagraph.graph.conversation import MOST_SPEAKERS, Conversation
+from metagraph.graph.conversation import edits as conversation_edits
+from metagraph.graph.conversation.model import MOST_SPEAKERS, Conversation
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
 
@@ -145,7 +145,7 @@ def write_segments(shell: Shell) -> None:
     path = Path(name)
     if path.suffix.lower() not in (".eaf", ".textgrid"):
         path = path.with_name(path.name + (".TextGrid" if kind == TEXTGRID else ".eaf"))
-    from metagraph.formats.conversation_writers import write_elan, write_textgrid
+    from metagraph.formats.conversations.writers import write_elan, write_textgrid
 
     try:
         if path.suffix.lower() == ".textgrid":

@@ -37,8 +37,8 @@ from app.stage.session import Session
 from app.translation import tr, tr_error, tr_told
 from app.widgets.act_strip import clock
 from app.widgets.making import make_widget
-from metagraph.graph import conversation_edits
-from metagraph.graph.conversation import (
+from metagraph.graph.conversation import edits as conversation_edits
+from metagraph.graph.conversation.model import (
     AUTO,
     MOST_SPEAKERS,
     Conversation,
@@ -50,7 +50,7 @@ from metagraph.graph.conversation import (
 from metagraph.graph.model import Project
 
 if TYPE_CHECKING:
-    from metagraph.formats.conversations import Read
+    from metagraph.formats.conversations.files import Read
 
 TYPED = 700  # milliseconds of quiet after a word list was typed in before the sound is read by it
 NUMBERED = re.compile(r"speaker[ _-]?\d+", re.IGNORECASE)  # names a program gave; ours are as good
@@ -222,8 +222,8 @@ class ImportDialog(QDialog):
         lists = tuple(self.typed)
 
         def work(job: Job) -> Any:
-            from metagraph.formats.conversation_languages import Speaking
-            from metagraph.formats.conversations import read_conversation
+            from metagraph.formats.conversations.files import read_conversation
+            from metagraph.formats.conversations.languages import Speaking
             from metagraph.speech.language_packs import languages
 
             chosen = language if language in languages() else AUTO  # one's own list is not at hand

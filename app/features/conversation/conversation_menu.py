@@ -14,7 +14,7 @@ from app.project.speech_files import SOUNDS, converses, kinds_of
 from app.shell.actions import Command
 from app.shell.command_table import Feature, conversation_staged
 from app.translation import tr_noop
-from metagraph.graph.conversation import Conversation
+from metagraph.graph.conversation.model import Conversation
 
 MENU = "&Conversation"
 SHORT = "conversation"  # the panel's own menu

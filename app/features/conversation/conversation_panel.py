@@ -22,7 +22,7 @@ from app.widgets.mime import sounds_of
 from app.widgets.more_button import MoreButton
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.sentence import Sentence
-from metagraph.graph.conversation import SPOKEN, side_name
+from metagraph.graph.conversation.model import SPOKEN, side_name
 
 NONE = tr("None on stage")
 # pixels of the panel below which the legend leaves its words out: the sentence beside needs the room

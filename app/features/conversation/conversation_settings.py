@@ -27,8 +27,8 @@ from app.stage.playback_source import Shown
 from app.translation import tr, tr_error
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
-from metagraph.graph import conversation_edits
-from metagraph.graph.conversation import SPOKEN, Conversation, Rates, side_name
+from metagraph.graph.conversation import edits as conversation_edits
+from metagraph.graph.conversation.model import SPOKEN, Conversation, Rates, side_name
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
 from metagraph.speech.gaze_shares import together

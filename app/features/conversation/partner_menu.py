@@ -14,8 +14,8 @@ from app.project.document import Document
 from app.project.speech_files import SOUNDS, channels_of
 from app.translation import tr, tr_error
 from metagraph.formats.store import SUFFIX, relative
-from metagraph.graph.conversation import Conversation, side_name
-from metagraph.graph.conversation_edits import change_side
+from metagraph.graph.conversation.edits import change_side
+from metagraph.graph.conversation.model import Conversation, side_name
 from metagraph.graph.edit_error import EditError
 
 BODIES = (".glb", ".gltf")

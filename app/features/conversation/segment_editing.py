@@ -16,8 +16,8 @@ from app.look.plural import many
 from app.project.document import Document, Edit
 from app.stage.session import Session
 from app.translation import tr, tr_error
-from metagraph.graph import conversation_edits
-from metagraph.graph.conversation import SPOKEN, Conversation, Segment, Sound
+from metagraph.graph.conversation import edits as conversation_edits
+from metagraph.graph.conversation.model import SPOKEN, Conversation, Segment, Sound
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
 

@@ -11,7 +11,7 @@ from app.features.conversation.segment_host import SegmentHost
 from app.project.document import Edit
 from app.translation import tr
 from app.widgets.gesture import Gesture, PressDrag, Reason
-from metagraph.graph import conversation_edits
+from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.edit_error import EditError
 
 CATCH = 3.0  # pixels the mouse must move for a press to become a drag

@@ -14,7 +14,7 @@ from PySide6.QtCore import QPointF
 
 from app.features.conversation.segment_lanes import lanes, visible
 from app.widgets.lane_geometry import LEFT, Scale
-from metagraph.graph.conversation import Conversation, Word
+from metagraph.graph.conversation.model import Conversation, Word
 
 Part = Literal["nothing", "title", "ruler", "wave", "start", "end", "body", "gap", "peak"]
 EDGE, DOT = 5.0, 7.0  # pixels either side of an edge, and round a dot, that take hold of it

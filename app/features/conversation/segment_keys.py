@@ -12,7 +12,7 @@ from PySide6.QtGui import QKeySequence
 from app.features.conversation.segment_editing import Editing
 from app.look.theme import SOUND_MARKS
 from app.translation import tr
-from metagraph.graph.conversation import SPOKEN, Sound
+from metagraph.graph.conversation.model import SPOKEN, Sound
 
 FINE, FAR = 0.02, 0.2  # seconds a key moves something
 TITLES = {"clause": tr("Clause"), "response": tr("Response"), "hesitation": tr("Hesitation")}

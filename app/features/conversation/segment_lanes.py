@@ -16,7 +16,7 @@ from PySide6.QtCore import QRectF
 
 from app.translation import tr
 from app.widgets.lane_geometry import LEFT, RULER, Scale
-from metagraph.graph.conversation import Segment, Word
+from metagraph.graph.conversation.model import Segment, Word
 
 # what the window calls the kinds of segments
 KINDS = {"clause": tr("clause"), "response": tr("response"), "hesitation": tr("hesitation")}

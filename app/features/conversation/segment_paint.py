@@ -25,7 +25,7 @@ from app.translation import tr
 from app.widgets.act_strip import STEPS, clock
 from app.widgets.lane_geometry import LEFT, RULER, Scale, advance, elided
 from app.widgets.waveforms import Envelope, joined, painted
-from metagraph.graph.conversation import Conversation, Segment, side_name
+from metagraph.graph.conversation.model import Conversation, Segment, side_name
 
 INK = "#17181b"  # on the fills
 MIDDLE = Qt.AlignmentFlag.AlignVCenter

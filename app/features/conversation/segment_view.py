@@ -43,7 +43,7 @@ from app.widgets.gesture import Hand
 from app.widgets.lane_geometry import LEFT, Scale
 from app.widgets.lane_paint import badge, playhead
 from app.widgets.memo import Once
-from metagraph.graph.conversation import Conversation, side_name
+from metagraph.graph.conversation.model import Conversation, side_name
 from metagraph.graph.edit_error import EditError
 
 ZOOM, USUAL = 1.2, 100.0  # of a turn of the wheel; pixels a second to begin with: most words have room

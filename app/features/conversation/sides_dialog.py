@@ -24,7 +24,7 @@ from app.translation import tr
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.formats.store import SUFFIX, relative
-from metagraph.graph import conversation_edits
+from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
 from metagraph.speech.duet import stands

@@ -20,7 +20,7 @@ from app.stage.session import Session
 from app.translation import tr
 from app.widgets.waveforms import Envelope, binned
 from metagraph.errors import FileError
-from metagraph.graph.conversation import Conversation
+from metagraph.graph.conversation.model import Conversation
 
 LONGEST = 36000.0  # seconds of a conversation
 KEPT = 16000  # samples a second that waveform and pitch need

@@ -23,7 +23,7 @@ from app.look.plural import many
 from app.look.theme import SOUND_MARKS
 from app.translation import grouped, tr
 from app.widgets.making import make_widget
-from metagraph.graph.conversation import SPOKEN, Side
+from metagraph.graph.conversation.model import SPOKEN, Side
 
 
 class Card(QFrame):

@@ -22,8 +22,8 @@ from app.look.theme import SOUND_MARKS
 from app.translation import tr
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
-from metagraph.graph import conversation_edits
-from metagraph.graph.conversation import AUTO, Conversation, lists_of, side_name
+from metagraph.graph.conversation import edits as conversation_edits
+from metagraph.graph.conversation.model import AUTO, Conversation, lists_of, side_name
 from metagraph.graph.model import Project
 from metagraph.speech.language_detection import language_spoken
 from metagraph.speech.language_packs import languages

@@ -29,8 +29,8 @@ from app.project.document import Document
 from app.translation import tr, tr_error
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
-from metagraph.graph import batch
 from metagraph.graph.edit_error import EditError
+from metagraph.graph.editing import batch
 
 TITLES = {
     "blends": tr("Blend in and out"),

@@ -47,7 +47,7 @@ from metagraph.engines.tools_file import write_tools
 from metagraph.engines.vectors import write_vectors
 from metagraph.graph.check import check
 from metagraph.graph.expand import size
-from metagraph.graph.manual_meta import exportable
+from metagraph.graph.manual.meta import exportable
 
 NAME = Qt.ItemDataRole.UserRole
 

@@ -31,9 +31,9 @@ from app.project.version_count import set_version_count, version_count
 from app.translation import tr, tr_told
 from app.widgets.quiet_fields import SpinBox
 from metagraph.errors import FileError, error_words
+from metagraph.formats.project.versions import MOST, Version, earlier_versions
 from metagraph.formats.store import read_project
-from metagraph.formats.versions import MOST, Version, earlier_versions
-from metagraph.graph.differences import differences
+from metagraph.graph.editing.differences import differences
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 

@@ -17,7 +17,7 @@ from app.project.new_clips import Loaded, pieces, save
 from app.translation import tr
 from metagraph.errors import FileError
 from metagraph.graph import edits
-from metagraph.graph.conversation_edits import change_side
+from metagraph.graph.conversation.edits import change_side
 from metagraph.graph.generated import add_generated
 from metagraph.graph.model import Kind, Limb, Project
 from metagraph.motion.clip import Clip

@@ -43,7 +43,7 @@ from metagraph.errors import FileError
 from metagraph.generation.chunks import GUIDANCE
 from metagraph.generation.offered import offered, words_of
 from metagraph.generation.stored import SUFFIX, read_card
-from metagraph.graph.conversation import side_name
+from metagraph.graph.conversation.model import side_name
 
 FILE, CHOOSE = "file", "choose"  # a sound that was chosen, and choosing one
 NOBODY = tr(

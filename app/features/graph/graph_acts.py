@@ -19,7 +19,7 @@ from app.translation import tr, tr_error
 from app.widgets.vocabulary import word
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.listing_edits import shifted
+from metagraph.graph.editing.listing import shifted
 from metagraph.graph.model import KINDS, Action, Kind
 
 

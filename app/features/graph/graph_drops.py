@@ -13,8 +13,8 @@ from app.project.load import ANNOTATIONS, Load
 from app.translation import tr, tr_error, tr_noop, tr_told
 from app.widgets.vocabulary import word
 from metagraph.graph.edit_error import EditError
+from metagraph.graph.editing.listing import reordered
 from metagraph.graph.edits import move_actions, place, refusal, to_stance
-from metagraph.graph.listing_edits import reordered
 from metagraph.graph.model import Kind, Layer, Project
 
 ONE: dict[Kind, str] = {

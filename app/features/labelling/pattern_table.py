@@ -16,9 +16,9 @@ from app.translation import tr, tr_error
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.vocabulary import word
 from metagraph.graph.words import KINDS, LAYERS, LIMBS
-from metagraph.suggest.words_defaults import DEFAULTS, Field
-from metagraph.suggest.words_languages import AFTER_FROM, AFTER_TO, MAYBE_FROM, MAYBE_TO, NOTHING
-from metagraph.suggest.words_patterns import FIELDS, Patterns, PatternsError, forget, remembered
+from metagraph.suggest.words.defaults import DEFAULTS, Field
+from metagraph.suggest.words.languages import AFTER_FROM, AFTER_TO, MAYBE_FROM, MAYBE_TO, NOTHING
+from metagraph.suggest.words.patterns import FIELDS, Patterns, PatternsError, forget, remembered
 
 Index = QModelIndex | QPersistentModelIndex
 COLUMNS = (tr("Words"), tr("About"), tr("Means"), tr("From"))

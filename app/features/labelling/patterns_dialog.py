@@ -48,8 +48,8 @@ from app.translation import tr, tr_error, tr_told
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.vocabulary import word
 from metagraph.errors import FileError
-from metagraph.suggest.name_words import NameGuess, Patterns, PatternsError, merged, read_names
-from metagraph.suggest.words_patterns import FIELDS
+from metagraph.suggest.words.names import NameGuess, Patterns, PatternsError, merged, read_names
+from metagraph.suggest.words.patterns import FIELDS
 
 FILTER = tr("Name patterns (*.json);;All files (*)")
 PARTS = (

@@ -14,7 +14,7 @@ from app.project.learned import Learned
 from app.translation import tr, tr_error
 from metagraph.graph.model import Kind, Project
 from metagraph.suggest.accept import Taken
-from metagraph.suggest.bridges import bridged, missing, told
+from metagraph.suggest.jumps.bridges import bridged, missing, told
 from metagraph.suggest.left_aside import reasons, taken_up
 from metagraph.suggest.proposal import Proposal, Proposals
 from metagraph.suggest.propose import propose, waiting

@@ -19,8 +19,8 @@ from app.stage.session import Session
 from app.translation import tr
 from metagraph.graph import edits
 from metagraph.graph.clip_mark import COLORS, STARS
-from metagraph.graph.listing_edits import duplicate_clips
-from metagraph.graph.marks import mark, mark_of
+from metagraph.graph.editing.listing import duplicate_clips
+from metagraph.graph.editing.marks import mark, mark_of
 from metagraph.graph.model import ClipEntry
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 
 from app.project.document import Document
 from metagraph.graph.clip_mark import ClipMark
-from metagraph.graph.marks import mark_of
+from metagraph.graph.editing.marks import mark_of
 from metagraph.graph.model import Action, ClipEntry, Project
 from metagraph.graph.problem import Problem
 from metagraph.motion.clip import Clip

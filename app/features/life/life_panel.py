@@ -27,12 +27,12 @@ from app.widgets.choice_row import ChoiceRow
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, Slider
 from app.widgets.request_menu import MODE_WORDS, MOOD_WORDS
-from metagraph.graph import performance_edits
 from metagraph.graph.edit_error import EditError
+from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.life import DIALS, MANNER_DIALS, MANNERS, Dial, Life, manner, with_life
 from metagraph.graph.model import MODES, Mode, Project
 from metagraph.graph.words import FEELINGS
-from metagraph.playback.mood import MOODS
+from metagraph.playback.planning.mood import MOODS
 
 
 class DialSlider(Slider):

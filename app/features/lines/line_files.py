@@ -13,11 +13,11 @@ from pathlib import Path
 from typing import Any
 
 from app.translation import tr
-from metagraph.budgets import LIST_FILE
+from metagraph.common.budgets import LIST_FILE
+from metagraph.common.files import is_file, is_inside, read_file, unforeseen
 from metagraph.errors import FileError
-from metagraph.files import is_file, is_inside, read_file, unforeseen
 from metagraph.formats.store import kept_path
-from metagraph.graph import performance_edits
+from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.edits import free_name
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Line

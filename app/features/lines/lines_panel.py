@@ -39,11 +39,11 @@ from app.stage.session import Session
 from app.translation import tr, tr_error, tr_told
 from app.widgets.flow import Flow
 from app.widgets.making import make_widget
-from metagraph.graph import performance_edits
 from metagraph.graph.edit_error import EditError
+from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Line, Say
-from metagraph.playback.line_lengths import spoken_seconds
+from metagraph.playback.planning.line_lengths import spoken_seconds
 
 COLUMNS = (tr("Id"), tr("Words"), tr("Sound"), tr("Length"), tr("With it"))
 ID, WORDS, SOUND, LENGTH, ASKS = range(5)

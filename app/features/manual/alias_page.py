@@ -22,8 +22,8 @@ from app.look.plural import many
 from app.translation import tr
 from app.widgets.form_fields import Chooser, Field
 from app.widgets.making import make_widget
-from metagraph.graph import manual_groups
-from metagraph.graph.manual import Alias
+from metagraph.graph.manual import groups as manual_groups
+from metagraph.graph.manual.machine import Alias
 from metagraph.graph.name_search import fits
 
 NO_ENTRY = tr("no entry: nothing leads to it")

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from math import ceil, sqrt
 
-from metagraph.graph.manual import ANY, Manual
+from metagraph.graph.manual.machine import ANY, Manual
 
 ACROSS, DOWN = 280.0, 92.0  # units from one node to the next
 SWEEPS = 6

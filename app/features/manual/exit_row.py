@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QHBoxLayout, QWidget
 
 from app.translation import tr
 from app.widgets.form_fields import MIXED, Chooser, Mixed, Seconds, common
-from metagraph.graph.manual import Link
+from metagraph.graph.manual.machine import Link
 
 Way = Literal["none", "end", "part", "time"]
 WORDS: dict[Way, str] = {

@@ -39,9 +39,9 @@ from app.stage.thumbnails import Thumbnails
 from app.translation import tr, tr_error
 from app.widgets.gesture import Hand
 from app.widgets.mime import load_of
-from metagraph.graph import manual_edits
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.manual import ANY
+from metagraph.graph.manual import edits as manual_edits
+from metagraph.graph.manual.machine import ANY
 from metagraph.graph.model import Layer, Project
 
 SETTLED = 140  # milliseconds of rest after which lines are smooth again

@@ -18,8 +18,8 @@ from app.features.manual.manual_scene import ManualHit
 from app.look.plural import many
 from app.project.load import Load
 from app.translation import tr, tr_told
-from metagraph.graph import manual_edits
-from metagraph.graph.manual import ANY, Link
+from metagraph.graph.manual import edits as manual_edits
+from metagraph.graph.manual.machine import ANY, Link
 from metagraph.graph.model import Project
 
 Run = Callable[[], object]

@@ -8,7 +8,7 @@ from app.features.manual.manual_host import ManualHost
 from app.features.manual.manual_scene import ManualHit
 from app.translation import tr, tr_told
 from app.widgets.gesture import PressDrag, Reason
-from metagraph.graph import manual_edits
+from metagraph.graph.manual import edits as manual_edits
 
 SNAP = 8.0  # units to which nodes come to rest
 

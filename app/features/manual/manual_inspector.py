@@ -36,8 +36,8 @@ from app.widgets.choice_row import LimbRow
 from app.widgets.form_fields import MIXED, Chooser, Field, Mixed, Seconds, common
 from app.widgets.making import make_widget
 from app.widgets.restyling import set_sheet
-from metagraph.graph import manual_edits
-from metagraph.graph.manual import Link, State
+from metagraph.graph.manual import edits as manual_edits
+from metagraph.graph.manual.machine import Link, State
 from metagraph.graph.model import LIMBS, Project
 from metagraph.playback.manual_playback import action_of
 

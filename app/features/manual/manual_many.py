@@ -12,8 +12,8 @@ from app.translation import tr, tr_error
 from metagraph.errors import FileError
 from metagraph.formats import manual_table
 from metagraph.formats.clips import is_face_recording
-from metagraph.graph import manual_groups
-from metagraph.graph.manual import Link
+from metagraph.graph.manual import groups as manual_groups
+from metagraph.graph.manual.machine import Link
 from metagraph.graph.model import Project
 
 TABLES = tr("Tables (*.csv *.tsv *.txt)")

@@ -6,8 +6,8 @@ from typing import Any
 
 from app.translation import tr
 from app.widgets.joint_mask import MaskDialog
-from metagraph.graph import manual_edits
-from metagraph.graph.manual import State
+from metagraph.graph.manual import edits as manual_edits
+from metagraph.graph.manual.machine import State
 
 
 class StateMask(MaskDialog):

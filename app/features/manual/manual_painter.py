@@ -17,7 +17,7 @@ from app.features.manual.manual_scene import LOOP, ManualScene, ManualView
 from app.look.plural import many
 from app.look.theme import Theme
 from app.translation import tr
-from metagraph.graph.manual import ANY, Alias, Link, State
+from metagraph.graph.manual.machine import ANY, Alias, Link, State
 from metagraph.graph.model import Project
 
 GRID = 24.0

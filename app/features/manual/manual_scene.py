@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, QSizeF
 
-from metagraph.graph.manual import ANY, Link, Manual
+from metagraph.graph.manual.machine import ANY, Link, Manual
 
 Array = NDArray[Any]
 NODE = QSizeF(196, 64)

@@ -27,8 +27,8 @@ from app.look.plural import many
 from app.look.theme import strengthen
 from app.project.jobs import Job
 from app.translation import tr, tr_error
-from metagraph.formats.keypoints import read_keypoints
-from metagraph.graph import performance_edits
+from metagraph.formats.keypoints.reader import read_keypoints
+from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.requests import Performance
 from metagraph.mimicry.keypoint_layouts import Keypoints

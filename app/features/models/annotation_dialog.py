@@ -40,8 +40,8 @@ from app.widgets.form_fields import Seconds
 from app.widgets.making import make_widget
 from metagraph.formats.elan import read_elan
 from metagraph.graph.model import LAYERS, Layer
-from metagraph.playback.annotation import IGNORE, PHASES, ROLES, SPEECH, Annotation, Label, parted
-from metagraph.playback.learn import Act
+from metagraph.playback.learning.annotation import IGNORE, PHASES, ROLES, SPEECH, Annotation, Label, parted
+from metagraph.playback.learning.learn import Act
 
 if TYPE_CHECKING:
     from app.shell.context import Shell

@@ -18,8 +18,8 @@ from app.look.theme import KIND_MARKS, theme
 from app.stage.session import Session
 from app.translation import tr
 from app.widgets.still_plot import empty_plot, still_plot
-from metagraph.playback.compare import SURE, Comparison, quantiles
-from metagraph.playback.learn import State
+from metagraph.playback.learning.compare import SURE, Comparison, quantiles
+from metagraph.playback.learning.learn import State
 
 WIDTH = 0.34  # of a bar; two stand side by side
 TOP = 6.0  # pixels, so that a number at the upper end is whole

@@ -24,7 +24,7 @@ from app.features.models.state_names import a_state, tag_words
 from app.look.theme import KIND_MARKS, Theme, theme
 from app.translation import tr
 from metagraph.graph.model import Layer, Markov
-from metagraph.playback.learn import State, states_of
+from metagraph.playback.learning.learn import State, states_of
 
 HEAD = 38.0  # pixels above the columns
 SIDE = 104.0  # left of the rows

@@ -38,8 +38,8 @@ from app.widgets.form_fields import Chooser, Seconds
 from app.widgets.making import make_widget
 from metagraph.graph import edits
 from metagraph.graph.model import LIMBS, Kind, Layer, Limb, Markov, Project
-from metagraph.playback.compare import Comparison, compare, generate
-from metagraph.playback.learn import (
+from metagraph.playback.learning.compare import Comparison, compare, generate
+from metagraph.playback.learning.learn import (
     Act,
     State,
     acts_of_asks,
@@ -48,7 +48,7 @@ from metagraph.playback.learn import (
     with_state,
     without_state,
 )
-from metagraph.playback.markov import model
+from metagraph.playback.planning.markov import model
 
 HOUR = 3600.0  # seconds the model makes to be compared
 SAMPLE = 60.0  # seconds of the sample

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from app.translation import tr, tr_noop
 from metagraph.graph.model import Layer
-from metagraph.playback.learn import State
+from metagraph.playback.learning.learn import State
 
 STATES = (
     tr_noop("left gesture"),

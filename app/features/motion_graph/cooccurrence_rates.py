@@ -24,8 +24,8 @@ from app.look.theme import strengthen
 from app.project.document import Document
 from app.translation import grouped, tr, tr_noop
 from app.widgets.quiet_fields import ComboBox
-from metagraph.graph.conversation import Rates
-from metagraph.graph.conversation_edits import set_rates
+from metagraph.graph.conversation.edits import set_rates
+from metagraph.graph.conversation.model import Rates
 
 HEADS = (tr("What goes together"), tr("Matched"), tr("Of"), tr("Rate"), tr("95 % interval"), tr("By chance"))
 FIELDS = {

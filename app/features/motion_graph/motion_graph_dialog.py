@@ -42,9 +42,9 @@ from app.stage.session import Session
 from app.translation import grouped, tr, tr_error
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import DoubleSpinBox, SpinBox
-from metagraph.compiling import there
+from metagraph.common.compiling import there
 from metagraph.graph import edits
-from metagraph.graph.conversation_edits import change_side
+from metagraph.graph.conversation.edits import change_side
 from metagraph.graph.model import Project
 
 KS = (2, 3, 4)  # of the table
@@ -60,7 +60,7 @@ LOADING = tr(
 
 def fits_words(limit: Any) -> str:
     """Return what distributions say a transition may cost, the nearest first, and how far off each is."""
-    from metagraph.suggest.fits import fits
+    from metagraph.suggest.jumps.fits import fits
 
     found = fits(limit.costs, limit.level)
     rows = "\n".join(

@@ -24,7 +24,7 @@ from app.project.document import Document
 from app.translation import tr
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
-from metagraph.graph.conversation import SOUNDS, Segment, Side, Sound, heard_by
+from metagraph.graph.conversation.model import SOUNDS, Segment, Side, Sound, heard_by
 
 WINDOW = 15.0  # seconds, as in the paper's evaluation
 KINDS: tuple[tuple[Sound, str], ...] = (
@@ -187,7 +187,7 @@ class Wishes(QFrame):
         if chosen is not None:
             talk = self.document.project.conversations[chosen[0]]
             seconds = min(seconds, max(1.0, talk.length - start))
-            from metagraph.synthesis.search_evaluation import cut
+            from metagraph.research.motion_graph.search_evaluation import cut
 
             whole, side = heard_by(talk, chosen[1]), talk.sides[chosen[1]]
             segments = tuple(cut(whole, start, seconds))

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QLabel, QLineEdit, QWidget
 from app.translation import tr
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import DoubleSpinBox
-from metagraph.graph.conversation import Segment, Side
+from metagraph.graph.conversation.model import Segment, Side
 
 if TYPE_CHECKING:
     from metagraph.synthesis.prosody_costs import SpokenTake

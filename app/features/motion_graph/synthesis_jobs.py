@@ -17,13 +17,13 @@ import msgspec
 from app.features.motion_graph.soft_wishes import spoken
 from app.look.plural import many
 from app.translation import tr
-from metagraph.graph.conversation import SOUNDS, Segment, Side, Sound, heard_by
+from metagraph.graph.conversation.model import SOUNDS, Segment, Side, Sound, heard_by
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 
 if TYPE_CHECKING:
-    from metagraph.synthesis.path_quality import PathQuality
-    from metagraph.synthesis.ruled_search import Search
+    from metagraph.synthesis.search.path_quality import PathQuality
+    from metagraph.synthesis.search.ruled_search import Search
     from metagraph.synthesis.soft_constraints import SoftWish
 
 FOLDER = "motion-graph"  # beside the project file, where new clips are kept
@@ -190,8 +190,8 @@ def synthesise(
     """
     from metagraph.synthesis.assemble import assemble
     from metagraph.synthesis.constraints import heard
-    from metagraph.synthesis.path_quality import quality
-    from metagraph.synthesis.relaxing import Constraints, answer
+    from metagraph.synthesis.search.path_quality import quality
+    from metagraph.synthesis.search.relaxing import Constraints, answer
     from metagraph.synthesis.soft_constraints import NOTHING, SoftMaterial, soft_report
 
     said = heard(graph.states, takes.speech)

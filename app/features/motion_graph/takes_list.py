@@ -20,8 +20,8 @@ from PySide6.QtWidgets import (
 from app.features.motion_graph.synthesis_jobs import FOLDER, LONG, left_out, speech_of, usable
 from app.project.document import Document
 from app.translation import tr
-from metagraph.graph.conversation import Conversation
-from metagraph.graph.conversation_edits import change_side
+from metagraph.graph.conversation.edits import change_side
+from metagraph.graph.conversation.model import Conversation
 from metagraph.graph.model import Project
 
 NONE = tr("nothing known")

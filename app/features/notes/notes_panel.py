@@ -10,7 +10,7 @@ from app.project.document import Document
 from app.stage.session import Session
 from app.translation import tr
 from app.widgets.sentence import OneLine
-from metagraph.graph.marks import mark, mark_of
+from metagraph.graph.editing.marks import mark, mark_of
 from metagraph.graph.model import Project
 from metagraph.graph.notes import PROJECT, set_note
 

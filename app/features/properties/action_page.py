@@ -32,7 +32,7 @@ from app.widgets.restyling import set_sheet
 from app.widgets.vocabulary import titled
 from metagraph.graph import edits
 from metagraph.graph.model import LIMBS, Action
-from metagraph.playback.timing import retimed
+from metagraph.playback.timing.handles import retimed
 
 
 class ActionPage(Halves):

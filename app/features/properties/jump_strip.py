@@ -17,7 +17,7 @@ from app.translation import tr, tr_told
 from metagraph.graph.model import Action, Project
 
 if TYPE_CHECKING:
-    from metagraph.suggest.seen_jumps import Seen
+    from metagraph.suggest.jumps.seen_jumps import Seen
 
 HEIGHT = 58
 TOP = 2.4  # of what shows as a jump; more is cut off
@@ -127,7 +127,7 @@ class JumpStrip(pg.PlotWidget):
         """Say what a point of the strip means."""
         if self.seen is None or self.subject is None:
             return ""
-        from metagraph.suggest.seen_jumps import words_at
+        from metagraph.suggest.jumps.seen_jumps import words_at
 
         seconds = float(self.plotItem.vb.mapSceneToView(at).x())
         seconds = min(max(0.0, seconds), float(self.seen.times[-1]))

@@ -82,7 +82,7 @@ class LayerPage(QWidget):
         self.title.setText(tr("{layer} layer", layer=titled(layer)))
         for part in PARTS:
             self.weights[part].show_value(graph.weights.get(part, REACH[layer][part]))
-        from metagraph.playback.markov import model
+        from metagraph.playback.planning.markov import model
 
         self.gap.show_value(model(project, layer).gap)
         clips = [(tr("Rest pose of the skeleton"), None), *((e.name, e.id) for e in project.clips.values())]
@@ -100,7 +100,7 @@ class LayerPage(QWidget):
             self.edit(tr("Change layer weight"), lambda p: edits.set_weight(p, layer, part, round(value, 2)))
 
     def _set_gap(self, value: float) -> None:
-        from metagraph.playback.markov import model
+        from metagraph.playback.planning.markov import model
 
         layer = self.session.place.layer
         if value <= 0:

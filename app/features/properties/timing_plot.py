@@ -29,8 +29,8 @@ from app.translation import tr, tr_told
 from app.widgets.restyling import set_sheet
 from metagraph.graph.model import Action, Project
 from metagraph.motion.clip import Clip
-from metagraph.playback.speed_curves import speed_of
-from metagraph.playback.timing import BANDS, HANDLES, PHASES, moved, times_of
+from metagraph.playback.timing.handles import BANDS, HANDLES, PHASES, moved, times_of
+from metagraph.playback.timing.speed_curves import speed_of
 
 WORDS = {
     "start": tr("start"),
@@ -140,7 +140,7 @@ class TimingPlot(QWidget):
         )
         if action is None or project.action(action.id) is None:
             return
-        from metagraph.suggest.seen_jumps import Seen, far_ends, times_words, verdict
+        from metagraph.suggest.jumps.seen_jumps import Seen, far_ends, times_words, verdict
 
         seen = Seen(action, curves) if curves is not None else None
         self.strip.show_seen(project, action, seen)

@@ -17,7 +17,7 @@ from app.widgets.making import make_widget
 from app.widgets.quiet_fields import SpinBox
 from metagraph.graph import edits
 from metagraph.graph.model import Action, Project, Settings
-from metagraph.playback.phases import phases
+from metagraph.playback.timing.phases import phases
 
 PHASE_FIELDS = ("ready", "stroke_end", "relax")
 PHASE_WORDS = {

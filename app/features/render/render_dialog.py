@@ -29,7 +29,7 @@ from app.stage.session import Session
 from app.translation import tr, tr_error, tr_noop
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.graph import requests
-from metagraph.graph.conversation import Conversation
+from metagraph.graph.conversation.model import Conversation
 from preview.looks import BACKDROPS, LIGHTS, words_of
 
 LOOKS = (  # what the preview calls its lights and backgrounds

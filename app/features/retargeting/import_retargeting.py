@@ -17,7 +17,7 @@ from app.project.kept_maps import keep_map
 from app.translation import tr
 from metagraph.errors import FileError
 from metagraph.formats.imports import Imported, Strangers, bring_over, strangers_of
-from metagraph.graph.project_retargeting import Bringing
+from metagraph.graph.editing.retargeting import Bringing
 from metagraph.motion.joint_map import JointMap
 
 Then = Callable[[Imported], None]

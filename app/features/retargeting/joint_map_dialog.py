@@ -31,7 +31,7 @@ from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.stick_figures import StickFigures
 from metagraph.formats.imports import Strangers
-from metagraph.graph.project_retargeting import Bringing
+from metagraph.graph.editing.retargeting import Bringing
 from metagraph.motion.clip import Clip
 from metagraph.motion.joint_map import JointMap, known_roles
 

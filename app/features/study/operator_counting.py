@@ -42,7 +42,7 @@ class Counting(QObject):
     def show(self) -> None:
         """Show what there was so far."""
         self.total.update(self.hands.operators.take(monotonic()).operators)
-        from metagraph.study.klm import predicted
+        from metagraph.research.study.machines.klm import predicted
 
         seconds = predicted({k: self.total[k] for k in "KPBH"})
         counts = "   ".join(f"{k} {self.total[k]}" for k in "KPBDH")

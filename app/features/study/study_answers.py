@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.translation import tr
-from metagraph.study.questionnaires import BUTTONS, Item, Scale
+from metagraph.research.study.questionnaires import BUTTONS, Item, Scale
 
 _EDGE = 12  # pixels left and right of a line of marks
 

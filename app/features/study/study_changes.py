@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from metagraph.graph.manual import ANY
+from metagraph.graph.manual.machine import ANY
 from metagraph.graph.model import LAYERS, Project
 
 WHATS = (

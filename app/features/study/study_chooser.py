@@ -25,8 +25,8 @@ from app.project.files import Files
 from app.shell.places import Places
 from app.translation import tr, tr_error, tr_noop
 from metagraph.errors import FileError
-from metagraph.study.sitting import standing
-from metagraph.study.study_plan import Study, read_study
+from metagraph.research.study.sitting import standing
+from metagraph.research.study.study_plan import Study, read_study
 
 if TYPE_CHECKING:
     from app.shell.context import Shell

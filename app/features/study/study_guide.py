@@ -31,10 +31,10 @@ from app.translation import tr, tr_error, tr_noop
 from metagraph import __version__
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
-from metagraph.study.freeze import manifest
-from metagraph.study.sitting import Phase, Sitting
-from metagraph.study.study_plan import CONDITION_TITLES, Study
-from metagraph.study.task_projects import make, reopen, write
+from metagraph.research.study.plan.freeze import manifest
+from metagraph.research.study.plan.task_projects import make, reopen, write
+from metagraph.research.study.sitting import Phase, Sitting
+from metagraph.research.study.study_plan import CONDITION_TITLES, Study
 
 if TYPE_CHECKING:
     from app.shell.context import Shell

@@ -18,7 +18,7 @@ from app.stage.problem_watch import ProblemWatch
 from app.translation import in_english
 from metagraph.errors import FileError
 from metagraph.formats.imports import Imported
-from metagraph.formats.journal import changes
+from metagraph.formats.project.journal import changes
 from metagraph.graph.model import Project
 
 if TYPE_CHECKING:

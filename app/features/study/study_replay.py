@@ -17,9 +17,9 @@ from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, Slider
 from metagraph.errors import FileError
 from metagraph.graph.model import LAYERS, Project
-from metagraph.study.log import read
-from metagraph.study.replay_log import Again, Part, first_project, parts
-from metagraph.study.study_plan import CONDITION_TITLES, Study
+from metagraph.research.study.logs.log import read
+from metagraph.research.study.logs.replay import Again, Part, first_project, parts
+from metagraph.research.study.study_plan import CONDITION_TITLES, Study
 
 if TYPE_CHECKING:
     from app.shell.context import Shell

@@ -24,7 +24,7 @@ from app.features.study.study_answers import Question
 from app.look.theme import strengthen, theme
 from app.stage.session import Session
 from app.translation import tr
-from metagraph.study.questionnaires import Questionnaire
+from metagraph.research.study.questionnaires import Questionnaire
 
 WIDE = 720  # pixels of a column that reads well
 Run = Callable[[], object]

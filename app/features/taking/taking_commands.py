@@ -17,7 +17,7 @@ from app.translation import tr, tr_noop
 from metagraph.formats.store import SUFFIX
 
 if TYPE_CHECKING:
-    from metagraph.formats.project_pieces import Piece
+    from metagraph.formats.project.pieces import Piece
 
 
 class TakingFeature(Feature):
@@ -41,7 +41,7 @@ class TakingFeature(Feature):
 
     def read(self, path: Path) -> None:
         """Read a project beside the window, and offer what is in it."""
-        from metagraph.formats.project_pieces import read_other_project
+        from metagraph.formats.project.pieces import read_other_project
 
         into = self.document.path
 
@@ -64,7 +64,7 @@ class TakingFeature(Feature):
 
     def copy(self) -> None:
         """Copy the selected actions, or else the stance in view with all that is placed on it."""
-        from metagraph.formats.project_pieces import piece_text
+        from metagraph.formats.project.pieces import piece_text
 
         actions, stance = self.selection.actions, self.session.place.stance()
         stances = () if actions or stance is None else (stance,)
@@ -78,7 +78,7 @@ class TakingFeature(Feature):
         self.shell.actions.refresh()
 
     def paste(self) -> None:
-        from metagraph.formats.project_pieces import is_piece, read_piece
+        from metagraph.formats.project.pieces import is_piece, read_piece
 
         if self.files.refuse():
             return

@@ -22,9 +22,9 @@ from app.project.document import Document
 from app.project.jobs import Jobs
 from app.translation import tr, tr_error, tr_noop, tr_told
 from app.widgets.making import make_widget
-from metagraph.formats.project_pieces import Piece
+from metagraph.formats.project.pieces import Piece
+from metagraph.graph.editing.taking import Taken, Taking, words_of_taking
 from metagraph.graph.model import Project
-from metagraph.graph.taking import Taken, Taking, words_of_taking
 
 GROUPS = (
     ("stance", tr_noop("Stances")),

@@ -13,7 +13,7 @@ from app.look.theme import Theme
 from app.translation import tr
 from app.widgets.gesture import PressDrag
 from app.widgets.lane_geometry import LEFT, elided, lanes
-from metagraph.graph.conversation import Conversation, side_name
+from metagraph.graph.conversation.model import Conversation, side_name
 from metagraph.graph.timeline import Cut, Shot
 
 EDGE = 4.0  # pixels on either side of a cut that take hold of it

@@ -13,7 +13,7 @@ from app.look.names import plain
 from app.stage.performance import Performance
 from app.translation import tr
 from app.widgets.lane_geometry import Mark, Scale
-from metagraph.playback.phases import phases
+from metagraph.playback.timing.phases import phases
 
 WORDS = {"in": tr("in of the range"), "out": tr("out of the range")}
 REACH = 8.0  # pixels from which something is drawn to a line; ours

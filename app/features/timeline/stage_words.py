@@ -7,7 +7,7 @@ from app.stage.playback_source import Shown
 from app.stage.session import Session
 from app.translation import tr
 from app.widgets.lane_geometry import Mark, outcome, wanted
-from metagraph.graph.conversation import Conversation, side_name
+from metagraph.graph.conversation.model import Conversation, side_name
 from metagraph.graph.model import LAYERS
 
 

@@ -35,10 +35,11 @@ from app.widgets.more_button import MoreButton
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from app.widgets.request_menu import MOOD_WORDS, request_menu
 from app.widgets.sentence import Sentence
-from metagraph.graph import edits, performance_edits
-from metagraph.graph.conversation import side_name
-from metagraph.graph.conversation_edits import change_conversation
+from metagraph.graph import edits
+from metagraph.graph.conversation.edits import change_conversation
+from metagraph.graph.conversation.model import side_name
 from metagraph.graph.edit_error import EditError
+from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Performance as KeptPerformance
 from metagraph.graph.words import FEELINGS

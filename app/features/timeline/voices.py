@@ -19,7 +19,7 @@ from metagraph.graph.requests import Line
 
 if TYPE_CHECKING:
     from app.widgets.waveforms import Envelope
-    from metagraph.graph.conversation import Word
+    from metagraph.graph.conversation.model import Word
 
 LONGEST = 36000.0  # seconds of a sound
 KEPT = 16000  # samples a second that a waveform needs

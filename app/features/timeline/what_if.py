@@ -17,8 +17,9 @@ from app.project.jobs import Jobs
 from app.stage.performance import Performance
 from app.translation import tr
 from app.widgets.lane_geometry import LEFT, Scale
-from metagraph.graph import edits, performance_edits
-from metagraph.graph.conversation_edits import change_conversation
+from metagraph.graph import edits
+from metagraph.graph.conversation.edits import change_conversation
+from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import Performance as KeptPerformance
 
@@ -209,7 +210,7 @@ class WhatIf(QObject):
 def plan_with(project: Project, kept: KeptPerformance | None, length: float, seed: int) -> Plan:
     """Return what another seed plays of a performance, or improvises."""
     from metagraph.playback.planner import make_plan
-    from metagraph.playback.running_plan import asks_of, perform
+    from metagraph.playback.planning.running_plan import asks_of, perform
 
     if kept is None:
         return make_plan(project, length, seed=seed)

@@ -15,11 +15,11 @@ from app.stage.transport import Transport
 from app.translation import tr
 from app.widgets.gesture import PressDrag, Reason
 from metagraph.graph import edits
+from metagraph.graph.editing.retiming import set_hold
 from metagraph.graph.model import Project
-from metagraph.graph.retiming import set_hold
 from metagraph.motion.retime import LONGEST, SHORTEST
-from metagraph.playback.timing import block_moved, moved_by, slipped
-from metagraph.suggest.snapping import Snap, nearest
+from metagraph.playback.timing.handles import block_moved, moved_by, slipped
+from metagraph.suggest.jumps.snapping import Snap, nearest
 
 SNAP = 7.0  # pixels within which a handle comes to rest
 MERGE = "timing"

@@ -19,9 +19,9 @@ from app.translation import tr
 from app.widgets.gesture import PressDrag, Reason
 from app.widgets.vocabulary import word
 from metagraph.graph.clip_source import course_of
-from metagraph.graph.retiming import set_kept
-from metagraph.playback.timing import WORDS
-from metagraph.suggest.snapping import Snap, nearest
+from metagraph.graph.editing.retiming import set_kept
+from metagraph.playback.timing.handles import WORDS
+from metagraph.suggest.jumps.snapping import Snap, nearest
 
 REACH = 5.0  # pixels from an end at which it is taken
 GRIP = 4.0  # pixels of an end

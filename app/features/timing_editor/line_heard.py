@@ -14,9 +14,9 @@ from app.stage.line_player import RATE
 from app.stage.playback_source import Shown
 from app.widgets.waveforms import Envelope
 from metagraph.graph.model import Action, Project
-from metagraph.playback.asked_lines import asked_line
 from metagraph.playback.life.track import Speech
 from metagraph.playback.life.voice import voice_of
+from metagraph.playback.planning.asked_lines import asked_line
 
 Array = NDArray[Any]
 

@@ -15,8 +15,8 @@ from app.features.timing_editor.rows import RULER, TrackRows
 from app.features.timing_editor.track import Facts, Kept
 from app.translation import tr, tr_told
 from app.widgets.vocabulary import word
-from metagraph.playback.timing import WORDS
-from metagraph.suggest.snapping import Snap
+from metagraph.playback.timing.handles import WORDS
+from metagraph.suggest.jumps.snapping import Snap
 
 HINTS = {
     "start": tr("where it begins in the clip"),

@@ -26,10 +26,10 @@ from app.translation import tr
 from app.widgets.memo import Once
 from metagraph.graph import anatomy, edits
 from metagraph.graph.clip_source import course_of
+from metagraph.graph.editing.retiming import keep_hand, set_hold, set_retime, set_speed
 from metagraph.graph.model import Project
-from metagraph.graph.retiming import keep_hand, set_hold, set_retime, set_speed
 from metagraph.motion.dope import DopeSheet, dope_sheet
-from metagraph.playback.timing import moved
+from metagraph.playback.timing.handles import moved
 
 Array = NDArray[Any]
 

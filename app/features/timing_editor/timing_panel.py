@@ -34,7 +34,7 @@ from app.widgets.restyling import set_sheet
 from app.widgets.sentence import Sentence
 from metagraph.graph.edit_error import EditError
 from metagraph.motion.retime import SPEEDS
-from metagraph.playback.speed_curves import joints_offered
+from metagraph.playback.timing.speed_curves import joints_offered
 
 LONGEST = 30  # letters of an action's name before it is cut in its middle
 

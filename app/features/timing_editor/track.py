@@ -14,15 +14,16 @@ from app.look.names import plain
 from app.translation import tr, tr_told
 from app.widgets.memo import Once
 from app.widgets.vocabulary import word
-from metagraph.graph import anatomy, end_gaps
+from metagraph.graph import anatomy
+from metagraph.graph.checks import end_gaps
 from metagraph.graph.clip_source import course_of
 from metagraph.graph.model import Action, ClipEntry, Project, Timing
 from metagraph.motion.retime import Hold
-from metagraph.playback.speed_curves import SpeedCurve, curves_of, speed_of
-from metagraph.playback.timing import WORDS, Block, Handle, blocks_of, handles_of
-from metagraph.suggest.jumps import Curves
-from metagraph.suggest.seen_jumps import Seen, far_ends, verdict
-from metagraph.suggest.stance_distance import StanceDistance, distance_of, measured
+from metagraph.playback.timing.handles import WORDS, Block, Handle, blocks_of, handles_of
+from metagraph.playback.timing.speed_curves import SpeedCurve, curves_of, speed_of
+from metagraph.suggest.jumps.found import Curves
+from metagraph.suggest.jumps.seen_jumps import Seen, far_ends, verdict
+from metagraph.suggest.stances.stance_distance import StanceDistance, distance_of, measured
 
 Array = NDArray[Any]
 

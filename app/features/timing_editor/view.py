@@ -40,7 +40,7 @@ from app.translation import tr
 from app.widgets.gesture import Hand
 from app.widgets.memo import Once
 from app.widgets.vocabulary import word
-from metagraph.suggest.snapping import Snap, snaps_of
+from metagraph.suggest.jumps.snapping import Snap, snaps_of
 
 ZOOM = 1.2
 TEXT = tr(

@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING
 from app.look.plural import clips_words, many
 from app.project.jobs import Job
 from app.translation import tr, tr_error
-from metagraph.file_names import file_stem
+from metagraph.common.file_names import file_stem
 from metagraph.formats.clips import digest, read_clips
-from metagraph.formats.gltf_writer import write_glb
+from metagraph.formats.gltf.writer import write_glb
 from metagraph.formats.imports import Loaded
 from metagraph.formats.store import relative
 from metagraph.formats.takes import REPAIRS
 from metagraph.graph.edit_error import EditError
+from metagraph.graph.editing.mirroring import TwinClip, mirrored_clips, place_twins, twin_clips
 from metagraph.graph.edits import add_clips
-from metagraph.graph.mirroring import TwinClip, mirrored_clips, place_twins, twin_clips
 from metagraph.graph.model import Project
 from metagraph.motion.adopt import adopt
 

@@ -12,20 +12,20 @@ from typing import Any
 
 import msgspec
 
+from metagraph.common.file_names import file_stems
+from metagraph.common.wording import told
+from metagraph.common.xml_text import replaced_note
 from metagraph.engines.engine_machine import Machine, State, animations, machines, write_machine_glb
 from metagraph.engines.targets.losses import MACHINE
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
 from metagraph.errors import error_words
-from metagraph.file_names import file_stems
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.requests import RequestError
-from metagraph.playback.bml_writer import write_bml
-from metagraph.playback.phases import phases
-from metagraph.wording import told
-from metagraph.xml_text import replaced_note
+from metagraph.playback.bml.writer import write_bml
+from metagraph.playback.timing.phases import phases
 
 # --- BML
 
@@ -146,7 +146,7 @@ def _words(state: State) -> tuple[str, str]:
 
 def write_smartbody(order: ExportOrder) -> Made:
     """Write the map, and a BVH for each animation it names and each posture."""
-    from metagraph.formats.bvh import write_bvh
+    from metagraph.formats.bvh.file import write_bvh
 
     built = machines(order.project)
     script = order.folder / f"{order.stem}_gestures.py"

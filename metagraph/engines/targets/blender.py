@@ -5,10 +5,10 @@ from __future__ import annotations
 import io
 import zipfile
 
+from metagraph.common.wording import told
 from metagraph.engines.targets.runtimes import RUNTIMES, written
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
 from metagraph.formats.atomic import write_atomically
-from metagraph.wording import told
 
 ADDON = "metagraph_blender"
 

@@ -34,6 +34,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Literal
 
+from metagraph.common.wording import told
 from metagraph.engines.engine_machine import Arrow, Machine, State, machines, write_machine_glb
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
 from metagraph.engines.targets.meshes import mesh_of
@@ -42,7 +43,6 @@ from metagraph.formats.atomic import write_atomically
 from metagraph.graph import anatomy
 from metagraph.graph.expand import ends_in
 from metagraph.graph.model import Layer, Part, Project
-from metagraph.wording import told
 
 Version = Literal[3, 4]
 Place = tuple[float, float]

@@ -13,6 +13,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
+from metagraph.common.wording import told
 from metagraph.engines.engine_machine import Machine, State, animations, machines
 from metagraph.engines.targets.losses import MACHINE
 from metagraph.engines.targets.meshes import mesh_of
@@ -21,7 +22,6 @@ from metagraph.formats.atomic import write_atomically
 from metagraph.graph import anatomy
 from metagraph.graph.expand import ends_in
 from metagraph.graph.model import Layer, Part, Project
-from metagraph.wording import told
 
 OWNERS: Mapping[Part, Layer] = {
     "legs": "body",
@@ -219,7 +219,7 @@ class _Lane:
 
 def write(order: ExportOrder) -> Made:
     """Write the GLB."""
-    from metagraph.formats.gltf_writer import write_glb
+    from metagraph.formats.gltf.writer import write_glb
 
     project, glb = order.project, order.folder / f"{order.stem}.glb"
     assert project.skeleton is not None

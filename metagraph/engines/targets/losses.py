@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from metagraph.common.wording import told
 from metagraph.engines.targets.target import Loss
 from metagraph.graph.model import Project
-from metagraph.wording import told
 
 
 def _varied(project: Project) -> int:

@@ -19,16 +19,16 @@ from pathlib import Path
 
 import msgspec
 
-from metagraph.budgets import TEXT_FILE
+from metagraph.common.budgets import TEXT_FILE
+from metagraph.common.files import is_file, is_inside, read_file
+from metagraph.common.network_paths import reason
+from metagraph.common.wording import told
 from metagraph.engines.export_error import ExportError
 from metagraph.errors import FileError
-from metagraph.files import is_file, is_inside, read_file
 from metagraph.formats.atomic import FORSAKEN, write_atomically
 from metagraph.formats.clips import digest
 from metagraph.formats.locking import mark_is_gone, process_mark
 from metagraph.formats.outputs import refuse_inputs
-from metagraph.network_paths import reason
-from metagraph.wording import told
 
 RECORD = ".metagraph-export.json"
 BEFORE = ".first"  # of a staging folder: what is moved before everything else

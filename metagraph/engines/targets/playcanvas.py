@@ -11,14 +11,14 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
+from metagraph.common.wording import told
 from metagraph.engines.engine_machine import Arrow, Machine, machines, write_machine_glb
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Made
 from metagraph.formats.atomic import write_atomically
-from metagraph.formats.gltf_writer import SCENE
+from metagraph.formats.gltf.writer import SCENE
 from metagraph.graph.model import Project
-from metagraph.wording import told
 
 
 def state_graph(project: Project, built: tuple[Machine, ...]) -> dict[str, Any]:

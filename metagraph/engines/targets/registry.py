@@ -8,6 +8,7 @@ from functools import cache
 from importlib import import_module
 from pathlib import Path
 
+from metagraph.common.wording import told
 from metagraph.engines.export import Chosen, nothing_chosen, sound, stem_of
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets.placing import Staging
@@ -17,7 +18,6 @@ from metagraph.formats.atomic import synced_together
 from metagraph.formats.store import writable
 from metagraph.graph.model import Project
 from metagraph.motion.character_mesh import Character
-from metagraph.wording import told
 
 # Modules of this package that have TARGETS, in the order they are offered.
 MODULES = (

@@ -7,10 +7,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 from metagraph import engines
+from metagraph.common.wording import told
 from metagraph.engines.export import write
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
 from metagraph.errors import FileError
-from metagraph.wording import told
 
 RUNTIMES = Path(engines.__file__).with_name("runtimes")
 REQUESTS = "../../../../docs/live.md"  # where a README finds them here; an export carries them along

@@ -12,12 +12,12 @@ from collections.abc import Iterator
 from typing import Any
 from xml.etree import ElementTree as Xml
 
+from metagraph.common.wording import told
 from metagraph.engines.engine_machine import Arrow, Machine, State, machines, write_machine_glb
 from metagraph.engines.targets.losses import MACHINE
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
 from metagraph.formats.atomic import write_atomically
-from metagraph.wording import told
 
 HOST = Loss(
     told(

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from metagraph.common.wording import Told, told
 from metagraph.engines.export import Chosen, nothing_chosen
 from metagraph.graph.model import Project
 from metagraph.motion.character_mesh import Character
-from metagraph.wording import Told, told
 
 Tell = Callable[[int, int, str], None]
 

@@ -15,6 +15,8 @@ from typing import Any
 
 import numpy as np
 
+from metagraph.common.file_names import file_stems
+from metagraph.common.wording import told
 from metagraph.engines.engine_machine import Arrow, Machine, State, animations, machines
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
 from metagraph.engines.targets.meshes import mesh_of
@@ -38,13 +40,11 @@ from metagraph.engines.targets.unity_yaml import (
     meta,
     to,
 )
-from metagraph.file_names import file_stems
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph import anatomy
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
-from metagraph.wording import told
 
 BASE = "base"  # the layer at the bottom, its state and clip
 IF, EQUALS = 1, 6  # modes of conditions
@@ -267,7 +267,7 @@ def write(order: ExportOrder) -> Made:
     """Write controller, masks, clips and a guide, each with its `.meta`, and the mesh as a GLB, where there
     is one.
     """
-    from metagraph.formats.gltf_writer import write_glb
+    from metagraph.formats.gltf.writer import write_glb
 
     project, built = order.project, machines(order.project)
     skeleton = project.skeleton

@@ -13,13 +13,13 @@ from typing import Any
 
 import msgspec
 
+from metagraph.common.wording import told
 from metagraph.engines.export import exported_clips
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.runtimes import written
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
-from metagraph.formats.usd_writer import CHARACTER, clip_paths, named, write_usd
-from metagraph.formats.usda import Names, Prim, number, text, texts
-from metagraph.wording import told
+from metagraph.formats.usd.usda import Names, Prim, number, text, texts
+from metagraph.formats.usd.writer import CHARACTER, clip_paths, named, write_usd
 
 GRAPH = f"{CHARACTER}/Graph"
 

@@ -15,22 +15,22 @@ from typing import Any
 import msgspec
 import numpy as np
 
+from metagraph.common.files import read_file
+from metagraph.common.wording import told
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
 from metagraph.errors import FileError
-from metagraph.files import read_file
-from metagraph.formats.gltf_writer import write_glb
+from metagraph.formats.gltf.writer import write_glb
 from metagraph.graph import anatomy
-from metagraph.graph.expression_presets import presets_of
-from metagraph.graph.face import axes_of
-from metagraph.graph.face_curves import worn
+from metagraph.graph.face.curves import worn
+from metagraph.graph.face.expression_presets import presets_of
+from metagraph.graph.face.rig import axes_of
 from metagraph.graph.model import Project
 from metagraph.motion.joint_map import known_roles
 from metagraph.motion.roles import REQUIRED
 from metagraph.motion.skeleton import Pose, Skeleton, unique_names
 from metagraph.motion.t_pose import t_pose
-from metagraph.wording import told
 
 META = "vrm_meta.json"
 LICENCE = "https://vrm.dev/licenses/1.0/"

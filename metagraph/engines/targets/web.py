@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from metagraph.common.wording import told
 from metagraph.engines.targets.runtimes import BML, RUNTIMES, copied, written
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
 from metagraph.engines.targets.web_tools import NET, THREE, at_hand, bundled, import_map, three
 from metagraph.formats.atomic import write_atomically
-from metagraph.wording import told
 
 CHARACTER = "metagraph-character.js"  # the element, and with it all that it needs
 _WHOSE = f"/*! Metagraph's player with three.js {THREE}, MIT, threejs.org */\n".encode()

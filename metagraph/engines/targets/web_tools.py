@@ -16,8 +16,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-from metagraph import programs
-from metagraph.disk_cache import cache_folder
+from metagraph.common import programs
+from metagraph.common.disk_cache import cache_folder
 
 THREE, ESBUILD = "0.187.0", "0.25.12"  # the versions the player was tested with
 NET = f"https://cdn.jsdelivr.net/npm/three@{THREE}/"  # where a page finds three.js that has none of its own

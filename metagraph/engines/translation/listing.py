@@ -27,13 +27,13 @@ LISTING = (
     Translated("metagraph.motion.plain_vectors", "plain_vectors"),
     Translated("metagraph.motion.contact_spans", "contact_spans"),
     Translated("metagraph.motion.contact_solve", "contact_solve"),
-    Translated("metagraph.playback.cue_times", "cue_times"),
-    Translated("metagraph.playback.contact_goals", "contact_goals"),
+    Translated("metagraph.playback.posing.cue_times", "cue_times"),
+    Translated("metagraph.playback.posing.contact_goals", "contact_goals"),
     Translated("metagraph.motion.weight_solve", "weight_solve"),
-    Translated("metagraph.playback.follow_through", "follow_through"),
+    Translated("metagraph.playback.posing.follow_through", "follow_through"),
     Translated("metagraph.motion.feet_solve", "feet_solve"),
-    Translated("metagraph.playback.planted_feet", "planted_feet"),
-    Translated("metagraph.playback.choice", "choice"),
+    Translated("metagraph.playback.posing.planted_feet", "planted_feet"),
+    Translated("metagraph.playback.planning.choice", "choice"),
     Translated(
         "metagraph.playback.plan",
         "meta_plan",
@@ -64,16 +64,18 @@ LISTING = (
         ),
     ),
     Translated(
-        "metagraph.playback.markov", "markov", ("write", "_row", "performs", "length", "KINDS", "BEGIN")
+        "metagraph.playback.planning.markov",
+        "markov",
+        ("write", "_row", "performs", "length", "KINDS", "BEGIN"),
     ),
-    Translated("metagraph.playback.mood", "mood"),
-    Translated("metagraph.playback.replan", "replan"),
-    Translated("metagraph.playback.phase_times", "phase_times"),
-    Translated("metagraph.playback.bounds", "bounds"),
-    Translated("metagraph.playback.remembering", "remembering"),
-    Translated("metagraph.playback.cue_shapes", "cue_shapes"),
-    Translated("metagraph.playback.sampling", "sampling"),
-    Translated("metagraph.playback.layer_planning", "layer_planning"),
+    Translated("metagraph.playback.planning.mood", "mood"),
+    Translated("metagraph.playback.planning.replan", "replan"),
+    Translated("metagraph.playback.timing.phase_times", "phase_times"),
+    Translated("metagraph.playback.planning.bounds", "bounds"),
+    Translated("metagraph.playback.planning.remembering", "remembering"),
+    Translated("metagraph.playback.planning.cue_shapes", "cue_shapes"),
+    Translated("metagraph.playback.planning.sampling", "sampling"),
+    Translated("metagraph.playback.planning.layer_planning", "layer_planning"),
     Translated("metagraph.playback.life.mouth", "mouth"),
     Translated("metagraph.playback.life.graphemes", "graphemes"),
     Translated("metagraph.playback.life.line_timing", "line_timing"),
@@ -85,19 +87,19 @@ LISTING = (
     Translated("metagraph.playback.life.expressions", "expressions"),
     Translated("metagraph.playback.life.sympathy", "sympathy"),
     Translated("metagraph.playback.life.schedule", "schedule"),
-    Translated("metagraph.playback.hearing", "hearing"),
-    Translated("metagraph.playback.finding", "finding"),
-    Translated("metagraph.playback.meaning", "meaning"),
+    Translated("metagraph.playback.planning.hearing", "hearing"),
+    Translated("metagraph.playback.planning.finding", "finding"),
+    Translated("metagraph.playback.planning.meaning", "meaning"),
     Translated("metagraph.speech.word_gestures", "word_gestures"),
 )
 
 # Modules that each runtime has of its own, with what translated ones take from them.
 NATIVE = {
-    "metagraph.playback.phases": "phases",  # found from motion; exports tell them
-    "metagraph.playback.vigour": "vigour",  # as are phases
-    "metagraph.playback.hashing": "hashing",  # integers of 32 bits, which languages have differently
+    "metagraph.playback.timing.phases": "phases",  # found from motion; exports tell them
+    "metagraph.playback.planning.vigour": "vigour",  # as are phases
+    "metagraph.playback.planning.hashing": "hashing",  # integers of 32 bits, which languages have differently
     "metagraph.graph.words": "words",  # the words layers, kinds and modes are told apart by
-    "metagraph.graph.face_names": "words",  # and mouth shapes
+    "metagraph.graph.face.names": "words",  # and mouth shapes
     "metagraph.graph.life": "life",  # the life layers' settings
     "metagraph.playback.life.spots": "spots",  # names or points
     "metagraph.playback.life.voice": "voice",  # how lines sound

@@ -51,8 +51,8 @@ def understood(listing: Sequence[Translated], root: Path) -> dict[Translated, So
     options.per_module_options = dict.fromkeys(UNKNOWN, left_out)
     paths = {one: root / f"{one.module.replace('.', '/')}.py" for one in listing}
     found = build.build([BuildSource(str(p), one.module) for one, p in paths.items()], options)
-    own = tuple(f"{p.name}:" for one, p in paths.items() if not one.only)
-    wrong = [e for e in found.errors if e.rpartition("/")[2].startswith(own)]
+    own = [f"{one.module.replace('.', '/')}.py:" for one in listing if not one.only]
+    wrong = [e for e in found.errors if any(place in e.replace("\\", "/") for place in own)]
     if wrong:  # elsewhere there are errors, too, since arrays are left out
         raise SubsetError("\n".join(wrong))
     return {

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
-from metagraph.graph.face import CHANNELS, SIDES, FaceRig, axes_of, find_face
+from metagraph.graph.face.rig import CHANNELS, SIDES, FaceRig, axes_of, find_face
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.joint_map import known_roles

@@ -28,8 +28,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.anatomy import base_pose
-from metagraph.graph.face import CHANNELS, LIDS, MOUTH, UPPER_FOLLOWS, UPPER_LID_SHUT, FaceRig
-from metagraph.graph.face_names import MOOD_FACE
+from metagraph.graph.face.names import MOOD_FACE
+from metagraph.graph.face.rig import CHANNELS, LIDS, MOUTH, UPPER_FOLLOWS, UPPER_LID_SHUT, FaceRig
 from metagraph.graph.life import Life
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Pose
@@ -41,8 +41,8 @@ from metagraph.playback.life.lips import mouth
 from metagraph.playback.life.schedule import Schedule
 from metagraph.playback.life.solve import FaceLids, LifeDials, LifeNow, enlivened
 from metagraph.playback.life.track import Track
-from metagraph.playback.mood import Bearing, bearing
-from metagraph.playback.mood import shown as mood_shown
+from metagraph.playback.planning.mood import Bearing, bearing
+from metagraph.playback.planning.mood import shown as mood_shown
 
 Array = NDArray[Any]
 

@@ -17,12 +17,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from metagraph.graph.life import Life
-from metagraph.playback.choice import chance_of, keyed, uniform
-from metagraph.playback.hashing import Bits
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.track import Speech, Track
 from metagraph.playback.life.voice import Voice, stressed
-from metagraph.playback.mood import Bearing, faded, within
+from metagraph.playback.planning.choice import chance_of, keyed, uniform
+from metagraph.playback.planning.hashing import Bits
+from metagraph.playback.planning.mood import Bearing, faded, within
 
 # Swells: how the face of a mood comes up; rows: length s, amount, 1 where the mode was listening.
 SWELL_GAP = 3.5  # seconds between two, on average

@@ -12,7 +12,7 @@ from metagraph.graph.requests import Point
 from metagraph.graph.words import Layer, Mode
 from metagraph.playback.life.line_timing import LineTiming, alike_timings, extended, timed_seconds, told_text
 from metagraph.playback.life.spots import Spot, same_spot
-from metagraph.playback.mood import MoodFrom
+from metagraph.playback.planning.mood import MoodFrom
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.graph.face_names import VISEMES
+from metagraph.graph.face.names import VISEMES
 from metagraph.playback.life.mouth import soften
 from metagraph.playback.life.track import Speech, Track
 from metagraph.playback.life.voice import Voice, voice_of

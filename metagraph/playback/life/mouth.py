@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil
 
-from metagraph.graph.face_names import VISEMES
+from metagraph.graph.face.names import VISEMES
 
 # How much each of VISEMES rules its neighbours: tongue and palate need not be seen. What closes the mouth
 # does not take part in the mean.

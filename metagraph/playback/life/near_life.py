@@ -7,7 +7,7 @@ from typing import Any
 
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.schedule import Schedule
-from metagraph.playback.strand import joined
+from metagraph.playback.planning.strand import joined
 
 LANES = ("modes", "moods", "breaths", "aversions", "saccades", "blinks", "swells", "emphases")
 

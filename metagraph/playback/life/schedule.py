@@ -14,8 +14,6 @@ from dataclasses import dataclass, field, replace
 
 from metagraph.graph.life import Life, Manner, manner, same_life
 from metagraph.graph.words import MODES
-from metagraph.playback.choice import chance_of, keyed, uniform
-from metagraph.playback.hashing import Bits
 from metagraph.playback.life.expressions import emphases_on, swells_on
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.track import Track
@@ -28,7 +26,9 @@ from metagraph.playback.life.wanted import (
     targets_between,
     ways_in,
 )
-from metagraph.playback.mood import Mood
+from metagraph.playback.planning.choice import chance_of, keyed, uniform
+from metagraph.playback.planning.hashing import Bits
+from metagraph.playback.planning.mood import Mood
 
 BLOCK = 8.0  # seconds drawn at a time, so that a running plan need not draw at every tick
 RECALL = 4.0  # seconds of looks kept when the past is forgotten: longer than any turn of the head takes

@@ -12,9 +12,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from metagraph.playback.choice import uniform
-from metagraph.playback.hashing import Bits
-from metagraph.playback.mood import Mood, MoodFrom, Moods, mood_at, mood_edges
+from metagraph.playback.planning.choice import uniform
+from metagraph.playback.planning.hashing import Bits
+from metagraph.playback.planning.mood import Mood, MoodFrom, Moods, mood_at, mood_edges
 
 DELAY = 0.7  # seconds until a mood is taken up, at least; as much again by chance
 SHORTEST = 0.5  # seconds: what passes sooner is not taken up

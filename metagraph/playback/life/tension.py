@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.graph.face import SIDES
+from metagraph.graph.face.rig import SIDES
 from metagraph.motion.joint_map import FINGERS
 
 Array = NDArray[Any]

@@ -27,7 +27,7 @@ from metagraph.playback.life.items import (
     apart,
     cut,
 )
-from metagraph.playback.mood import MoodFrom, lasting
+from metagraph.playback.planning.mood import MoodFrom, lasting
 
 __all__ = [
     "BlinkAt",

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.graph.face_names import VISEMES
+from metagraph.graph.face.names import VISEMES
 from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.graphemes import read_aloud, spelled
 from metagraph.playback.life.items import Speech

@@ -13,7 +13,7 @@ from metagraph.graph.words import MODES, Mode
 from metagraph.playback.life.items import LookAt
 from metagraph.playback.life.spots import Spot, named, placed, same_spot
 from metagraph.playback.life.track import Track
-from metagraph.playback.mood import Mood, Moods, life_of, mood_at, mood_edges
+from metagraph.playback.planning.mood import Mood, Moods, life_of, mood_at, mood_edges
 
 PARTNER = "user"  # whom the character talks with, and looks at when nothing else is asked for
 AHEAD = "ahead"  # nothing in particular: eyes and head as the layers have them

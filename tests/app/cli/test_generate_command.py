@@ -20,19 +20,19 @@ import soundfile
 from app.cli import generate_training
 from app.cli.parser import main
 from metagraph.formats.clips import read_clips
-from metagraph.formats.gltf_writer import write_glb
+from metagraph.formats.gltf.writer import write_glb
 from metagraph.formats.store import open_project, save_project
 from metagraph.generation import train_process
 from metagraph.generation.chunks import GUIDANCE
 from metagraph.generation.features import RATE
-from metagraph.generation.planted import performed as perform
 from metagraph.generation.stored import read_model, write_model
 from metagraph.generation.take_files import find_takes, read_takes
 from metagraph.generation.train_plan import card_of
-from metagraph.graph.conversation import Conversation
+from metagraph.graph.conversation.model import Conversation
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
+from metagraph.research.generation.planted import performed as perform
 from tests.generation.makers import babble, moving, stance, tiny, untrained
 
 TALK = Path(__file__).resolve().parents[3] / "sample_clips" / "conversation" / "talk.ogg"
@@ -60,7 +60,7 @@ def performed_once() -> Iterator[None]:
         return known[key]
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("metagraph.generation.planted.performed", performed)
+        patch.setattr("metagraph.research.generation.planted.performed", performed)
         yield
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from app.cli.parser import main
-from metagraph.formats.journal import Journal, journal_path
 from metagraph.formats.locking import new_owner
+from metagraph.formats.project.journal import Journal, journal_path
 from metagraph.formats.store import SUFFIX, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project

@@ -19,9 +19,9 @@ import pytest
 from app.cli.live_graph_options import NAME, graphs_of
 from app.cli.parser import main
 from metagraph.formats.clips import read_clips
-from metagraph.formats.conversation_writers import write_json
-from metagraph.formats.gltf_writer import write_glb
-from metagraph.graph.conversation import Conversation, Side
+from metagraph.formats.conversations.writers import write_json
+from metagraph.formats.gltf.writer import write_glb
+from metagraph.graph.conversation.model import Conversation, Side
 from metagraph.graph.model import Project
 from metagraph.live.kept_motion import read_kept
 from metagraph.motion.skeleton import Skeleton

@@ -95,7 +95,7 @@ def test_the_requests_are_written_as_a_performance(
 
 
 def test_plain_motion_is_written(project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    from metagraph.formats.bvh import read_bvh
+    from metagraph.formats.bvh.file import read_bvh
 
     out = tmp_path / "show.bvh"
     assert run(capsys, project, DEEP, "-o", out)[1]["written"] == [str(out)]

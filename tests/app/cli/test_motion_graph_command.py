@@ -12,10 +12,10 @@ import pytest
 import soundfile
 
 from app.cli.parser import main
-from metagraph.formats.bvh import write_bvh
+from metagraph.formats.bvh.file import write_bvh
 from metagraph.formats.clips import read_clips
-from metagraph.formats.conversation_writers import write_elan, write_json, write_textgrid
-from metagraph.graph.conversation import Conversation, Side
+from metagraph.formats.conversations.writers import write_elan, write_json, write_textgrid
+from metagraph.graph.conversation.model import Conversation, Side
 from tests.synthesis.talking import VOICE, aloud, speech, talking
 
 SECONDS = 18

@@ -19,9 +19,9 @@ from app.cli.outputs import FOLDERS, NEVER, OUTPUTS, WRITTEN, ProjectOutput
 from app.cli.parser import COMMANDS, _parser, main
 from app.project.version_count import set_version_count, version_count
 from metagraph.errors import FileError
-from metagraph.formats.gltf_writer import write_glb
+from metagraph.formats.gltf.writer import write_glb
+from metagraph.formats.project.versions import earlier_versions
 from metagraph.formats.store import SUFFIX, open_project, read_project, save_project
-from metagraph.formats.versions import earlier_versions
 from metagraph.graph import edits
 from tests.projects import clip
 

@@ -15,7 +15,7 @@ import pytest
 
 from app.cli.parser import COMMANDS, main
 from metagraph.engines.reading import read_export
-from metagraph.formats.gltf import write_glb
+from metagraph.formats.gltf.reader import write_glb
 from metagraph.formats.store import SUFFIX, open_project, read_project, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project

@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 
 from app.cli.parser import main
-from metagraph.study.perceive.folder import read_folder
+from metagraph.research.study.perceive.folder import read_folder
 from preview.video import write_video
 from preview.video_reading import read_pictures, read_video_sound, video_seconds
 from tests.processes import started
-from tests.study.perceive.perceive_makers import sheet, study, text
+from tests.research.study.perceive.perceive_makers import sheet, study, text
 
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "sample.metagraph.yaml"
 

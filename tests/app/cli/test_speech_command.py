@@ -11,7 +11,7 @@ import pytest
 
 from app.cli.parser import main
 from metagraph.formats.store import absolute, open_project, save_project
-from metagraph.formats.transcripts import read_transcript
+from metagraph.formats.transcripts.reader import read_transcript
 from tests.speech import group, talk
 
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips"

@@ -8,12 +8,12 @@ from typing import Any
 import pytest
 
 from app.project.annotation_reading import begin, into, remember, told
-from metagraph.formats.data import from_data, to_data
 from metagraph.formats.elan import read_elan
+from metagraph.formats.project.data import from_data, to_data
 from metagraph.graph.model import LAYERS, Project
-from metagraph.playback.annotation import Annotation, Interval, Tier
-from metagraph.playback.learn import acts_of_asks
-from metagraph.playback.running_plan import perform
+from metagraph.playback.learning.annotation import Annotation, Interval, Tier
+from metagraph.playback.learning.learn import acts_of_asks
+from metagraph.playback.planning.running_plan import perform
 
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "annotation" / "conversation.eaf"
 

@@ -12,8 +12,8 @@ from app.project.autosave import shelter, state_folder
 from app.project.document import UNDO_STEPS, Document
 from app.project.writing import project_name
 from metagraph.errors import FileError
-from metagraph.formats.history import Step
-from metagraph.formats.journal_records import read_records
+from metagraph.formats.project.history import Step
+from metagraph.formats.project.journal_records import read_records
 from metagraph.formats.recovery import read_journal, recover
 from metagraph.formats.store import SUFFIX, read_project, save_project
 from metagraph.graph import edits

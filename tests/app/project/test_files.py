@@ -18,9 +18,9 @@ from app.project.files import Files
 from app.project.importing import Importing
 from app.project.jobs import Jobs
 from app.project.leftovers import untitled_journals
-from metagraph.formats.bvh import write_bvh
-from metagraph.formats.journal_records import read_records
+from metagraph.formats.bvh.file import write_bvh
 from metagraph.formats.locking import lock_path, new_owner
+from metagraph.formats.project.journal_records import read_records
 from metagraph.formats.recovery import read_journal
 from metagraph.formats.store import open_project, read_project, save_project
 from metagraph.graph import edits

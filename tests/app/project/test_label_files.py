@@ -10,7 +10,7 @@ import pytest
 from PySide6.QtWidgets import QFileDialog
 
 from app.project.label_files import clips_beside
-from metagraph.formats.bvh import write_bvh
+from metagraph.formats.bvh.file import write_bvh
 from metagraph.formats.clips import read_clips
 
 pytestmark = pytest.mark.window

@@ -9,8 +9,8 @@ import pytest
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication, QMessageBox
 
-from metagraph import network_paths
-from metagraph.formats.bvh import write_bvh
+from metagraph.common import network_paths
+from metagraph.formats.bvh.file import write_bvh
 from metagraph.formats.store import closed_paths
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from app.project.document import Document
 from app.project.opening import load_recovered
-from metagraph.formats.data import to_data
+from metagraph.formats.project.data import to_data
 from metagraph.formats.recovery import read_journal
 from metagraph.formats.store import read_project, save_project
 from metagraph.graph.model import Project

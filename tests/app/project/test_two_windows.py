@@ -15,8 +15,8 @@ from app.project import questions
 from app.project.document import Document
 from app.project.files import Files
 from app.project.jobs import Jobs
-from metagraph.formats.journal import Journal, journal_path
 from metagraph.formats.locking import STALE, lock_path, new_owner
+from metagraph.formats.project.journal import Journal, journal_path
 from metagraph.formats.recovery import left_journals, read_journal
 from metagraph.formats.store import read_project, save_project
 from metagraph.graph import edits

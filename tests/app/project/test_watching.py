@@ -18,7 +18,7 @@ pytestmark = [pytest.mark.window, pytest.mark.gl]
 @pytest.fixture
 def opened(drive, toy, tmp_path, monkeypatch):
     """A window on a project of two files, one of them placed."""
-    from metagraph.formats.gltf_writer import write_glb
+    from metagraph.formats.gltf.writer import write_glb
     from metagraph.graph import edits
 
     monkeypatch.setattr(watching, "EVERY", 100)
@@ -41,7 +41,7 @@ def opened(drive, toy, tmp_path, monkeypatch):
 
 
 def write(drive, name: str, seconds: float) -> None:
-    from metagraph.formats.gltf_writer import write_glb
+    from metagraph.formats.gltf.writer import write_glb
 
     write_glb(drive.place / f"{name}.glb", [drive.toy.clip(name, seconds)])
 

@@ -22,7 +22,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.problems import ProblemButton
-from metagraph.formats.bvh import write_bvh
+from metagraph.formats.bvh.file import write_bvh
 from metagraph.formats.store import save_project
 from metagraph.graph import edits
 

@@ -17,8 +17,8 @@ from PySide6.QtTest import QTest
 from app.cli.parser import main
 from app.stage.conversation_plans import ConversationPlans, keep
 from metagraph.formats.store import absolute, open_project, save_project
-from metagraph.graph import conversation_edits
-from metagraph.graph.conversation import Conversation, Segment, Side
+from metagraph.graph.conversation import edits as conversation_edits
+from metagraph.graph.conversation.model import Conversation, Segment, Side
 from metagraph.graph.requests import Gesture, Look, Place
 from preview.figure import SkinnedFigure
 
@@ -257,7 +257,7 @@ def test_a_side_can_move_with_a_clip_instead_of_its_graph_and_still_speaks_and_a
 
 def test_a_generated_clip_moves_what_is_above_the_hips_and_is_written_so(talking, tmp_path):
     from app.cli.render_command import bake_to
-    from metagraph.formats.bvh import read_bvh
+    from metagraph.formats.bvh.file import read_bvh
     from metagraph.graph import anatomy
 
     project = open_project(talking).project
@@ -345,7 +345,7 @@ def test_all_of_three_are_shown_whichever_of_them_is_looked_at(three: Path) -> N
 
 
 def test_what_three_do_is_kept_with_whom_they_look_at_and_plays_the_same(three: Path) -> None:
-    from metagraph.playback.running_plan import perform
+    from metagraph.playback.planning.running_plan import perform
     from tests.posing import pose_at
 
     project = open_project(three).project

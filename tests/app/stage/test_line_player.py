@@ -117,7 +117,7 @@ def test_without_a_device_it_says_so_once(stage, monkeypatch):
 
 
 def test_lines_that_go_are_not_heard_any_more(stage, qtbot):
-    from metagraph.graph import performance_edits
+    from metagraph.graph.editing import performances as performance_edits
 
     stage.document.edit("Remove", lambda p: performance_edits.set_line(p, "1", None))
     qtbot.waitUntil(lambda: not stage.parts)

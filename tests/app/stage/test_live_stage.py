@@ -9,7 +9,7 @@ import pytest
 
 from app.stage.live_stage import TAKES, WINDOW, LiveStage
 from metagraph.graph import edits
-from metagraph.graph.conversation import Conversation, Side
+from metagraph.graph.conversation.model import Conversation, Side
 from metagraph.graph.model import Project
 from metagraph.live.graph_motion import recorded_takes
 from metagraph.live.messages import Generate

@@ -10,7 +10,7 @@ import pytest
 
 from app.cli.render_command import pictures
 from app.stage.playback_source import alone
-from metagraph.formats.gltf import read_character
+from metagraph.formats.gltf.reader import read_character
 from metagraph.formats.imports import import_files
 from metagraph.graph import edits
 from metagraph.graph.model import Project
@@ -63,7 +63,7 @@ def test_the_characters_own_morph_targets_are_known_when_it_is_opened(
 ) -> None:
     """A face is recognised from what the character has, not only from what clips move."""
     from app.project.opening import open_whole
-    from metagraph.formats.gltf import morph_targets
+    from metagraph.formats.gltf.reader import morph_targets
     from metagraph.formats.store import save_project
     from metagraph.graph.life import Face
 

@@ -13,8 +13,9 @@ from app.stage.performance import Performance
 from app.stage.playback_source import LEAD, alone, in_context
 from app.stage.playhead import Playhead
 from app.stage.session import Session
-from metagraph.graph import edits, performance_edits
+from metagraph.graph import edits
 from metagraph.graph import requests as a
+from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import LAYERS, Project
 from tests.posing import pose_at
 

@@ -10,10 +10,10 @@ import pytest
 
 from app.project.jobs import Job
 from app.stage.render_process import RenderOrder, write
-from metagraph.formats.bvh import read_bvh
+from metagraph.formats.bvh.file import read_bvh
 from metagraph.formats.store import open_project
-from metagraph.graph import performance_edits
 from metagraph.graph import requests as a
+from metagraph.graph.editing import performances as performance_edits
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -52,7 +52,7 @@ def test_a_range_of_it_is_what_the_whole_has_there(qapp, talk, tmp_path):
 
 
 def test_motion_is_the_performance(qapp, talk, tmp_path):
-    from metagraph.playback.running_plan import perform
+    from metagraph.playback.planning.running_plan import perform
     from tests.posing import pose_at
 
     project, ident = talk

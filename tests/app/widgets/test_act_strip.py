@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QApplication
 from app.project.document import Document
 from app.stage.session import Session
 from app.widgets.act_strip import LEFT, Strip, clock, place
-from metagraph.playback.learn import Act
+from metagraph.playback.learning.learn import Act
 
 ACTS = {
     "arms": (

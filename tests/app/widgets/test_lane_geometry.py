@@ -29,9 +29,9 @@ from app.widgets.lane_geometry import (
 from app.widgets.request_menu import STAGE
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS
-from metagraph.playback.extend_performance import answer
 from metagraph.playback.planner import make_plan
-from metagraph.playback.running_plan import perform
+from metagraph.playback.planning.extend_performance import answer
+from metagraph.playback.planning.running_plan import perform
 
 
 @given(first=st.floats(0, 1e4), each=st.floats(2, 400), seconds=st.floats(0, 1e4))

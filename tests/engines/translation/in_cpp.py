@@ -8,10 +8,11 @@ from typing import Any
 
 from metagraph.graph.edits import set_settings
 from metagraph.graph.model import LIMBS, MetaGraph, Project
-from metagraph.playback import markov, phases
-from metagraph.playback.mood import Mood, MoodFrom, Moods
 from metagraph.playback.plan import MetaRequest
-from metagraph.playback.vigour import vigour
+from metagraph.playback.planning import markov
+from metagraph.playback.planning.mood import Mood, MoodFrom, Moods
+from metagraph.playback.planning.vigour import vigour
+from metagraph.playback.timing import phases
 
 SEED, UNTIL, BUSY = 7, 120.0, 3.25  # of what a model writes
 LAYER_SEED = 11

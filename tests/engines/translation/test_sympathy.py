@@ -12,7 +12,7 @@ import pytest
 
 from metagraph.engines.translation.listing import RUNTIMES
 from metagraph.playback.life.sympathy import Laugh, laughs_along, moods_taken_up
-from metagraph.playback.mood import Mood, MoodFrom, Moods
+from metagraph.playback.planning.mood import Mood, MoodFrom, Moods
 
 SPANS = [
     (3.0, 0.79, 0.11, 9.5),

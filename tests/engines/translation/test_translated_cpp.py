@@ -5,12 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 from metagraph.graph.model import Project, Settings
-from metagraph.playback import layer_planning, markov, replan
-from metagraph.playback.choice import key32
 from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.graphemes import read_aloud, spelled
 from metagraph.playback.life.mouth import accents_of, mouth_track
 from metagraph.playback.plan import LayerPlan, MetaAction, MetaRequest, Report
+from metagraph.playback.planning import layer_planning, markov, replan
+from metagraph.playback.planning.choice import key32
 from tests.engines import cpp_program
 from tests.engines.translation.in_cpp import (
     BUSY,

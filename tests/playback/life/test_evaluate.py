@@ -12,7 +12,7 @@ import pytest
 
 from metagraph.formats.imports import import_files
 from metagraph.graph import edits
-from metagraph.graph.face import CHANNELS, LIDS, find_face, with_morphs
+from metagraph.graph.face.rig import CHANNELS, LIDS, find_face, with_morphs
 from metagraph.graph.life import Life, with_life
 from metagraph.graph.model import Project
 from metagraph.motion import rotation

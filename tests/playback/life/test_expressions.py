@@ -12,7 +12,7 @@ from metagraph.playback.life.expressions import CUE_LASTS, KEPT, FaceShown, answ
 from metagraph.playback.life.schedule import Schedule, schedule
 from metagraph.playback.life.track import Item, ModeFrom, Speech, track_of
 from metagraph.playback.life.voice import voice_from_text
-from metagraph.playback.mood import Bearing, Mood, bearing
+from metagraph.playback.planning.mood import Bearing, Mood, bearing
 
 TIMES = np.arange(0.0, 40.0, 0.02)
 TEXT = "We walked along the river for hours and talked of all the people we had known"

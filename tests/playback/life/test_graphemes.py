@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.graph.face_names import VISEMES
+from metagraph.graph.face.names import VISEMES
 from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.graphemes import PACE, SHORTEST, read_aloud, shapes, spelled
 

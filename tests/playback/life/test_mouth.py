@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.graph.face_names import VISEMES
+from metagraph.graph.face.names import VISEMES
 from metagraph.playback.life.mouth import MouthPiece
 from metagraph.playback.life.voice import Voice, silent, voice_from_text, voiced
 

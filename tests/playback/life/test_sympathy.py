@@ -10,15 +10,15 @@ from typing import Any
 import msgspec
 import pytest
 
-from metagraph.formats.gltf import morph_targets
+from metagraph.formats.gltf.reader import morph_targets
 from metagraph.formats.store import open_project
-from metagraph.graph.conversation import Conversation, Rates, Side, Word
-from metagraph.graph.face import with_morphs
+from metagraph.graph.conversation.model import Conversation, Rates, Side, Word
+from metagraph.graph.face.rig import with_morphs
 from metagraph.graph.model import Project
 from metagraph.live.live_session import LiveSession
 from metagraph.playback.life.sympathy import Laugh, laughs_along, moods_taken_up, taken_up
-from metagraph.playback.mood import MOODS, Mood, MoodFrom, Moods, mood_at
 from metagraph.playback.plan import Plan
+from metagraph.playback.planning.mood import MOODS, Mood, MoodFrom, Moods, mood_at
 from metagraph.speech.duet import duet
 from metagraph.speech.sympathies import laughs_of
 from tests.posing import morphs_at

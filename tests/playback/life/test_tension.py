@@ -10,8 +10,8 @@ import pytest
 from metagraph.graph import anatomy
 from metagraph.graph.model import Project
 from metagraph.motion.joint_map import known_roles
-from metagraph.playback.mood import MOODS, Mood, bearing
 from metagraph.playback.planner import make_plan
+from metagraph.playback.planning.mood import MOODS, Mood, bearing
 from tests.posing import pose_at
 
 

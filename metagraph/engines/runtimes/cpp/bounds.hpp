@@ -1,6 +1,6 @@
 // By when each meta action of a plan has to be over.
 //
-// Translated from metagraph/playback/bounds.py; change that, and translate anew.
+// Translated from metagraph/playback/planning/bounds.py; change that, and translate anew.
 #pragma once
 
 #include "meta_plan.hpp"

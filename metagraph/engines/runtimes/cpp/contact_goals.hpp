@@ -1,14 +1,14 @@
 // Where contacts want the hands at a time: those of the cue that plays and of the loops under it, each by as much as
 // shows of it.
 //
-// Translated from metagraph/playback/contact_goals.py; change that, and translate anew.
+// Translated from metagraph/playback/posing/contact_goals.py; change that, and translate anew.
 #pragma once
 
 #include "model.hpp"
 #include "contact_solve.hpp"
 #include "contact_spans.hpp"
-#include "cue_times.hpp"
 #include "meta_plan.hpp"
+#include "cue_times.hpp"
 #include "project.hpp"
 #include "language.hpp"
 

@@ -1,7 +1,7 @@
 // What of a cue, or of a stance's loop, shows at a time, in plain numbers: `player` and `Cue.clip_seconds` have it for
 // arrays.
 //
-// Translated from metagraph/playback/cue_times.py; change that, and translate anew.
+// Translated from metagraph/playback/posing/cue_times.py; change that, and translate anew.
 #pragma once
 
 #include "model.hpp"

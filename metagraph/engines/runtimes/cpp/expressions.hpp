@@ -11,11 +11,11 @@
 // Translated from metagraph/playback/life/expressions.py; change that, and translate anew.
 #pragma once
 
-#include "choice.hpp"
 #include "items.hpp"
 #include "lane.hpp"
 #include "track.hpp"
 #include "voice.hpp"
+#include "choice.hpp"
 #include "mood.hpp"
 #include "life.hpp"
 #include "voice.hpp"

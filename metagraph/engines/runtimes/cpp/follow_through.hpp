@@ -3,12 +3,12 @@
 // The body answers with some delay, so what moves it is not the arms' place at one time but a cubic B-spline through
 // their places at four fixed times before it: smooth, and a function of plan and time alone.
 //
-// Translated from metagraph/playback/follow_through.py; change that, and translate anew.
+// Translated from metagraph/playback/posing/follow_through.py; change that, and translate anew.
 #pragma once
 
 #include "model.hpp"
-#include "cue_times.hpp"
 #include "meta_plan.hpp"
+#include "cue_times.hpp"
 #include "project.hpp"
 #include "language.hpp"
 

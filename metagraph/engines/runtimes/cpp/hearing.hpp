@@ -1,7 +1,7 @@
 // What asks do to a running plan: what they take back, what lasts from then on, and which layers have to be planned
 // again.
 //
-// Translated from metagraph/playback/hearing.py; change that, and translate anew.
+// Translated from metagraph/playback/planning/hearing.py; change that, and translate anew.
 #pragma once
 
 #include "words.hpp"

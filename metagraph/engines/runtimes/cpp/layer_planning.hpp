@@ -1,14 +1,14 @@
 // Planning one layer on: what was planned for later is taken back to its meta actions, merged with new requests, placed
 // and performed again (Borer et al., section 6).
 //
-// Translated from metagraph/playback/layer_planning.py; change that, and translate anew.
+// Translated from metagraph/playback/planning/layer_planning.py; change that, and translate anew.
 #pragma once
 
 #include "model.hpp"
+#include "meta_plan.hpp"
 #include "cue_shapes.hpp"
 #include "markov.hpp"
 #include "mood.hpp"
-#include "meta_plan.hpp"
 #include "replan.hpp"
 #include "sampling.hpp"
 #include "project.hpp"

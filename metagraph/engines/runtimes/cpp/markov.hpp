@@ -5,13 +5,13 @@
 // tilt, the body mostly rests, shifts and fidgets. So are the shares of what is performed while one is said to idle,
 // listen or talk: hands gesture with one's own speech, the head nods at the other's.
 //
-// Translated from metagraph/playback/markov.py; change that, and translate anew.
+// Translated from metagraph/playback/planning/markov.py; change that, and translate anew.
 #pragma once
 
 #include "model.hpp"
 #include "words.hpp"
-#include "choice.hpp"
 #include "meta_plan.hpp"
+#include "choice.hpp"
 #include "language.hpp"
 
 namespace metagraph {

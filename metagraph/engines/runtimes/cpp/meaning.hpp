@@ -1,19 +1,19 @@
 // What asks mean: requests of the layers, and what lasts (Borer et al., section 6 and figure 5).
 //
-// Translated from metagraph/playback/meaning.py; change that, and translate anew.
+// Translated from metagraph/playback/planning/meaning.py; change that, and translate anew.
 #pragma once
 
 #include "model.hpp"
-#include "finding.hpp"
 #include "alphabet.hpp"
 #include "graphemes.hpp"
 #include "items.hpp"
 #include "line_timing.hpp"
 #include "spots.hpp"
 #include "track.hpp"
+#include "meta_plan.hpp"
+#include "finding.hpp"
 #include "mood.hpp"
 #include "phases.hpp"
-#include "meta_plan.hpp"
 #include "project.hpp"
 #include "spots.hpp"
 #include "language.hpp"

@@ -1,6 +1,6 @@
 // When a gesture prepares, strikes, holds and retracts (Kendon; BML's ready, stroke-end and relax).
 //
-// Translated from metagraph/playback/phase_times.py; change that, and translate anew.
+// Translated from metagraph/playback/timing/phase_times.py; change that, and translate anew.
 #pragma once
 
 #include "language.hpp"

@@ -4,7 +4,7 @@
 // one keeps its time; the other is delayed past it, or cut where it begins, and then goes on with its remainder if it
 // asked to.
 //
-// Translated from metagraph/playback/replan.py; change that, and translate anew.
+// Translated from metagraph/playback/planning/replan.py; change that, and translate anew.
 #pragma once
 
 #include "model.hpp"

@@ -1,18 +1,18 @@
 // From a meta plan to specific actions: candidates, the three temporal cases, the draw (Borer et al., section 6.2).
 //
-// Translated from metagraph/playback/sampling.py; change that, and translate anew.
+// Translated from metagraph/playback/planning/sampling.py; change that, and translate anew.
 #pragma once
 
 #include "model.hpp"
+#include "meta_plan.hpp"
 #include "bounds.hpp"
 #include "choice.hpp"
 #include "cue_shapes.hpp"
 #include "mood.hpp"
-#include "phase_times.hpp"
-#include "phases.hpp"
-#include "meta_plan.hpp"
 #include "remembering.hpp"
 #include "vigour.hpp"
+#include "phase_times.hpp"
+#include "phases.hpp"
 #include "project.hpp"
 #include "language.hpp"
 

@@ -9,12 +9,12 @@
 
 #include "life.hpp"
 #include "words.hpp"
-#include "choice.hpp"
 #include "expressions.hpp"
 #include "lane.hpp"
 #include "track.hpp"
 #include "voice.hpp"
 #include "wanted.hpp"
+#include "choice.hpp"
 #include "mood.hpp"
 #include "life.hpp"
 #include "voice.hpp"

@@ -8,9 +8,9 @@
 // Translated from metagraph/speech/word_gestures.py; change that, and translate anew.
 #pragma once
 
-#include "choice.hpp"
 #include "alphabet.hpp"
 #include "graphemes.hpp"
+#include "choice.hpp"
 #include "language.hpp"
 
 namespace metagraph {

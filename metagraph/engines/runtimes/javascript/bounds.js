@@ -1,7 +1,7 @@
 /**
  * By when each meta action of a plan has to be over.
  *
- * Translated from metagraph/playback/bounds.py; change that, and translate anew.
+ * Translated from metagraph/playback/planning/bounds.py; change that, and translate anew.
  */
 
 

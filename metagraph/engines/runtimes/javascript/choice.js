@@ -3,7 +3,7 @@
  *
  * Nothing is remembered between draws, so changing one request leaves the draws of all others as they were.
  *
- * Translated from metagraph/playback/choice.py; change that, and translate anew.
+ * Translated from metagraph/playback/planning/choice.py; change that, and translate anew.
  */
 
 import { absorb, begun, mix } from "./hashing.js";

@@ -2,7 +2,7 @@
  * Where contacts want the hands at a time: those of the cue that plays and of the loops under it, each by as much as shows
  * of it.
  *
- * Translated from metagraph/playback/contact_goals.py; change that, and translate anew.
+ * Translated from metagraph/playback/posing/contact_goals.py; change that, and translate anew.
  */
 
 import { HandGoal } from "./contact_solve.js";

@@ -4,7 +4,7 @@
  * A gesture waits for its stroke or cuts its preparation to catch up with it; its hold is stretched, and its retraction may
  * be cut (Borer et al., section 6.2).
  *
- * Translated from metagraph/playback/cue_shapes.py; change that, and translate anew.
+ * Translated from metagraph/playback/planning/cue_shapes.py; change that, and translate anew.
  */
 
 import { drag } from "./mood.js";

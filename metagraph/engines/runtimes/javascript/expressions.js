@@ -12,8 +12,8 @@
  * Translated from metagraph/playback/life/expressions.py; change that, and translate anew.
  */
 
-import { chanceOf, keyed, uniform } from "./choice.js";
 import { stressed } from "./voice.js";
+import { chanceOf, keyed, uniform } from "./choice.js";
 import { faded, within } from "./mood.js";
 import { bisectRight, partedLast, sortedBy } from "./basics.js";
 

@@ -1,7 +1,7 @@
 /**
  * Actions and stances by what they are called.
  *
- * Translated from metagraph/playback/finding.py; change that, and translate anew.
+ * Translated from metagraph/playback/planning/finding.py; change that, and translate anew.
  */
 
 

@@ -2,13 +2,13 @@
  * Planning one layer on: what was planned for later is taken back to its meta actions, merged with new requests, placed and
  * performed again (Borer et al., section 6).
  *
- * Translated from metagraph/playback/layer_planning.py; change that, and translate anew.
+ * Translated from metagraph/playback/planning/layer_planning.py; change that, and translate anew.
  */
 
+import { LayerPlan, MetaAction, Report, TEMPORAL } from "./meta_plan.js";
 import { FITS } from "./cue_shapes.js";
 import { write } from "./markov.js";
 import { changed, moodAt, tempo } from "./mood.js";
-import { LayerPlan, MetaAction, Report, TEMPORAL } from "./meta_plan.js";
 import { delay, replan } from "./replan.js";
 import { performerAfter } from "./sampling.js";
 import { but } from "./basics.js";

@@ -6,12 +6,12 @@
  * body mostly rests, shifts and fidgets. So are the shares of what is performed while one is said to idle, listen or talk:
  * hands gesture with one's own speech, the head nods at the other's.
  *
- * Translated from metagraph/playback/markov.py; change that, and translate anew.
+ * Translated from metagraph/playback/planning/markov.py; change that, and translate anew.
  */
 
 import { MODES } from "./words.js";
-import { chanceOf, keyed, picked, uniform } from "./choice.js";
 import { Cursor, MetaAction, MetaRequest, WRITTEN } from "./meta_plan.js";
+import { chanceOf, keyed, picked, uniform } from "./choice.js";
 import { splitWords, zip } from "./basics.js";
 
 export const KINDS = ["gesture", "fidget", "transition"]; // as in `Markov.modes`

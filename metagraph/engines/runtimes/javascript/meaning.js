@@ -1,18 +1,18 @@
 /**
  * What asks mean: requests of the layers, and what lasts (Borer et al., section 6 and figure 5).
  *
- * Translated from metagraph/playback/meaning.py; change that, and translate anew.
+ * Translated from metagraph/playback/planning/meaning.py; change that, and translate anew.
  */
 
-import { actionCalled, stanceCalled } from "./finding.js";
 import { readAloud } from "./graphemes.js";
 import { BlinkAt, LookAt, ModeFrom, PlaceFrom, Speech, StayFrom } from "./items.js";
 import { timedSeconds, toldText } from "./line_timing.js";
 import { named } from "./spots.js";
 import { Track } from "./track.js";
+import { ASKED, MetaRequest, Report } from "./meta_plan.js";
+import { actionCalled, stanceCalled } from "./finding.js";
 import { MoodFrom } from "./mood.js";
 import { lead, longestLead } from "./phases.js";
-import { ASKED, MetaRequest, Report } from "./meta_plan.js";
 
 export const FOREVER = 1000000000; // seconds; a look that lasts until the next
 

@@ -11,7 +11,7 @@
  * (Wallbott 1998); the sad walk slowly, with small movements and bowed heads (Roether et al. 2009). By how much - the
  * numbers below - is ours, chosen so that every clip still looks as if it was made so.
  *
- * Translated from metagraph/playback/mood.py; change that, and translate anew.
+ * Translated from metagraph/playback/planning/mood.py; change that, and translate anew.
  */
 
 import { uniform } from "./choice.js";

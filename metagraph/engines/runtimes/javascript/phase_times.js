@@ -1,7 +1,7 @@
 /**
  * When a gesture prepares, strikes, holds and retracts (Kendon; BML's ready, stroke-end and relax).
  *
- * Translated from metagraph/playback/phase_times.py; change that, and translate anew.
+ * Translated from metagraph/playback/timing/phase_times.py; change that, and translate anew.
  */
 
 

@@ -5,7 +5,7 @@
  * A clip says where its feet are, and when they stand. A pose is a function of plan and time alone, so each step's time,
  * order and height follow from the two poses it leads between.
  *
- * Translated from metagraph/playback/planted_feet.py; change that, and translate anew.
+ * Translated from metagraph/playback/posing/planted_feet.py; change that, and translate anew.
  */
 
 import { FootGoal, footWay } from "./feet_solve.js";

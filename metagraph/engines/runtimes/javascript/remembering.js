@@ -1,7 +1,7 @@
 /**
  * What is remembered of what was played: how often an action was, lately, and until when.
  *
- * Translated from metagraph/playback/remembering.py; change that, and translate anew.
+ * Translated from metagraph/playback/planning/remembering.py; change that, and translate anew.
  */
 
 

@@ -1,18 +1,18 @@
 /**
  * From a meta plan to specific actions: candidates, the three temporal cases, the draw (Borer et al., section 6.2).
  *
- * Translated from metagraph/playback/sampling.py; change that, and translate anew.
+ * Translated from metagraph/playback/planning/sampling.py; change that, and translate anew.
  */
 
+import { Cue, Report, Rest } from "./meta_plan.js";
 import { begins, bounds } from "./bounds.js";
 import { pick } from "./choice.js";
 import { CueShape, FITS, RETRACTION, fitsBefore, hurried, lateness, mayShare, meets, shapeOf, slackOf } from "./cue_shapes.js";
 import { HELD, changed, drag, extent, favour, madeFor, moodAt, tempo } from "./mood.js";
-import { LEAST_BLEND } from "./phase_times.js";
-import { phases } from "./phases.js";
-import { Cue, Report, Rest } from "./meta_plan.js";
 import { node, remember, rested } from "./remembering.js";
 import { vigour } from "./vigour.js";
+import { LEAST_BLEND } from "./phase_times.js";
+import { phases } from "./phases.js";
 import { but, maxOf, minOf, thousandths } from "./basics.js";
 
 export const LOOP_FADE = 0.6; // seconds of crossfade when a long rest changes from one loop of its stance to another

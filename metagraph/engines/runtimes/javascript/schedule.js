@@ -9,11 +9,11 @@
 
 import { manner, sameLife } from "./life.js";
 import { MODES } from "./words.js";
-import { chanceOf, keyed, uniform } from "./choice.js";
 import { emphasesOn, swellsOn } from "./expressions.js";
 import { Lane } from "./lane.js";
 import { sameVoices, stressed } from "./voice.js";
 import { modesBetween, moodsBetween, moodsOf, targetsBetween, waysIn } from "./wanted.js";
+import { chanceOf, keyed, uniform } from "./choice.js";
 import { Mood } from "./mood.js";
 import { bisectLeft, bisectRight, but, minOf, sorted, zip } from "./basics.js";
 

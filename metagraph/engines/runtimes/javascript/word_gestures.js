@@ -9,8 +9,8 @@
  * Translated from metagraph/speech/word_gestures.py; change that, and translate anew.
  */
 
-import { uniform } from "./choice.js";
 import { readAloud } from "./graphemes.js";
+import { uniform } from "./choice.js";
 import { sortedBy, splitWords } from "./basics.js";
 
 export const APART = new Map([["arms", 2.4], ["head", 1.8]]); // seconds between two strokes of a layer, at least

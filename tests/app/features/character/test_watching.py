@@ -11,8 +11,8 @@ from PySide6.QtTest import QTest
 
 from app.features.character.foot_marks import FootState, runs, slide_words
 from app.stage.watch import Watch
-from metagraph.playback.contacts import goals_at
-from metagraph.playback.foot_slides import RATE
+from metagraph.playback.posing.contacts import goals_at
+from metagraph.playback.posing.foot_slides import RATE
 from tests.posing import contact_rig
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]

@@ -28,7 +28,7 @@ from app.look.theme import DARK, LIGHT
 from app.stage.compatibility_state import extended
 from metagraph.graph import edits
 from metagraph.graph.model import Project
-from metagraph.suggest.compatibility import Matrix
+from metagraph.suggest.jumps.compatibility import Matrix
 
 
 def test_half_a_mark_says_how_far_off_it_is():
@@ -121,7 +121,7 @@ def toy_row(model, project, name):
 
 
 def test_only_new_clips_are_compared_again(toy, monkeypatch):
-    from metagraph.suggest import compatibility
+    from metagraph.suggest.jumps import compatibility
 
     project = toy.project()
     first = extended(project, "arms", None)

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 from PySide6.QtCore import QPoint
 
-from metagraph.graph import conversation_edits
-from metagraph.graph.conversation import Conversation, Segment, Side, Word
+from metagraph.graph.conversation import edits as conversation_edits
+from metagraph.graph.conversation.model import Conversation, Segment, Side, Word
 from tests.speech.talk import make_conversation, speak
 
 

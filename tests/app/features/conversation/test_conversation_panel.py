@@ -8,7 +8,8 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
-from metagraph.graph import conversation_edits, performance_edits
+from metagraph.graph.conversation import edits as conversation_edits
+from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.requests import Performance
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]

@@ -17,7 +17,7 @@ from app.features.conversation.conversation_commands import converse
 from app.features.conversation.conversation_dialog import ImportDialog
 from app.features.conversation.sides_dialog import SidesDialog
 from metagraph.formats.store import save_project
-from metagraph.graph import conversation_edits
+from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.model import Project
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]

@@ -17,7 +17,7 @@ from app.features.conversation.conversation_dialog import ImportDialog
 from app.features.conversation.conversation_settings import RatesDialog
 from app.features.conversation.sides_dialog import SidesDialog
 from app.features.conversation.word_lists import WordsDialog
-from metagraph.formats.conversations import read_conversation
+from metagraph.formats.conversations.files import read_conversation
 from tests.speech.talk import make_conversation
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]

@@ -13,8 +13,8 @@ from PySide6.QtTest import QTest
 
 from app.features.conversation.segment_hits import word_edges
 from app.look.theme import theme
-from metagraph.graph import conversation_edits
-from metagraph.graph.conversation import SPOKEN
+from metagraph.graph.conversation import edits as conversation_edits
+from metagraph.graph.conversation.model import SPOKEN
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 Key, Modifier = Qt.Key, Qt.KeyboardModifier

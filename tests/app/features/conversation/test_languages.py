@@ -12,7 +12,7 @@ from PySide6.QtTest import QTest
 
 from app.features.conversation.conversation_dialog import ImportDialog
 from app.features.conversation.word_lists import WordsDialog, language_name
-from metagraph.graph.conversation import lists_of
+from metagraph.graph.conversation.model import lists_of
 from metagraph.speech.language_packs import languages
 from tests.speech import talk as maker
 from tests.speech.dialogues import TALKS, spoken

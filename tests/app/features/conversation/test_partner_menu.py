@@ -12,8 +12,8 @@ from PySide6.QtWidgets import QApplication, QMenu
 from app.features.conversation.partner_menu import partner_menu
 from app.features.conversation.segment_lanes import lanes
 from app.widgets.lane_geometry import LEFT
-from metagraph.graph.conversation import Conversation, Segment, Side
-from metagraph.graph.conversation_edits import add_conversation
+from metagraph.graph.conversation.edits import add_conversation
+from metagraph.graph.conversation.model import Conversation, Segment, Side
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 

@@ -13,7 +13,7 @@ from PySide6.QtCore import QPointF
 from app.features.conversation.segment_hits import SegmentHit, hit_at, pitch_maxima, snapped, word_edges
 from app.features.conversation.segment_lanes import farthest, lanes, least, pitch_y, visible, words_in
 from app.widgets.lane_geometry import LEFT, RULER, Scale
-from metagraph.graph.conversation import Conversation, Segment, Side, Word
+from metagraph.graph.conversation.model import Conversation, Segment, Side, Word
 
 SIZE = (1000.0, 240.0)
 SCALE = Scale(0.0, 100.0)

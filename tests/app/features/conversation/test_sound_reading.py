@@ -13,8 +13,8 @@ from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.session import Session
 from app.widgets.waveforms import Envelope
-from metagraph.graph import conversation_edits
-from metagraph.graph.conversation import Conversation, Side
+from metagraph.graph.conversation import edits as conversation_edits
+from metagraph.graph.conversation.model import Conversation, Side
 from metagraph.graph.model import Project
 
 

@@ -13,8 +13,8 @@ from app.features.conversation.conversation_settings import RatesDialog
 from app.features.conversation.segment_lanes import lanes
 from app.features.conversation.sides_dialog import SidesDialog
 from app.features.conversation.word_lists import WordsDialog
-from metagraph.graph import conversation_edits
-from metagraph.graph.conversation import EVERYBODY, Conversation, Rates
+from metagraph.graph.conversation import edits as conversation_edits
+from metagraph.graph.conversation.model import EVERYBODY, Conversation, Rates
 from tests.app.painted_text import faults
 from tests.speech.group import NAMES, group, said, spoken
 from tests.speech.talk import write_sound, write_words

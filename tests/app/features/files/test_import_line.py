@@ -12,7 +12,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog, QMessageBox
 
 from app.features.files.import_line import ImportLine
-from metagraph.formats.gltf_writer import write_glb
+from metagraph.formats.gltf.writer import write_glb
 from metagraph.graph.model import Project
 from metagraph.motion.character_mesh import Surface
 from metagraph.motion.skeleton import Skeleton

@@ -10,9 +10,9 @@ from PySide6.QtTest import QTest
 
 from app.features.files.versions_dialog import VersionsDialog, found_versions
 from app.project.version_count import version_count
-from metagraph.formats.gltf_writer import write_glb
+from metagraph.formats.gltf.writer import write_glb
+from metagraph.formats.project.versions import earlier_versions, version_path
 from metagraph.formats.store import SUFFIX, read_project, save_project
-from metagraph.formats.versions import earlier_versions, version_path
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 

@@ -22,7 +22,7 @@ from PySide6.QtWidgets import QFileDialog
 from app.features.generation import learn_page
 from app.features.generation.generation_dialog import GenerationDialog
 from app.features.generation.generation_jobs import FOLDER
-from metagraph.formats.gltf_writer import write_glb
+from metagraph.formats.gltf.writer import write_glb
 from metagraph.formats.store import absolute, open_project, save_project
 from metagraph.generation import offered
 from metagraph.generation.features import RATE

@@ -16,13 +16,13 @@ from PySide6.QtTest import QTest
 from app.features.export.export_dialog import ExportDialog
 from app.features.generation.generation_dialog import GenerationDialog
 from metagraph.engines.reading import read_export
-from metagraph.formats.gltf import read_gltf_clips
+from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.formats.store import absolute, open_project, save_project
 from metagraph.generation.features import RATE
 from metagraph.generation.stored import Model, read_card, write_model
 from metagraph.generation.train_process import missing
 from metagraph.graph import edits
-from metagraph.graph.conversation import Conversation, Segment, Side
+from metagraph.graph.conversation.model import Conversation, Segment, Side
 from metagraph.graph.model import Project
 from tests.generation.makers import babble, untrained
 

@@ -17,7 +17,7 @@ from app.features.labelling.patterns_dialog import PatternsDialog
 from app.project.document import Document
 from app.project.learned import Learned
 from app.stage.session import Session
-from metagraph.suggest.name_words import Patterns, learn
+from metagraph.suggest.words.names import Patterns, learn
 from tests.thorough import some
 
 NAMES = ["idle_arms_wobble", "idle_arms_shrug", "idle_arms"]

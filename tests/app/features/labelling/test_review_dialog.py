@@ -14,8 +14,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QInputDialog
 
 from metagraph.formats.store import open_project
-from metagraph.study.klm import predicted
-from metagraph.suggest.bridges import missing
+from metagraph.research.study.machines.klm import predicted
+from metagraph.suggest.jumps.bridges import missing
 from metagraph.suggest.review import DECIDING
 from tests.label_zoo.catalogue import named
 

@@ -17,7 +17,7 @@ from app.features.library.clip_sizes import SIZES, picture_of
 from app.features.library.library_settings import LibrarySettings
 from app.project.reveal import how
 from metagraph.graph.clip_mark import ClipMark
-from metagraph.graph.marks import mark, mark_of
+from metagraph.graph.editing.marks import mark, mark_of
 from metagraph.graph.problem import Problem
 from tests.app.look.test_theme import contrast
 

@@ -150,7 +150,7 @@ def test_words_without_sound_are_a_line_too(drive, toy):
 
 
 def test_an_edit_of_one_line_among_many_writes_one_row_and_keeps_the_selection(drive, toy, monkeypatch):
-    from metagraph.graph import performance_edits
+    from metagraph.graph.editing import performances as performance_edits
 
     def many(project: Project) -> Project:
         for n in range(40):
@@ -178,7 +178,7 @@ def test_an_edit_of_one_line_among_many_writes_one_row_and_keeps_the_selection(d
 
 
 def test_a_line_that_is_removed_while_it_is_asked_for_says_so_and_comes_back_with_undo(drive, toy):
-    from metagraph.graph import performance_edits
+    from metagraph.graph.editing import performances as performance_edits
 
     drive.document.load(performance_edits.set_line(toy.project(), "hi", a.Line(text="Hello there")), None)
     drive.performance.requests.ask(a.Say(line="hi", at=1.0))

@@ -15,8 +15,9 @@ from PySide6.QtWidgets import QApplication, QMenu
 from metagraph.engines.export import schema_text
 from metagraph.engines.reading import read_export
 from metagraph.formats.store import open_project, save_project
-from metagraph.graph import edits, manual_edits
-from metagraph.graph.manual import ANY
+from metagraph.graph import edits
+from metagraph.graph.manual import edits as manual_edits
+from metagraph.graph.manual.machine import ANY
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 
@@ -380,7 +381,7 @@ def test_the_meta_graph_is_not_changed_unseen(drawn: Hand) -> None:
 
 
 def test_files_dropped_on_the_editor_are_imported_and_become_states(drawn: Hand, tmp_path, toy) -> None:
-    from metagraph.formats.gltf_writer import write_glb
+    from metagraph.formats.gltf.writer import write_glb
 
     drive, count = drawn.drive, len(drawn.machine.states)
     write_glb(tmp_path / "late.glb", [toy.clip("late")], None)
@@ -418,7 +419,7 @@ def test_a_project_that_was_only_drawn_opens_in_the_editor_and_a_meta_graph_with
 
 def test_what_was_only_drawn_is_exported_by_the_command_too(drawn: Hand, tmp_path, capsys) -> None:
     from app.cli.parser import main
-    from metagraph.formats.gltf_writer import write_glb
+    from metagraph.formats.gltf.writer import write_glb
 
     project = drawn.drive.document.project
     project = edits.remove_actions(project, [a.id for a in project.actions()])

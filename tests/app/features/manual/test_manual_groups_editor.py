@@ -8,7 +8,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMenu
 
 from app.features.manual import manual_commands, manual_many
-from metagraph.graph import manual_edits, manual_groups
+from metagraph.graph.manual import edits as manual_edits
+from metagraph.graph.manual import groups as manual_groups
 from tests.app.features.manual.test_manual_editor import CONTROL, Hand
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]

@@ -17,7 +17,7 @@ from app.features.manual.manual_scene import (
     ManualView,
     fitted,
 )
-from metagraph.graph.manual import ANY, Link, Manual, State
+from metagraph.graph.manual.machine import ANY, Link, Manual, State
 
 
 def machine(places: dict[str, tuple[float, float]], *links: str, start: str | None = None) -> Manual:

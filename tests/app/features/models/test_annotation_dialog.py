@@ -19,7 +19,7 @@ from app.project.annotation_reading import begin
 from app.project.document import Document
 from app.stage.session import Session
 from metagraph.formats.elan import read_elan
-from metagraph.playback.annotation import MEANINGS, Annotation, Interval, Tier, is_meaning
+from metagraph.playback.learning.annotation import MEANINGS, Annotation, Interval, Tier, is_meaning
 
 
 @pytest.fixture

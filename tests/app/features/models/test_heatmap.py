@@ -22,8 +22,8 @@ from app.features.models.heatmap import (
 )
 from app.look.theme import DARK, LIGHT
 from metagraph.graph.model import KINDS, Markov
-from metagraph.playback.learn import with_cell
-from metagraph.playback.markov import ARMS, DEFAULTS
+from metagraph.playback.learning.learn import with_cell
+from metagraph.playback.planning.markov import ARMS, DEFAULTS
 
 
 @pytest.mark.parametrize("count", [1, 3, 9, 18])

@@ -19,9 +19,9 @@ from app.stage.session import Session
 from metagraph.formats.elan import read_elan
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Markov
-from metagraph.playback.compare import compare
-from metagraph.playback.learn import learn, states_of
-from metagraph.playback.markov import ARMS, DEFAULTS
+from metagraph.playback.learning.compare import compare
+from metagraph.playback.learning.learn import learn, states_of
+from metagraph.playback.planning.markov import ARMS, DEFAULTS
 from tests.app.painted_text import faults, seen_in
 
 

@@ -9,7 +9,7 @@ import pytest
 from app import translation
 from app.features.models.state_names import a_state, state_name
 from metagraph.graph.words import KINDS, LAYERS, LIMBS
-from metagraph.playback.learn import state_words
+from metagraph.playback.learning.learn import state_words
 
 
 def test_english_names_are_the_domains() -> None:

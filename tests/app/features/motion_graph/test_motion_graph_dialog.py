@@ -17,7 +17,7 @@ from app.features.motion_graph.cooccurrence_rates import RatesDialog
 from app.features.motion_graph.motion_graph_dialog import MotionGraphDialog
 from app.features.motion_graph.synthesis_jobs import FOLDER, LEAST, MOST
 from metagraph.formats.store import absolute, open_project, save_project
-from metagraph.graph.conversation import Conversation, Rates, Segment, Side
+from metagraph.graph.conversation.model import Conversation, Rates, Segment, Side
 from metagraph.graph.model import Project
 
 ROOT = Path(__file__).parents[4]

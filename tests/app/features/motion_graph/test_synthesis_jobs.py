@@ -22,11 +22,11 @@ from app.features.motion_graph.synthesis_jobs import (
 from app.project.new_clips import pieces, save
 from metagraph.errors import FileError
 from metagraph.formats.clips import read_clips
-from metagraph.graph.conversation import Conversation, Segment, Side
+from metagraph.graph.conversation.model import Conversation, Segment, Side
 from metagraph.graph.model import Project
+from metagraph.research.motion_graph.search_evaluation import cut
 from metagraph.synthesis.graph import build
 from metagraph.synthesis.iconic_words import word_wish
-from metagraph.synthesis.search_evaluation import cut
 from metagraph.synthesis.soft_constraints import SoftWish
 from metagraph.synthesis.states import SynthesisError, states_of
 from tests.synthesis.talking import VOICE, WORDS, aloud, speech, talking
@@ -130,7 +130,7 @@ def test_new_motion_goes_with_speech_where_the_takes_know_theirs(sample: Project
 def test_where_speech_does_not_constrain_nothing_is_said_of_it(
     sample: Project, monkeypatch: pytest.MonkeyPatch, exact: bool, search: str
 ) -> None:
-    from metagraph.synthesis import ruled_search as searches
+    from metagraph.synthesis.search import ruled_search as searches
 
     def stuck(*_: object, **__: object) -> None:
         raise SynthesisError("no motion goes with this speech beyond 0.0 s: allow more tolerance")

@@ -14,10 +14,10 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
 from app.stage.compatibility_state import proposed_fields
+from metagraph.common.wording import reworded
 from metagraph.graph import edits
-from metagraph.suggest.jumps import Measured, curves
-from metagraph.suggest.seen_jumps import Seen, far_ends, verdict, words_at
-from metagraph.wording import reworded
+from metagraph.suggest.jumps.found import Measured, curves
+from metagraph.suggest.jumps.seen_jumps import Seen, far_ends, verdict, words_at
 
 ROOT = Path(__file__).resolve().parents[4]
 

@@ -8,8 +8,8 @@ from PySide6.QtWidgets import QFormLayout, QWidget
 from app.features.properties.variation_rows import ActionRows, PlannerRows
 from metagraph.graph import edits
 from metagraph.graph.model import Settings
-from metagraph.playback.phases import phases
-from metagraph.playback.timing import PHASES, moved, times_of
+from metagraph.playback.timing.handles import PHASES, moved, times_of
+from metagraph.playback.timing.phases import phases
 
 
 @pytest.fixture

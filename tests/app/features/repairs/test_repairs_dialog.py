@@ -14,7 +14,7 @@ pytestmark = [pytest.mark.usefixtures("numbered_ids"), pytest.mark.window, pytes
 @pytest.fixture
 def folder(toy, tmp_path):
     """Two clips with a bind pose on their first frame, and a file with one of one frame beside a walk."""
-    from metagraph.formats.gltf_writer import write_glb
+    from metagraph.formats.gltf.writer import write_glb
 
     for name in ("a", "b"):
         clip = toy.clip(name, 1.0, 1.3)
@@ -155,7 +155,7 @@ def test_the_notice_goes_with_the_project_it_was_about(drive, folder):
 
 
 def test_clips_without_repairs_say_so(drive, toy, tmp_path):
-    from metagraph.formats.gltf_writer import write_glb
+    from metagraph.formats.gltf.writer import write_glb
 
     write_glb(tmp_path / "n.glb", [toy.clip("n", 0.5)])
     drive.importing.import_paths([str(tmp_path)])

@@ -20,7 +20,7 @@ pytestmark = [pytest.mark.window, pytest.mark.gl]
 @pytest.fixture
 def folder(toy, sample, tmp_path):
     """Two clips of the toy and two of the mannequin."""
-    from metagraph.formats.gltf_writer import write_glb
+    from metagraph.formats.gltf.writer import write_glb
 
     for name in ("rest", "wave"):
         write_glb(tmp_path / f"{name}.glb", [toy.clip(name, 0.6, swing=0.3)])
@@ -88,7 +88,7 @@ def test_clips_of_another_skeleton_are_asked_about_once_and_retargeted_in_one_st
 
 
 def test_they_may_be_left_out_and_the_others_of_the_same_drop_come_in(own, folder, toy):
-    from metagraph.formats.gltf_writer import write_glb
+    from metagraph.formats.gltf.writer import write_glb
 
     drive = own
     write_glb(folder / "nod.glb", [toy.clip("nod", 0.4)])
@@ -150,7 +150,7 @@ def test_a_map_of_the_user_is_offered_in_another_project(own, folder):
 
 
 def test_saved_and_opened_again_they_are_retargeted_and_followed_when_exported_anew(own, folder, sample):
-    from metagraph.formats.gltf_writer import write_glb
+    from metagraph.formats.gltf.writer import write_glb
 
     drive = own
     press(bring(drive, folder, "other0").go)

@@ -72,7 +72,7 @@ class Participant:
 def takes_part(drive, tiny):
     """Begin, or go on with, a participant's sitting."""
     from app.features.study.study_chooser import begin
-    from metagraph.study.study_plan import read_study
+    from metagraph.research.study.study_plan import read_study
 
     guides = []
 

@@ -19,13 +19,14 @@ from PySide6.QtWidgets import QMessageBox, QToolBar
 from app.features.study.reserved_window import ReservedWindow
 from app.shell.actions import Command
 from metagraph.formats.store import open_project, read_project
-from metagraph.graph import edits, manual_edits
-from metagraph.study.analysis_read import collect
-from metagraph.study.log import read
-from metagraph.study.questionnaires import sus_score
-from metagraph.study.sitting import Sitting, standing
-from metagraph.study.study_plan import read_study
-from metagraph.study.withdrawal import withdraw
+from metagraph.graph import edits
+from metagraph.graph.manual import edits as manual_edits
+from metagraph.research.study.analysis.reading import collect
+from metagraph.research.study.logs.log import read
+from metagraph.research.study.logs.withdrawal import withdraw
+from metagraph.research.study.questionnaires import sus_score
+from metagraph.research.study.sitting import Sitting, standing
+from metagraph.research.study.study_plan import read_study
 from tests.processes import started
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
@@ -360,9 +361,9 @@ app = prepare()
 from app.main import make_window
 from app.features.study.study_chooser import begin
 from metagraph.graph import edits
-from metagraph.study.sitting import Sitting, standing
-from metagraph.study.study_plan import read_study
-from metagraph.study.withdrawal import withdraw
+from metagraph.research.study.sitting import Sitting, standing
+from metagraph.research.study.study_plan import read_study
+from metagraph.research.study.logs.withdrawal import withdraw
 window = make_window()
 window.show()
 guide = begin(window.shell, read_study(Path(sys.argv[1])), "P01")
@@ -404,7 +405,7 @@ def test_a_window_that_is_killed_loses_nothing(tiny, tmp_path, qapp):
         found = read(log)
         assert not found.problems and [e["n"] for e in found.events] == list(range(len(found.events)))
         assert sum(e["type"] == "edit" for e in found.events) in (made - 1, made, made + 1)
-    from metagraph.study.task_projects import reopen
+    from metagraph.research.study.plan.task_projects import reopen
 
     project = reopen(next(log.parent.glob("*training*.yaml")))[0].project
     assert len(project.graphs["head"].stances) in (made, made + 1)

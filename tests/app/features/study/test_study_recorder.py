@@ -13,7 +13,8 @@ from app import translation
 from app.features.study.operator_counting import Counting
 from app.features.study.study_changes import described
 from app.translation import tr
-from metagraph.graph import edits, manual_edits
+from metagraph.graph import edits
+from metagraph.graph.manual import edits as manual_edits
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 LEFT = Qt.MouseButton.LeftButton
@@ -274,8 +275,8 @@ def test_an_import_tells_how_long_it_took(recorded, monkeypatch):
 
 
 def test_edits_steps_back_and_looks_say_enough_to_be_seen_again(recorded):
-    from metagraph.formats.data import to_data
-    from metagraph.formats.replay import Replay
+    from metagraph.formats.project.data import to_data
+    from metagraph.formats.project.replay import Replay
 
     d = recorded
     begun = to_data(d.document.project)

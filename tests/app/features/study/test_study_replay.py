@@ -9,7 +9,7 @@ import pytest
 from metagraph.errors import FileError
 from metagraph.formats.store import read_project
 from metagraph.graph import edits
-from metagraph.study.study_plan import read_study
+from metagraph.research.study.study_plan import read_study
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 

@@ -7,7 +7,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QFileDialog
 
-from metagraph.formats.gltf import write_glb
+from metagraph.formats.gltf.reader import write_glb
 from metagraph.formats.store import SUFFIX, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project

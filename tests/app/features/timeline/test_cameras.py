@@ -12,8 +12,8 @@ from PySide6.QtWidgets import QApplication
 from app.stage.caption_paint import captioned
 from app.stage.cutting import Cutting
 from app.widgets.lane_geometry import lanes
-from metagraph.graph.conversation import Conversation, Segment, Side, Word
-from metagraph.graph.conversation_edits import add_conversation
+from metagraph.graph.conversation.edits import add_conversation
+from metagraph.graph.conversation.model import Conversation, Segment, Side, Word
 from metagraph.graph.timeline import Cut
 from metagraph.speech.captions import Caption
 

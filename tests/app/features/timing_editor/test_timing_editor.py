@@ -11,9 +11,9 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
 from metagraph.graph import edits
+from metagraph.graph.editing.retiming import keep_hand
 from metagraph.graph.requests import Line, Play
-from metagraph.graph.retiming import keep_hand
-from metagraph.playback.timing import EDGES, times_of
+from metagraph.playback.timing.handles import EDGES, times_of
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 

@@ -13,7 +13,7 @@ pytestmark = [pytest.mark.window, pytest.mark.gl]
 @pytest.fixture
 def saved(drive, toy, tmp_path):
     """A window on a saved project with a wave of the right arm and a beat of the left."""
-    from metagraph.formats.gltf_writer import write_glb
+    from metagraph.formats.gltf.writer import write_glb
     from metagraph.graph import edits
 
     for name, swing in (("rest", 0.0), ("wave rt", 0.6), ("beat lf", 0.4)):

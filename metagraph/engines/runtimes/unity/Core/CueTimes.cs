@@ -1,4 +1,4 @@
-// Translated from metagraph/playback/cue_times.py; change that, and translate anew.
+// Translated from metagraph/playback/posing/cue_times.py; change that, and translate anew.
 using System;
 using System.Collections.Generic;
 using System.Linq;

@@ -1,4 +1,4 @@
-// Translated from metagraph/playback/layer_planning.py; change that, and translate anew.
+// Translated from metagraph/playback/planning/layer_planning.py; change that, and translate anew.
 using System;
 using System.Collections.Generic;
 using System.Linq;

@@ -1,4 +1,4 @@
-// Translated from metagraph/playback/markov.py; change that, and translate anew.
+// Translated from metagraph/playback/planning/markov.py; change that, and translate anew.
 using System;
 using System.Collections.Generic;
 using System.Linq;

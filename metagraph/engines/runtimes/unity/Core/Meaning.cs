@@ -1,4 +1,4 @@
-// Translated from metagraph/playback/meaning.py; change that, and translate anew.
+// Translated from metagraph/playback/planning/meaning.py; change that, and translate anew.
 using System;
 using System.Collections.Generic;
 using System.Linq;

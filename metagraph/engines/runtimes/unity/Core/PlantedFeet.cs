@@ -1,4 +1,4 @@
-// Translated from metagraph/playback/planted_feet.py; change that, and translate anew.
+// Translated from metagraph/playback/posing/planted_feet.py; change that, and translate anew.
 using System;
 using System.Collections.Generic;
 using System.Linq;

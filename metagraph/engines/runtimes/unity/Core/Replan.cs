@@ -1,4 +1,4 @@
-// Translated from metagraph/playback/replan.py; change that, and translate anew.
+// Translated from metagraph/playback/planning/replan.py; change that, and translate anew.
 using System;
 using System.Collections.Generic;
 using System.Linq;

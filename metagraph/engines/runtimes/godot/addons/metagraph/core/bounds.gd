@@ -1,6 +1,6 @@
 # By when each meta action of a plan has to be over.
 #
-# Translated from metagraph/playback/bounds.py; change that, and translate anew.
+# Translated from metagraph/playback/planning/bounds.py; change that, and translate anew.
 
 const Util = preload("util.gd")
 const LOOKED_AT = 6  # how many that follow a meta action are told

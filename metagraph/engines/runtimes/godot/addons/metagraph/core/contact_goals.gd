@@ -1,6 +1,6 @@
 # Where contacts want the hands at a time: those of the cue that plays and of the loops under it, each by as much as shows of it.
 #
-# Translated from metagraph/playback/contact_goals.py; change that, and translate anew.
+# Translated from metagraph/playback/posing/contact_goals.py; change that, and translate anew.
 
 const ContactSolve = preload("contact_solve.gd")
 const ContactSpans = preload("contact_spans.gd")

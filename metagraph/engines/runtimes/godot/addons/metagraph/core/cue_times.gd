@@ -1,6 +1,6 @@
 # What of a cue, or of a stance's loop, shows at a time, in plain numbers: `player` and `Cue.clip_seconds` have it for arrays.
 #
-# Translated from metagraph/playback/cue_times.py; change that, and translate anew.
+# Translated from metagraph/playback/posing/cue_times.py; change that, and translate anew.
 
 const Util = preload("util.gd")
 

@@ -10,8 +10,8 @@
 #
 # Translated from metagraph/playback/life/expressions.py; change that, and translate anew.
 
-const Choice = preload("choice.gd")
 const Voice = preload("voice.gd")
+const Choice = preload("choice.gd")
 const Mood = preload("mood.gd")
 const Util = preload("util.gd")
 # Swells: how the face of a mood comes up; rows: length s, amount, 1 where the mode was listening.

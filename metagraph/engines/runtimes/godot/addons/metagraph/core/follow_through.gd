@@ -3,7 +3,7 @@
 # The body answers with some delay, so what moves it is not the arms' place at one time but a cubic B-spline through their places
 # at four fixed times before it: smooth, and a function of plan and time alone.
 #
-# Translated from metagraph/playback/follow_through.py; change that, and translate anew.
+# Translated from metagraph/playback/posing/follow_through.py; change that, and translate anew.
 
 const CueTimes = preload("cue_times.gd")
 const Util = preload("util.gd")

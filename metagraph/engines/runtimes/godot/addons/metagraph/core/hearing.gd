@@ -1,6 +1,6 @@
 # What asks do to a running plan: what they take back, what lasts from then on, and which layers have to be planned again.
 #
-# Translated from metagraph/playback/hearing.py; change that, and translate anew.
+# Translated from metagraph/playback/planning/hearing.py; change that, and translate anew.
 
 const Words = preload("words.gd")
 const Items = preload("items.gd")

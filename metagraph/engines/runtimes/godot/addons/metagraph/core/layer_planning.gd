@@ -1,12 +1,12 @@
 # Planning one layer on: what was planned for later is taken back to its meta actions, merged with new requests, placed and
 # performed again (Borer et al., section 6).
 #
-# Translated from metagraph/playback/layer_planning.py; change that, and translate anew.
+# Translated from metagraph/playback/planning/layer_planning.py; change that, and translate anew.
 
+const MetaPlan = preload("meta_plan.gd")
 const CueShapes = preload("cue_shapes.gd")
 const Markov = preload("markov.gd")
 const Mood = preload("mood.gd")
-const MetaPlan = preload("meta_plan.gd")
 const Replan = preload("replan.gd")
 const Sampling = preload("sampling.gd")
 const Util = preload("util.gd")

@@ -5,11 +5,11 @@
 # mostly rests, shifts and fidgets. So are the shares of what is performed while one is said to idle, listen or talk: hands
 # gesture with one's own speech, the head nods at the other's.
 #
-# Translated from metagraph/playback/markov.py; change that, and translate anew.
+# Translated from metagraph/playback/planning/markov.py; change that, and translate anew.
 
 const Words = preload("words.gd")
-const Choice = preload("choice.gd")
 const MetaPlan = preload("meta_plan.gd")
+const Choice = preload("choice.gd")
 const Util = preload("util.gd")
 const KINDS = ["gesture", "fidget", "transition"]  # as in `Markov.modes`
 

@@ -1,16 +1,16 @@
 # What asks mean: requests of the layers, and what lasts (Borer et al., section 6 and figure 5).
 #
-# Translated from metagraph/playback/meaning.py; change that, and translate anew.
+# Translated from metagraph/playback/planning/meaning.py; change that, and translate anew.
 
-const Finding = preload("finding.gd")
 const Graphemes = preload("graphemes.gd")
 const Items = preload("items.gd")
 const LineTiming = preload("line_timing.gd")
 const Spots = preload("spots.gd")
 const Track = preload("track.gd")
+const MetaPlan = preload("meta_plan.gd")
+const Finding = preload("finding.gd")
 const Mood = preload("mood.gd")
 const Phases = preload("phases.gd")
-const MetaPlan = preload("meta_plan.gd")
 const Util = preload("util.gd")
 const FOREVER = 1000000000.0  # seconds; a look that lasts until the next
 

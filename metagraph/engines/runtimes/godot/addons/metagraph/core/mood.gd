@@ -10,7 +10,7 @@
 # the sad walk slowly, with small movements and bowed heads (Roether et al. 2009). By how much - the numbers below - is ours,
 # chosen so that every clip still looks as if it was made so.
 #
-# Translated from metagraph/playback/mood.py; change that, and translate anew.
+# Translated from metagraph/playback/planning/mood.py; change that, and translate anew.
 
 const Choice = preload("choice.gd")
 const Util = preload("util.gd")

@@ -1,6 +1,6 @@
 # When a gesture prepares, strikes, holds and retracts (Kendon; BML's ready, stroke-end and relax).
 #
-# Translated from metagraph/playback/phase_times.py; change that, and translate anew.
+# Translated from metagraph/playback/timing/phase_times.py; change that, and translate anew.
 
 const Util = preload("util.gd")
 const LEAST_BLEND = 0.25  # seconds in which a gesture that skips its preparation comes in

@@ -4,7 +4,7 @@
 # A clip says where its feet are, and when they stand. A pose is a function of plan and time alone, so each step's time, order and
 # height follow from the two poses it leads between.
 #
-# Translated from metagraph/playback/planted_feet.py; change that, and translate anew.
+# Translated from metagraph/playback/posing/planted_feet.py; change that, and translate anew.
 
 const FeetSolve = preload("feet_solve.gd")
 const PlainVectors = preload("plain_vectors.gd")

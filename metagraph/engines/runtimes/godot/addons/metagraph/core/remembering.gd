@@ -1,6 +1,6 @@
 # What is remembered of what was played: how often an action was, lately, and until when.
 #
-# Translated from metagraph/playback/remembering.py; change that, and translate anew.
+# Translated from metagraph/playback/planning/remembering.py; change that, and translate anew.
 
 const Util = preload("util.gd")
 const REMEMBERED = 32  # draws of a stance and kind that spacing can look back on

@@ -3,7 +3,7 @@
 # Greedy, by start time and then priority. The running action is never touched. Where two overlap, the more important one keeps
 # its time; the other is delayed past it, or cut where it begins, and then goes on with its remainder if it asked to.
 #
-# Translated from metagraph/playback/replan.py; change that, and translate anew.
+# Translated from metagraph/playback/planning/replan.py; change that, and translate anew.
 
 const MetaPlan = preload("meta_plan.gd")
 const Util = preload("util.gd")

@@ -1,16 +1,16 @@
 # From a meta plan to specific actions: candidates, the three temporal cases, the draw (Borer et al., section 6.2).
 #
-# Translated from metagraph/playback/sampling.py; change that, and translate anew.
+# Translated from metagraph/playback/planning/sampling.py; change that, and translate anew.
 
+const MetaPlan = preload("meta_plan.gd")
 const Bounds = preload("bounds.gd")
 const Choice = preload("choice.gd")
 const CueShapes = preload("cue_shapes.gd")
 const Mood = preload("mood.gd")
-const PhaseTimes = preload("phase_times.gd")
-const Phases = preload("phases.gd")
-const MetaPlan = preload("meta_plan.gd")
 const Remembering = preload("remembering.gd")
 const Vigour = preload("vigour.gd")
+const PhaseTimes = preload("phase_times.gd")
+const Phases = preload("phases.gd")
 const Util = preload("util.gd")
 const LOOP_FADE = 0.6  # seconds of crossfade when a long rest changes from one loop of its stance to another
 

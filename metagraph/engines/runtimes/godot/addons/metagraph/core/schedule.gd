@@ -7,11 +7,11 @@
 
 const Life = preload("life.gd")
 const Words = preload("words.gd")
-const Choice = preload("choice.gd")
 const Expressions = preload("expressions.gd")
 const Lane = preload("lane.gd")
 const Voice = preload("voice.gd")
 const Wanted = preload("wanted.gd")
+const Choice = preload("choice.gd")
 const Mood = preload("mood.gd")
 const Util = preload("util.gd")
 const BLOCK = 8.0  # seconds drawn at a time, so that a running plan need not draw at every tick

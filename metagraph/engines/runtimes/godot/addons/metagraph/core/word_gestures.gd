@@ -7,8 +7,8 @@
 #
 # Translated from metagraph/speech/word_gestures.py; change that, and translate anew.
 
-const Choice = preload("choice.gd")
 const Graphemes = preload("graphemes.gd")
+const Choice = preload("choice.gd")
 const Util = preload("util.gd")
 const APART = {"arms": 2.4, "head": 1.8}  # seconds between two strokes of a layer, at least
 const AGAIN = 1.6  # and so many times as far where both are of the same tag

@@ -1,0 +1,1 @@
+"""What the whole domain uses: files, programs, text formats, limits on reading, translatable words."""

@@ -1,0 +1,97 @@
+"""Functions compiled by numba: those that build and search motion graphs, which NumPy takes minutes for.
+
+numba and its LLVM take 210 MB, so they are installed only when a motion graph is first needed: into the
+environment that run.py made, or by the user's own command elsewhere.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+from collections.abc import Callable
+from importlib.util import find_spec
+from pathlib import Path
+from threading import Lock
+from types import ModuleType
+from typing import Any
+
+from metagraph.common.programs import ROOT, is_own, run
+
+NUMBA = "numba>=0.60"
+
+_ONE = Lock()  # one thread installs, the others wait
+
+
+class CompilerError(RuntimeError):
+    """numba is not there and could not be installed; the message says what to do."""
+
+
+def there() -> bool:
+    """Return whether numba is installed, without importing it."""
+    return sys.modules.get("numba") is not None or find_spec("numba") is not None
+
+
+def compiler(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Return a decorator that compiles a function as `numba.njit` does with these options, and keeps the
+    result on disk where the user's own folder allows it. Installs numba (a minute, once) where it may. Raises
+    CompilerError.
+    """
+    if not there():
+        with _ONE:
+            if not there():
+                _install()
+    numba = _numba()
+
+    def compiled(function: Callable[..., Any]) -> Any:
+        try:
+            loop = numba.njit(cache=True, **options)(function)
+            if loop.stats.cache_path is None or is_own(Path(loop.stats.cache_path)):
+                return loop
+        except RuntimeError:  # no folder to cache in
+            pass
+        # What others may write to is not kept: it would be run.
+        return numba.njit(**options)(function)
+
+    return compiled
+
+
+def _numba() -> ModuleType:
+    """Return numba, which takes settings, such as where to load compiled code from, from a file in the
+    working folder: not from there.
+    """
+    import numba  # half a second
+    from numba.core import config
+
+    settings: Any = config
+    if getattr(settings, "_config_fname", None) != os.devnull:
+        settings._config_fname = os.devnull
+        settings._env_reloader.update(force=True)
+    return numba
+
+
+def _install() -> None:
+    """Have run.py install numba into the environment it made: whoever started run.py asked for what it
+    takes.
+    """
+    setup = ROOT / "run.py"
+    if not setup.exists() or not any(
+        (Path(sys.prefix) / name).exists() for name in (".installed", ".installed-test")
+    ):
+        raise CompilerError(
+            f'This needs numba, which is not installed. Install it: "{sys.executable}" -m pip install '
+            f'"{NUMBA}"'
+        )
+    print(
+        "Installing the compiler that new motion needs (60 MB to load, once) ...", file=sys.stderr, flush=True
+    )
+    retries = os.environ.get("PIP_RETRIES", "2")  # where there is no network that is told in seconds
+    code, words = run([sys.executable, "-I", str(setup), "install"], cwd=ROOT, env={"PIP_RETRIES": retries})
+    importlib.invalidate_caches()
+    if code != 0 or not there():
+        said = [line for line in words.splitlines() if "ERROR" in line] or ["nothing was said"]
+        raise CompilerError(
+            f"This needs numba, which could not be installed ({said[-1].strip()}). "
+            "Check the network and try again, or install it before you go where there is none: python3 "
+            "run.py install"
+        )

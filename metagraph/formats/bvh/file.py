@@ -1,0 +1,486 @@
+"""Read and write BVH motion files."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.common.budgets import (
+    CLIP_SECONDS,
+    FRAME_SECONDS,
+    FRAMES,
+    JOINTS,
+    JOINTS_DEEP,
+    MIB,
+    MOTION_FILE,
+    OUT_OF_PROPORTION,
+    Allowance,
+)
+from metagraph.common.files import read_file
+from metagraph.common.wording import told
+from metagraph.errors import FileError
+from metagraph.formats.atomic import write_atomically
+from metagraph.formats.bvh.decimal_text import decimals
+from metagraph.formats.bvh.space import USUAL, stand, unit, z_up
+from metagraph.formats.takes import UNIT, UP, repaired, without_stray_poses
+from metagraph.motion import rotation
+from metagraph.motion.clip import Clip, Repair
+from metagraph.motion.roles import find_roles
+from metagraph.motion.skeleton import Skeleton, unique_names
+
+Array = NDArray[Any]
+
+_LONGEST_HEADER = 16 * MIB
+_DAMAGED = told("The file is damaged: export it again.")
+
+
+@dataclass
+class _Joint:
+    name: str
+    parent: int
+    line: int
+    offset: tuple[float, ...] = ()
+    channels: list[str] = field(default_factory=list)
+
+
+@np.errstate(all="ignore")  # what a broken file makes overflow is refused by the checks, without a warning
+def read_bvh(path: str | Path, scale: float | None = None, as_is: Collection[str] = ()) -> Clip:
+    """Return the motion of a BVH file in metres, Y up.
+
+    scale: metres per unit of the file. BVH states no unit: without `scale` the one that makes the skeleton a
+    human between 1.2 and 2.5 m is taken (centimetres when none does) and named in the notes. A file with Z up
+    is turned. as_is: repairs (`takes.REPAIRS`) not to make; the unit is then centimetres, as in most files.
+    Positions replace a joint's OFFSET. The rest pose has all rotations zero and stands on the ground over the
+    origin. Raises FileError with the line.
+    """
+    path = Path(path)
+    data = read_file(path, MOTION_FILE)
+    head = data[:4096].lstrip(b"\xef\xbb\xbf \t\r\n")
+    if head[:9].upper() != b"HIERARCHY":
+        raise FileError(
+            path,
+            told("it does not begin with HIERARCHY"),
+            told("line 1"),
+            told("Check that it is a BVH file."),
+        )
+    motion = re.search(rb"(?im)^[ \t]*MOTION[ \t]*\r?$", data)
+    if motion is None:
+        raise FileError(
+            path, told("it has no MOTION section"), told("its end"), told("Export it with its motion.")
+        )
+    if motion.start() > _LONGEST_HEADER:
+        raise FileError(path, told("its HIERARCHY is longer than any"), told("its HIERARCHY"), _DAMAGED)
+    joints = _Header(path, data[: motion.start()].decode("utf-8", "replace")).joints()
+    notes: list[str] = []
+    values, fps = _motion(path, data, motion.end(), sum(len(j.channels) for j in joints), notes)
+    _afford(path, len(data), len(values), joints)
+    return _clip(path, joints, values, fps, scale, notes, as_is)
+
+
+def _afford(path: Path, size: int, frames: int, joints: list[_Joint]) -> None:
+    """Refuse what would take far more memory than the file has: joints without channels cost it nothing."""
+
+    def refuse(where: str) -> None:
+        raise FileError(path, OUT_OF_PROPORTION, where, told("Leave out the joints that do not move."))
+
+    placed = sum(any(name[1] == "p" for name in joint.channels) for joint in joints)
+    Allowance(size, refuse).spend(frames * (len(joints) * 64 + placed * 96), f"its {len(joints)} joints")
+
+
+class _Header:
+    """The HIERARCHY section as words with their lines."""
+
+    def __init__(self, path: Path, text: str) -> None:
+        self.path = path
+        self.words: list[tuple[str, int]] = []
+        for number, line in enumerate(text.lstrip("\ufeff").splitlines(), 1):
+            self.words += [(word, number) for word in line.replace("{", " { ").replace("}", " } ").split()]
+        self.at = 0
+
+    def fail(self, cause: str, line: int, remedy: str = _DAMAGED) -> NoReturn:
+        raise FileError(self.path, cause, told("line {line}", line=line), remedy)
+
+    def next(self) -> tuple[str, int]:
+        if self.at >= len(self.words):
+            self.fail(told("the HIERARCHY section ends too early"), self.words[-1][1] if self.words else 1)
+        self.at += 1
+        return self.words[self.at - 1]
+
+    def number(self) -> float:
+        word, line = self.next()
+        try:
+            value = float(word)
+        except ValueError:
+            self.fail(told("'{word}' is not a number", word=word[:40]), line)
+        if not abs(value) < 1e9:
+            self.fail(told("{word} is not a sensible number", word=word[:40]), line)
+        return value
+
+    def joints(self) -> list[_Joint]:
+        out: list[_Joint] = []
+        stack: list[int] = []  # open braces; -1 for an End Site
+        opened: int | None = None
+        self.next()
+        while self.at < len(self.words):
+            word, line = self.next()
+            kind = word.upper()
+            if opened is not None and kind != "{":
+                self.fail(told("expected '{{', found '{word}'", word=word[:40]), line)
+            if kind in ("ROOT", "JOINT", "END"):
+                if kind == "ROOT" and stack:
+                    self.fail(told("a ROOT stands inside another joint"), line)
+                if kind != "ROOT" and (not stack or stack[-1] < 0):
+                    self.fail(told("a {word} stands outside any joint", word=word[:10]), line)
+                name = []
+                while self.at < len(self.words) and self.words[self.at][0] != "{":
+                    name.append(self.next()[0])
+                    if len(name) > 64:
+                        self.fail(told("no '{{' follows {kind}", kind=kind), line)
+                if kind == "END":
+                    opened = -1
+                else:
+                    if len(out) >= JOINTS:
+                        self.fail(
+                            told("it has more than the {JOINTS} joints of any character", JOINTS=JOINTS), line
+                        )
+                    out.append(_Joint(" ".join(name), stack[-1] if stack else -1, line))
+                    opened = len(out) - 1
+            elif kind == "{":
+                if opened is None:
+                    self.fail(told("'{' without a joint"), line)
+                if len(stack) >= JOINTS_DEEP:
+                    self.fail(
+                        told("its joints hang on each other more than {most} deep", most=JOINTS_DEEP),
+                        line,
+                        told("Leave out ropes, hair and cloth, or export the character alone."),
+                    )
+                stack.append(opened)
+                opened = None
+            elif kind == "}":
+                if not stack:
+                    self.fail(told("'}' without a '{'"), line)
+                stack.pop()
+            elif kind == "OFFSET":
+                if not stack:
+                    self.fail(told("OFFSET outside any joint"), line)
+                offset = (self.number(), self.number(), self.number())
+                if stack[-1] >= 0:
+                    out[stack[-1]].offset = offset
+            elif kind == "CHANNELS":
+                self._channels(out, stack, line)
+            else:
+                self.fail(told("'{word}' is not expected here", word=word[:40]), line)
+        if stack:
+            self.fail(told("{count} '}}' are missing", count=len(stack)), self.words[-1][1])
+        if not out:
+            self.fail(told("there is no ROOT"), 1)
+        for joint in out:
+            if not joint.offset:
+                self.fail(told("joint '{name}' has no OFFSET", name=joint.name), joint.line)
+        return out
+
+    def _channels(self, out: list[_Joint], stack: list[int], line: int) -> None:
+        if not stack or stack[-1] < 0:
+            self.fail(told("CHANNELS outside any joint"), line)
+        word, _ = self.next()
+        if not word.isdecimal() or len(word) > 9 or int(word) > 64:
+            self.fail(told("'{word}' is not a number of channels", word=word[:40]), line)
+        if out[stack[-1]].channels:
+            self.fail(told("joint '{name}' has CHANNELS twice", name=out[stack[-1]].name), line)
+        for _ in range(int(word)):
+            channel, at = self.next()
+            if not re.fullmatch(r"(?i)[xyz](position|rotation|scale)", channel):
+                self.fail(
+                    told("'{channel}' is not a channel", channel=channel[:40]),
+                    at,
+                    told("Make the number after CHANNELS fit the names that follow."),
+                )
+            if channel.lower() in out[stack[-1]].channels and channel[1].lower() == "p":
+                self.fail(told("channel {channel} comes twice", channel=channel), at)
+            out[stack[-1]].channels.append(channel.lower())
+
+
+def _motion(path: Path, data: bytes, at: int, channels: int, notes: list[str]) -> tuple[Array, float]:
+    """Return the rows `[F, C]` and frames per second."""
+    head = re.compile(
+        rb"\s*Frames[ \t]*:[ \t]*(\S*)\s*Frame[ \t]*Time[ \t]*:[ \t]*(\S*)", re.IGNORECASE
+    ).match(data, at)
+    if head is None:
+        raise FileError(
+            path,
+            told("'Frames:' and 'Frame Time:' do not follow MOTION"),
+            told("line {line}", line=_line(data, at)),
+            _DAMAGED,
+        )
+    where = f"line {_line(data, head.start(1))}"
+    try:
+        promised, step = int(head[1]), float(head[2])
+    except ValueError:
+        raise FileError(path, told("'Frames:' and 'Frame Time:' are not numbers"), where, _DAMAGED) from None
+    if not FRAME_SECONDS[0] <= step <= FRAME_SECONDS[1]:
+        raise FileError(
+            path,
+            told("a frame time of {step:g} s makes no sense", step=step),
+            told("line {line}", line=_line(data, head.start(2))),
+            told("Write the seconds per frame, such as 0.0333333."),
+        )
+    if channels == 0:
+        raise FileError(
+            path,
+            told("no joint has any CHANNELS"),
+            told("its HIERARCHY"),
+            told("Export it with rotation channels."),
+        )
+    start = head.end()
+    numbers = _numbers(path, data, start, channels)
+    rows, rest = divmod(len(numbers), channels)
+    if rows > FRAMES or (rows - 1) * step > CLIP_SECONDS:
+        cause = told("it has {rows:,} frames, {value:.0f} s", rows=rows, value=rows * step)
+        raise FileError(path, cause, where, told("Cut the take into pieces."))
+    if rows == 0 or (promised <= 0 and rows > 1):
+        cause = (
+            told("'Frames:' says {promised} but {rows} rows follow", promised=promised, rows=rows)
+            if rows
+            else told("it has no frames")
+        )
+        raise FileError(path, cause, where, told("Export it with its motion."))
+    if (rest and rows + 1 < promised) or abs(rows - promised) > 1:
+        line = _uneven_row(data, start, channels)
+        cause = (
+            told("this row does not hold {channels} numbers", channels=channels)
+            if line
+            else told(
+                "'Frames:' says {promised} but {rows} rows of {channels} numbers follow",
+                promised=promised,
+                rows=rows,
+                channels=channels,
+            )
+        )
+        raise FileError(
+            path,
+            cause,
+            told("line {line}", line=line) if line else where,
+            told("Make it say {rows}, or export the file again.", rows=rows) if not line else _DAMAGED,
+        )
+    if rest:
+        line = _uneven_row(data, start, channels)
+        if line and line < _line(data, len(data.rstrip())):
+            raise FileError(
+                path,
+                told("this row does not hold {channels} numbers", channels=channels),
+                told("line {line}", line=line),
+                _DAMAGED,
+            )
+        notes.append("its last row was cut off and was dropped")
+    if rows != promised:
+        notes.append(f"'Frames:' says {promised}, the file has {rows}")
+    return numbers[: rows * channels].reshape(rows, channels), _fps(head[2].decode("ascii", "replace"), step)
+
+
+def _line(data: bytes, at: int) -> int:
+    return data.count(b"\n", 0, at) + 1
+
+
+def _uneven_row(data: bytes, start: int, channels: int) -> int:
+    """Return the line of the first row that has not `channels` numbers, or 0."""
+    first = _line(data, start)
+    for i, row in enumerate(data[start:].split(b"\n")):
+        words = len(row.split())
+        if words and words != channels:
+            return first + i
+    return 0
+
+
+def _fps(text: str, step: float) -> float:
+    """Return frames per second; whole where the frame time says so within its last written digit."""
+    digits = re.fullmatch(r"\d*\.?(\d*)", text)
+    whole = float(round(1 / step))
+    if (
+        digits
+        and whole
+        and abs(1 / whole - step) <= 1.001 * 10.0 ** -len(digits[1])
+        and abs(whole * step - 1) < 0.02
+    ):
+        return whole
+    return 1 / step
+
+
+def _numbers(path: Path, data: bytes, start: int, channels: int) -> Array:
+    """Return every number after `start` as float64."""
+    try:
+        numbers = decimals(data, start)
+        if (np.abs(numbers) <= 1e9).all():
+            return numbers
+    except ValueError:
+        pass
+    first = _line(data, start)
+    for i, row in enumerate(data[start:].split(b"\n")):
+        for word in row.split():
+            try:
+                fine = abs(float(word)) <= 1e9
+            except ValueError:
+                fine = False
+            if not fine:
+                text = word[:40].decode("utf-8", "replace")
+                raise FileError(
+                    path,
+                    told("'{text}' is not a sensible number", text=text),
+                    told("line {value}", value=first + i),
+                    _DAMAGED,
+                )
+    raise FileError(
+        path,
+        told("it holds bytes that are not numbers"),
+        told("line {line}", line=first),
+        _DAMAGED,
+    )
+
+
+def _rotations(values: Array, joints: list[_Joint], columns: list[list[int]]) -> Array:
+    """Return local rotations `[F, J, 4]` float32, neighbours on the same side."""
+    frames = len(values)
+    turns = [
+        [c for c, name in zip(own, joint.channels, strict=True) if name[1] == "r"]
+        for joint, own in zip(joints, columns, strict=True)
+    ]
+    orders = ["".join(name[0] for name in joint.channels if name[1] == "r") for joint in joints]
+    out = rotation.identity((frames, len(joints)))
+    for order in set(orders) - {""}:
+        same = [i for i, o in enumerate(orders) if o == order]
+        angles = np.radians(values[:, [turns[i] for i in same]])
+        out[:, same] = rotation.from_euler(angles, order)
+    return rotation.continuous(out.astype(np.float32))
+
+
+def _clip(
+    path: Path,
+    joints: list[_Joint],
+    values: Array,
+    fps: float,
+    scale: float | None,
+    notes: list[str],
+    as_is: Collection[str],
+) -> Clip:
+    """Put channels, units and axes together."""
+    names = unique_names([j.name for j in joints])
+    if names != tuple(j.name for j in joints):
+        notes.append("joints without a name or with a repeated one were given names of their own")
+    if any(name[1] == "s" for j in joints for name in j.channels):
+        notes.append("scale channels were left out")
+    parents = np.array([j.parent for j in joints])
+    offsets = np.array([j.offset for j in joints])
+    columns, at = [], 0
+    for joint in joints:
+        columns.append(list(range(at, at + len(joint.channels))))
+        at += len(joint.channels)
+    placed = {}  # joints with position channels; an axis without one keeps its OFFSET
+    for i, joint in enumerate(joints):
+        axes = {name[0]: c for name, c in zip(joint.channels, columns[i], strict=True) if name[1] == "p"}
+        if axes or i == 0:
+            placed[i] = np.tile(offsets[i], (len(values), 1))
+            for axis, column in axes.items():
+                placed[i][:, "xyz".index(axis)] = values[:, column]
+    rotations = _rotations(values, joints, columns)
+    skeleton = Skeleton(names, parents.copy(), rotation.identity((len(joints),)), offsets)
+    roles = find_roles(skeleton)
+
+    repairs: list[Repair] = []
+    if scale is None:
+        scale, told = unit(skeleton, roles)
+        if scale == USUAL:
+            notes.append(told)
+        else:
+            repairs.append(Repair(UNIT, told, UNIT not in as_is))
+            scale = scale if repairs[-1].made else USUAL
+    elif not (scale > 0 and np.isfinite(scale)):
+        raise ValueError(f"a scale of {scale} metres per unit")
+    offsets = offsets * scale
+    placed = {i: p * scale for i, p in placed.items()}
+    up, rest_too = z_up(skeleton, roles, rotations, placed, offsets)
+    rest_rotations = rotation.identity((len(joints),))
+    if up:
+        repairs.append(Repair(UP, "its Z axis points up: turned to Y up", UP not in as_is))
+    if up and UP not in as_is:
+        turn = rotation.from_axis_angle([1, 0, 0], -np.pi / 2)
+        roots = np.flatnonzero(parents < 0)
+        rotations[:, roots] = rotation.multiply(turn, rotations[:, roots].astype(float))
+        offsets[roots] = rotation.rotate(turn, offsets[roots])
+        for i in roots.tolist():
+            if i in placed:
+                placed[i] = rotation.rotate(turn, placed[i])
+        if rest_too:
+            rest_rotations[roots] = turn
+    stand(
+        offsets,
+        parents,
+        rest_rotations,
+        {i for i, p in placed.items() if i == 0 or np.abs(p - offsets[i]).max() > 1e-4},
+    )
+    skeleton = Skeleton(names, parents, rest_rotations, offsets)
+    moving = [i for i, p in sorted(placed.items()) if i == 0 or np.abs(p - offsets[i]).max() > 1e-5]
+    translations = np.stack([placed[i] for i in moving], 1)
+    clip = Clip(path.stem, skeleton, fps, rotations, translations, tuple(moving), notes=tuple(notes))
+    for repair in repairs:
+        clip = repaired(clip, repair)
+    return without_stray_poses([clip], as_is)[0]
+
+
+def write_bvh(clip: Clip, path: str | Path) -> None:
+    """Write a clip as BVH in centimetres: rotations in ZXY order, positions for every joint that has
+    translations.
+
+    BVH has no rest rotations and no morph targets: they are lost, the motion is not. Raises FileError.
+    """
+    skeleton = clip.skeleton
+    lines = ["HIERARCHY"]
+
+    def describe(joint: int, depth: int) -> None:
+        tab = "\t" * depth
+        offset = skeleton.rest_translations[joint] * 100
+        lines.append(
+            f"{tab}{'ROOT' if skeleton.parents[joint] < 0 else 'JOINT'} "
+            f"{skeleton.names[joint].replace(' ', '_')}"
+        )
+        lines.extend((f"{tab}{{", f"{tab}\tOFFSET {offset[0]:.6f} {offset[1]:.6f} {offset[2]:.6f}"))
+        position = "6 Xposition Yposition Zposition" if joint in clip.translated else "3"
+        lines.append(f"{tab}\tCHANNELS {position} Zrotation Xrotation Yrotation")
+        order.append(joint)
+
+    order: list[int] = []
+    stack: list[tuple[int, int]] = [(i, 0) for i in reversed(np.flatnonzero(skeleton.parents < 0).tolist())]
+    while stack:
+        joint, depth = stack.pop()
+        tab = "\t" * depth
+        if joint < 0:
+            lines.append(f"{tab}}}")
+            continue
+        describe(joint, depth)
+        stack.append((-1, depth))
+        stack.extend((child, depth + 1) for child in reversed(skeleton.children[joint]))
+        if not skeleton.children[joint]:
+            tip = skeleton.rest_translations[joint] * (50 if skeleton.parents[joint] >= 0 else 0)
+            lines.extend(
+                (
+                    f"{tab}\tEnd Site",
+                    f"{tab}\t{{",
+                    f"{tab}\t\tOFFSET {tip[0]:.6f} {tip[1]:.6f} {tip[2]:.6f}",
+                    f"{tab}\t}}",
+                )
+            )
+    lines.extend(("MOTION", f"Frames: {clip.frames}", f"Frame Time: {1 / clip.fps:.12f}"))
+    angles = np.degrees(rotation.to_euler(clip.rotations.astype(np.float64), "ZXY"))
+    blocks = []
+    for joint in order:
+        if joint in clip.translated:
+            blocks.append(clip.translations[:, clip.translated.index(joint)].astype(np.float64) * 100)
+        blocks.append(angles[:, joint])
+    rows = np.concatenate(blocks, 1)
+    pattern = " ".join(["%.6f"] * rows.shape[1])
+    lines.extend(pattern % tuple(row) for row in rows.tolist())
+    write_atomically(Path(path), ("\n".join(lines) + "\n").encode())

@@ -1,0 +1,187 @@
+"""Which language each of those who talk is read in: what was chosen, or what their words tell; and what there
+is to say of that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from metagraph.common.wording import told
+from metagraph.formats.conversations.words import Told
+from metagraph.formats.transcripts.words import count, listed
+from metagraph.graph.conversation.model import AUTO
+from metagraph.speech.language_detection import Spoken, language_spoken
+from metagraph.speech.language_packs import ENGLISH, Language, languages
+
+_BY_LISTS = told(
+    "responses, hesitations and clauses go by that language's lists, lips by its letters as English spells. "
+    "Choose another language if that is wrong."
+)
+Lists = tuple[tuple[str, ...], tuple[str, ...]]  # responses and hesitations
+
+
+@dataclass(frozen=True, eq=False)
+class Speaking:
+    """language: a code for all, or `AUTO` for what each one's words tell. otherwise: the code of what is
+    taken where they tell nothing, `AUTO` for English. packs: the languages that are known, by code. lists: of
+    each side, responses and hesitations instead of its language's; None for those, as for sides beyond.
+    """
+
+    language: str = AUTO
+    otherwise: str = AUTO
+    packs: Mapping[str, Language] = field(default_factory=languages)
+    lists: tuple[Lists | None, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.language not in (AUTO, *self.packs):
+            raise ValueError(
+                told(
+                    "there are no words of '{language}': known are {names}; choose one, 'auto', or "
+                    "give a list of words of your own",
+                    language=self.language[:40],
+                    names=", ".join(self.packs),
+                )
+            )
+
+    @property
+    def usual(self) -> Language:
+        """What is taken where words tell nothing."""
+        return self.packs.get(self.otherwise) or self.packs.get(ENGLISH) or next(iter(self.packs.values()))
+
+    def lists_for(self, side: int, language: Language | None) -> Lists:
+        """Return responses and hesitations of a side; none in a language that is not known."""
+        given = self.lists[side] if side < len(self.lists) else None
+        if given is not None:
+            return given
+        return (language.responses, language.hesitations) if language is not None else ((), ())
+
+
+def languages_of(
+    notes: list[str], called: Sequence[str], said: Sequence[Told], speaking: Speaking
+) -> tuple[Language | None, ...]:
+    """Return what each is read in, None where nobody knows; say how that was found."""
+    spoken = [_spoken(one, speaking) for one in said]
+    if speaking.language != AUTO:
+        chosen = speaking.packs[speaking.language]
+        for name, found in zip(called, spoken, strict=True):
+            if found is not None and found.language not in (None, chosen):
+                assert found.language is not None
+                notes.append(
+                    told(
+                        "{name}: its words look {called}; they are read as {called2}, as was chosen.",
+                        name=name,
+                        called=found.language.called,
+                        called2=chosen.called,
+                    )
+                )
+        return (chosen,) * len(said)
+    partners = [_partner(spoken, n) for n in range(len(spoken))]
+    out: list[Language | None] = []
+    for found, partner in zip(spoken, partners, strict=True):
+        as_partner = partner.language if partner is not None else None
+        if found is None:  # no words: nothing to read, but the lists are the partner's
+            out.append(as_partner or speaking.usual)
+        elif found.how == "unknown" or (
+            found.language is None and partner is not None and partner.how == "unknown"
+        ):
+            out.append(None)
+        else:
+            out.append(found.language or as_partner or speaking.usual)
+    worded = [s for s in spoken if s is not None]
+    alike = len(worded) == len(spoken) and len({s.language for s in worded}) == 1
+    if alike and worded[0].language is not None:
+        notes += _all_alike(worded) if any(t.segments is None for t in said) else []
+        return tuple(out)
+    for n, (name, found) in enumerate(zip(called, spoken, strict=True)):
+        if found is not None and said[n].segments is None:
+            notes += _told(name, found, out[n], partners[n], speaking)
+    return tuple(out)
+
+
+def _partner(spoken: Sequence[Spoken | None], n: int) -> Spoken | None:
+    """Return what the words of those who talk with one tell: of several, of the first whose language they
+    tell.
+    """
+    others = [s for m, s in enumerate(spoken) if m != n and s is not None]
+    return next((s for s in others if s.language is not None), others[0] if others else None)
+
+
+def _all_alike(spoken: Sequence[Spoken]) -> list[str]:
+    assert spoken[0].language is not None
+    if spoken[0].language.code == ENGLISH:
+        return []
+    of = listed([told("{known:,} of {words:,}", known=s.known, words=s.words) for s in spoken])
+    return [
+        told(
+            "Both speak {language}, as {of} words tell; {lists}"
+            if len(spoken) == 2
+            else "All speak {language}, as {of} words tell; {lists}",
+            language=spoken[0].language.called,
+            of=of,
+            lists=_BY_LISTS,
+        )
+    ]
+
+
+def _spoken(said: Told, speaking: Speaking) -> Spoken | None:
+    """Return what one's words tell; None where there are none."""
+    texts = [w.text for w in said.words] or [s.text for s in said.segments or () if s.text]
+    return language_spoken(texts, tuple(speaking.packs.values())) if texts else None
+
+
+def _told(
+    name: str, found: Spoken, read: Language | None, partner: Spoken | None, speaking: Speaking
+) -> list[str]:
+    if read is None and found.how != "unknown":
+        return [
+            told(
+                "{name}: {count} do not tell the language; as the other's is not known, sound tells clauses "
+                "and short answers here, too.",
+                name=name,
+                count=count(found.words, "word"),
+            )
+        ]
+    if read is None:
+        known = ", ".join(speaking.packs)
+        return [
+            told(
+                "{name}: its words are of no language that there are lists for ({known}), so sound tells "
+                "clauses and short answers, and no word is taken for a response or a hesitation. Choose the "
+                "language, or give a list of its words.",
+                name=name,
+                known=known,
+            )
+        ]
+    if found.how == "sure":
+        if read.code == ENGLISH:
+            return []
+        return [
+            told(
+                "{name}: its words are {language}, as {known:,} of {words:,} tell; {lists}",
+                name=name,
+                language=read.called,
+                known=found.known,
+                words=found.words,
+                lists=_BY_LISTS,
+            )
+        ]
+    if partner is not None and partner.language is read:
+        why = told("as the other's are")
+    elif speaking.otherwise == read.code:
+        why = told("which the project is set to")
+    else:
+        why = told("which is taken then")
+    return [
+        told(
+            "{name}: {count} are too few to tell the language by; undecided, they are read as {language}, "
+            "{why}."
+            if found.words < 12
+            else "{name}: {count} do not tell the language by; undecided, they are read as {language}, "
+            "{why}.",
+            name=name,
+            count=count(found.words, "word"),
+            language=read.called,
+            why=why,
+        )
+    ]

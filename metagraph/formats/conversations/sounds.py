@@ -1,0 +1,221 @@
+"""The sound of a conversation's sides: channels of a file or files, and what there is to say of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from concurrent.futures import CancelledError
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.common.budgets import CONVERSATION_SECONDS as LONGEST
+from metagraph.common.wording import joined, told
+from metagraph.errors import FileError
+from metagraph.formats.conversations.words import Voice
+from metagraph.speech.activity import HUSH
+from metagraph.speech.pitch import pitch
+from metagraph.speech.sound import hear, read_recording
+
+Array = NDArray[Any]
+
+RATE = 16000  # samples a second that are kept; speech has nothing above half of that
+CLIPPED = 1e-4  # share of samples cut off at full scale that is worth a word
+SAME = 1e-4  # of full scale: two channels that differ by less are one
+UNLIKE = 0.5  # seconds two files may differ in length without a word
+_SIDES = (told("left"), told("right"))
+_NUMBERS = {2: told("two"), 3: told("three"), 4: told("four")}
+
+
+@dataclass
+class Reading:
+    """What is to be said so far, and whether somebody gave up."""
+
+    notes: list[str] = field(default_factory=list)
+    cancelled: Callable[[], bool] | None = None
+
+    def go_on(self) -> None:
+        if self.cancelled is not None and self.cancelled():
+            raise CancelledError
+
+
+def length_of(voice: Voice) -> float:
+    """Return how long a sound is in whole milliseconds: nothing that is written down ends after it."""
+    return math.floor(voice.heard.duration * 1000 + 1e-6) / 1000
+
+
+def voices_of(reading: Reading, audio: list[Path], worded: bool, most: int) -> tuple[Voice, ...]:
+    """Return the sound of each side; a single one if all share it."""
+    if len(audio) > 1:
+        return _files(reading, audio)
+    path = audio[0]
+    reading.go_on()
+    read = read_recording(path, LONGEST, RATE)
+    _tell_kind(reading, path, read.really)
+    channels = len(read.samples)
+    if channels > most:
+        asks = told("a conversation of two has one for each")
+        if most != 2:
+            asks = told("a conversation has up to {most}", most=most)
+        raise FileError(
+            path,
+            told("has {channels} channels, {asks}", channels=channels, asks=asks),
+            remedy=told("Save the speakers' channels as one file, or as one for each."),
+        )
+    called = [
+        told("{name}, {channel}", name=path.name, channel=_channel(n, channels)) for n in range(channels)
+    ]
+    sounding = _sounding(read.samples) if channels > 1 else []
+    if len(sounding) > 1 or (channels == 2 and len(sounding) == 1):
+        if channels == 2 and len(sounding) == 1:
+            here, silent = (_SIDES[n] for n in (sounding[0], 1 - sounding[0]))
+            reading.notes.append(
+                told(
+                    "{name}: the {silent} channel is silent. If both speak in the {here} one, save "
+                    "that alone and add a transcript that names the speakers; else check the microphone.",
+                    name=path.name,
+                    silent=silent,
+                    here=here,
+                )
+            )
+        elif len(sounding) < channels:
+            gone = joined([_channel(n, channels) for n in range(channels) if n not in sounding], ", ")
+            reading.notes.append(
+                told("{name}: {gone} left out, which nothing is heard in.", name=path.name, gone=gone)
+            )
+        kept = range(channels) if channels == 2 else sounding
+        for n in kept:
+            _tell_clipped(reading, called[n], read.clipped[n])
+        return tuple(_voice(reading, path, n, called[n], read.samples[n], read.rate) for n in kept)
+    hushed = float(np.abs(read.samples).max()) <= 10 ** (HUSH / 20)
+    if hushed and not worded:
+        raise FileError(
+            path,
+            told("is silent"),
+            remedy=told("Check the microphone, or what was exported, and save the sound anew."),
+        )
+    why = told(
+        "has the same sound in both channels" if channels == 2 else "has one sound in all its channels"
+    )
+    if hushed or channels == 1:
+        why = told("is silent" if hushed else "has one channel")
+    if not worded:
+        raise FileError(
+            path,
+            told("{why}, so that nobody can tell who speaks", why=why),
+            remedy=told("Give a channel or a file for each, or a transcript that names the speakers."),
+        )
+    _tell_clipped(reading, path.name, max(read.clipped))
+    reading.notes.append(
+        told(
+            "{name} {why}: all sides share it, and only the transcript tells who speaks.",
+            name=path.name,
+            why=why,
+        )
+    )
+    return (_voice(reading, path, None, path.name, read.samples.mean(0), read.rate),)
+
+
+def _channel(n: int, channels: int) -> str:
+    if channels == 2:
+        return told("{side} channel", side=_SIDES[n])
+    return told("channel {number}", number=n + 1)
+
+
+def _sounding(samples: Array) -> list[int]:
+    """Return which channels `[C, N]` have a sound of their own, all where nobody has; none where all have the
+    same.
+    """
+    loud = np.abs(samples).max(1)
+    if np.abs(samples - samples[:1]).max() < SAME * max(float(loud.max()), 1e-9):
+        return []
+    least = 10 ** (HUSH / 20)
+    if loud.max() <= least:
+        return list(range(len(samples)))
+    return [n for n in range(len(samples)) if loud[n] > least]
+
+
+def _tell_kind(reading: Reading, path: Path, really: str) -> None:
+    if really:
+        reading.notes.append(
+            told(
+                "{name} is {really} in spite of its ending; it was read as that. Other programs may "
+                "refuse it: rename it.",
+                name=path.name,
+                really=really,
+            )
+        )
+
+
+def _files(reading: Reading, audio: list[Path]) -> tuple[Voice, ...]:
+    out, rates = [], []
+    count = _NUMBERS.get(len(audio), len(audio))
+    for path in audio:
+        reading.go_on()
+        read = read_recording(path, LONGEST, RATE)
+        _tell_kind(reading, path, read.really)
+        channels = len(read.samples)
+        if channels > 1:
+            reading.notes.append(
+                told(
+                    "{name} has {channels} channels; as it is one of {count} files, they are mixed.",
+                    name=path.name,
+                    channels=channels,
+                    count=count,
+                )
+            )
+        _tell_clipped(reading, path.name, max(read.clipped))
+        out.append(
+            _voice(reading, path, None if channels > 1 else 0, path.name, read.samples.mean(0), read.rate)
+        )
+        rates.append(read.original)
+    if len(set(rates)) > 1:
+        other = next(n for n, rate in enumerate(rates) if rate != rates[0])
+        reading.notes.append(
+            told(
+                "{name} has {rates} samples a second and {name2} {rates2}; each is read at its own. "
+                "If one runs away from the other, record both at the same rate.",
+                name=audio[0].name,
+                rates=rates[0],
+                name2=audio[other].name,
+                rates2=rates[other],
+            )
+        )
+    lengths = [v.heard.duration for v in out]
+    longest, shortest = (lengths.index(f(lengths)) for f in (max, min))
+    if lengths[longest] - lengths[shortest] > UNLIKE:
+        reading.notes.append(
+            told(
+                "{name} lasts {lengths:.1f} s and {name2} {lengths2:.1f} s; the shorter one is "
+                "silent then. Check that both begin at the same moment.",
+                name=audio[longest].name,
+                lengths=lengths[longest],
+                name2=audio[shortest].name,
+                lengths2=lengths[shortest],
+            )
+        )
+    return tuple(out)
+
+
+def _voice(
+    reading: Reading, path: Path, channel: int | None, called: str, samples: Array, rate: int
+) -> Voice:
+    reading.go_on()
+    heard = hear(samples, rate)
+    reading.go_on()
+    return Voice(path, channel, called, heard, pitch(samples, rate))
+
+
+def _tell_clipped(reading: Reading, called: str, clipped: float) -> None:
+    if clipped > CLIPPED:
+        reading.notes.append(
+            told(
+                "{called}: {value:.2g} % of the samples are cut off at full scale; loudness and "
+                "pitch are less sure. Record softer.",
+                called=called,
+                value=100 * clipped,
+            )
+        )

@@ -1,0 +1,107 @@
+"""Read FBX motion through the optional ufbx library, in processes of their own, so a crash costs one file."""
+
+from __future__ import annotations
+
+import importlib.util
+from collections.abc import Collection
+from pathlib import Path
+
+import numpy as np
+
+from metagraph.common.budgets import MOTION_FILE
+from metagraph.common.files import check_file
+from metagraph.common.wording import told
+from metagraph.errors import FileError
+from metagraph.formats.fbx import child as fbx_child
+from metagraph.formats.fbx.processes import ReaderError, convert
+from metagraph.formats.gltf.clips import read_clips
+from metagraph.formats.gltf.file import parse_gltf
+from metagraph.formats.gltf.skeleton import build_rig
+from metagraph.formats.takes import unique_takes
+from metagraph.motion.clip import Clip
+
+TIMEOUT = 120.0  # seconds for one file
+_AGAIN = told("Export it again from the program that made it, as binary FBX 2014 or later, or as GLB.")
+
+
+def read_fbx_clips(path: str | Path, timeout: float = TIMEOUT, as_is: Collection[str] = ()) -> list[Clip]:
+    """Return every take of an FBX file, sampled at 30 fps, in metres, Y up, on one Skeleton.
+
+    Needs the extra `metagraph-studio[fbx]`. Meshes and blend shapes are not read. Raises FileError, also when
+    the library is missing, takes longer than `timeout` seconds or crashes on the file. as_is: repairs
+    (`takes.REPAIRS`) not to make.
+    """
+    path = check_file(path, MOTION_FILE)
+    if importlib.util.find_spec("ufbx") is None:
+        raise FileError(
+            path,
+            told("reading FBX needs the ufbx library, which is not installed"),
+            told("on opening it"),
+            told("Run: pip install 'metagraph-studio[fbx]'"),
+        )
+    data = _converted(path, timeout)
+    gltf = parse_gltf(path, data)
+    if not gltf.json.animations:
+        raise FileError(
+            path,
+            told("it holds no animation"),
+            told("its animations"),
+            told("Export it with its animation baked."),
+        )
+    with np.errstate(all="ignore"):
+        clips = read_clips(gltf, build_rig(gltf, as_is), as_is)
+    if not clips:
+        raise FileError(
+            path,
+            told("none of its takes moves the skeleton"),
+            told("its animations"),
+            told("Export it with its animation baked."),
+        )
+    return unique_takes(clips)
+
+
+def _converted(path: Path, timeout: float) -> bytes:
+    """Return the file as binary glTF, made by another process."""
+    try:
+        return convert(path, timeout)
+    except OSError as error:
+        raise FileError(
+            path,
+            told("the reader of FBX files did not start ({strerror})", strerror=error.strerror),
+            told("on opening it"),
+            told("Install Metagraph again."),
+        ) from error
+    except ReaderError as error:
+        raise _told(path, error, timeout) from None
+
+
+def _told(path: Path, error: ReaderError, timeout: float) -> FileError:
+    code, words = error.code, error.words or "no reason given"
+    if code is None:
+        return FileError(
+            path,
+            told("it could not be read within {timeout:.0f} s", timeout=timeout),
+            told("on reading it"),
+            _AGAIN,
+        )
+    if code == fbx_child.MISSING:
+        return FileError(
+            path,
+            told("the ufbx library is installed but does not load"),
+            told("on opening it"),
+            told("Run: pip install --force-reinstall 'metagraph-studio[fbx]'"),
+        )
+    if code == fbx_child.REFUSED:
+        return FileError(
+            path, told("it is not a sound FBX file ({words})", words=words), told("its content"), _AGAIN
+        )
+    if code < 0:
+        return FileError(
+            path,
+            told("the FBX library crashed on it (signal {value})", value=-code),
+            told("its content"),
+            _AGAIN,
+        )
+    return FileError(
+        path, told("it could not be converted ({words})", words=words), told("its content"), _AGAIN
+    )

@@ -1,0 +1,197 @@
+"""Animations of a glTF file as clips: every channel resampled to one constant frame rate."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.common.budgets import CLIP_SECONDS
+from metagraph.common.wording import told
+from metagraph.formats.gltf.channels import JointChannels, check, left_out, morph_channels, sound_times
+from metagraph.formats.gltf.columns import WEIGHTS, ChannelTable
+from metagraph.formats.gltf.file import Gltf, extras
+from metagraph.formats.gltf.morphs import morph_weights
+from metagraph.formats.gltf.sampling import Grid
+from metagraph.formats.gltf.skeleton import GltfRig
+from metagraph.formats.gltf.tracks import NotFiniteError, Still, Takes, spend_keys
+from metagraph.formats.takes import frame_rate, noted, take_name, take_repair, without_stray_poses
+from metagraph.motion.clip import Clip
+
+Array = NDArray[Any]
+
+AT_ONCE = 1 << 18  # joints times frames of takes that are made together
+
+
+def read_clips(gltf: Gltf, rig: GltfRig, as_is: Collection[str] = ()) -> list[Clip]:
+    """Return all animations that move something of the skeleton. Raises FileError; for takes that are longer
+    together than the file's size warrants before any of them is made.
+
+    as_is: repairs (`takes.REPAIRS`) not to make.
+    """
+    table = gltf.channels
+    channels = JointChannels.of(table, rig.places, len(gltf.json.nodes), len(gltf.json.accessors))
+    keys = sound_times(gltf, np.concatenate([channels.sources, table.inputs[table.paths == WEIGHTS]]))
+    numbers = range(len(gltf.json.animations))
+    planned = (_planned(gltf, rig, n, table, channels, keys) for n in numbers)
+    plans = [plan for plan in planned if plan is not None]
+    still = Still(rig)
+    return [
+        clip
+        for batch in _batches(plans, len(rig.nodes))
+        for clip in _clips(gltf, rig, still, batch, channels, keys, as_is)
+    ]
+
+
+@dataclass(frozen=True, eq=False)
+class _Plan:
+    """What an animation asks for. number: its own among the file's. first, after: its groups of joint
+    channels. morphs: channels of weights: input, mode, node, output.
+    """
+
+    number: int
+    name: str
+    where: str
+    first: int
+    after: int
+    morphs: list[tuple[int, str, int, int]]
+    notes: list[str]
+    grid: Grid
+
+
+def _planned(
+    gltf: Gltf,
+    rig: GltfRig,
+    number: int,
+    table: ChannelTable,
+    channels: JointChannels,
+    keys: dict[int, Array],
+) -> _Plan | None:
+    """Return what animation `number` asks for, None when it moves nothing of the skeleton. keys: key times by
+    accessor, as they were read.
+    """
+    animation = gltf.json.animations[number]
+    where = told("animation {a} '{name}'", a=number, name=animation.name)
+    check(gltf, table, number, where)
+    first, after = channels.of_take(number)
+    morphs, notes = morph_channels(table, number), left_out(gltf, table, number)
+    if first == after and not morphs:
+        return None
+    inputs = {*channels.sources[first:after].tolist(), *(channel[0] for channel in morphs)}
+    for i in sorted(inputs - keys.keys()):
+        keys[i] = _key_times(gltf, i, where)
+    own = [keys[i] for i in sorted(inputs)]
+    spend_keys(gltf, 8 * sum(map(len, own)), where)
+    start, end = min(float(k[0]) for k in own), max(float(k[-1]) for k in own)
+    if not end - start <= CLIP_SECONDS:
+        gltf.fail(told("it lasts {value:.3g} s", value=end - start), where)
+    wanted = extras(animation.extras).get("fps")
+    fps = frame_rate(own, float(wanted) if isinstance(wanted, int | float) and 1 <= wanted <= 1000 else None)
+    frames = max(1, round((end - start) * fps) + 1)
+    gltf.spend(frames * len(rig.nodes) * 32, where)
+    if start * fps > 0.5:
+        notes.append(f"it starts at {start:.3f} s in the file; that moment is now 0")
+    grid = Grid(np.minimum(start + np.arange(frames) / fps, end), fps)
+    return _Plan(number, animation.name, where, first, after, morphs, notes, grid)
+
+
+def _batches(plans: Sequence[_Plan], joints: int) -> Iterator[list[_Plan]]:
+    """Yield takes that are made together: numbers of many short ones are reckoned as quickly as one's."""
+    batch: list[_Plan] = []
+    for plan in plans:
+        if batch and joints * sum(len(p.grid.times) for p in (*batch, plan)) > AT_ONCE:
+            yield batch
+            batch = []
+        batch.append(plan)
+    if batch:
+        yield batch
+
+
+def _clips(
+    gltf: Gltf,
+    rig: GltfRig,
+    still: Still,
+    plans: Sequence[_Plan],
+    channels: JointChannels,
+    keys: dict[int, Array],
+    as_is: Collection[str],
+) -> list[Clip]:
+    for plan in plans if channels.doubled else ():
+        for group in range(plan.first, plan.after):
+            joints, _ = channels.targets(group)
+            again = len(joints) - len(set(joints.tolist()))
+            if again:
+                gltf.spend(
+                    again * len(plan.grid.times) * 192, plan.where
+                )  # others were counted with the clip
+    named = [plan.number for plan in plans], [plan.where for plan in plans], [plan.grid for plan in plans]
+    takes = Takes(gltf, rig, still, channels, plans[0].first, plans[-1].after, *named, keys)
+    try:
+        rotations = takes.turned()
+    except NotFiniteError as error:
+        _not_finite(gltf, rig, plans[error.take], error.joint)
+    scaled, out = takes.scaled(), []
+    for number, (plan, moved) in enumerate(zip(plans, takes.moved(), strict=True)):
+        if scaled[number]:
+            plan.notes.append(
+                f"the scale of {scaled[number]} joints is animated; clips hold no scale, so it was left out"
+            )
+        own = rotations[takes.begins[number] : takes.ends[number]]
+        out.append(_clip(gltf, rig, still, plan, keys, own, moved, as_is))
+    return without_stray_poses(out, as_is, [still.pose])
+
+
+def _not_finite(gltf: Gltf, rig: GltfRig, plan: _Plan, joint: int) -> NoReturn:
+    name = rig.skeleton.names[joint]
+    gltf.fail(told("a key is not a number"), told("{where}, node '{name}'", where=plan.where, name=name))
+
+
+def _clip(
+    gltf: Gltf,
+    rig: GltfRig,
+    still: Still,
+    plan: _Plan,
+    keys: dict[int, Array],
+    rotations: Array,
+    moved: dict[int, Array],
+    as_is: Collection[str],
+) -> Clip:
+    """rotations `[F, J, 4]`; moved: as `_moved` has it."""
+    translated = tuple(sorted({0, *moved}))
+    translations = np.empty((len(rotations), len(translated), 3))
+    for n, j in enumerate(translated):
+        known = moved.get(j)
+        translations[:, n] = still.rest[j] if known is None else known if len(known) else still.places[j]
+    if not np.abs(translations).max() <= 1e7:
+        bad = np.flatnonzero(~np.isfinite(translations).all((0, 2)))
+        if len(bad):
+            _not_finite(gltf, rig, plan, translated[int(bad[0])])
+        gltf.fail(told("a translation is out of range"), plan.where)
+    morphs, weights = morph_weights(gltf, plan.morphs, keys, plan.grid, plan.where)
+    stem = gltf.path.stem
+    name, renaming = take_repair(plan.name, take_name(plan.name, stem), stem, as_is)
+    repairs = tuple(repair for repair in (*rig.repairs, renaming) if repair is not None)
+    return Clip(
+        name,
+        rig.skeleton,
+        plan.grid.fps,
+        rotations,
+        translations,
+        translated,
+        morphs,
+        weights,
+        (*rig.notes, *plan.notes, *map(noted, repairs)),
+        repairs,
+    )
+
+
+def _key_times(gltf: Gltf, accessor: int, where: str) -> Array:
+    times = np.asarray(gltf.array(accessor, where, "SCALAR"), np.float64)
+    if not len(times):
+        gltf.fail(told("accessor {accessor} holds no key times", accessor=accessor), where)
+    if not np.isfinite(times).all() or (np.diff(times) < 0).any():
+        gltf.fail(told("the key times of accessor {accessor} do not ascend", accessor=accessor), where)
+    return times

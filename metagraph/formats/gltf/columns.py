@@ -1,0 +1,128 @@
+"""The long lists of a glTF file as columns of numbers: it may have ten thousand accessors and channels."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.formats.gltf.values import Animation, Document
+
+Array = NDArray[Any]
+
+FLOAT = 5126
+WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
+TRANSLATION, ROTATION, SCALE, WEIGHTS, UNKNOWN = range(5)
+PATHS = {"translation": TRANSLATION, "rotation": ROTATION, "scale": SCALE, "weights": WEIGHTS}
+LINEAR, STEP, SPLINE, NO_MODE = range(4)
+MODES = {"LINEAR": LINEAR, "STEP": STEP, "CUBICSPLINE": SPLINE}
+_MOST = 1 << 40  # bytes: what is more is beyond any file just as well, and sums of it are still numbers
+
+_decoder = msgspec.json.Decoder(Document)
+
+
+def decoded(text: bytes | memoryview) -> Document:
+    """Return what a file's JSON says. Raises MsgspecError, RecursionError, ValueError."""
+    return _decoder.decode(text)
+
+
+def column(numbers: list[int]) -> Array:
+    """Return whole numbers as an array; the largest there is for larger ones."""
+    try:
+        return np.array(numbers, np.int64)
+    except OverflowError:
+        return np.array([min(number, (1 << 63) - 1) for number in numbers], np.int64)
+
+
+@dataclass(frozen=True, eq=False)
+class PlainAccessors:
+    """Which accessors are float32 numbers one after another in the first buffer. begins `[A]`: the byte where
+    each begins, -1 where it is not so. counts, widths `[A]`: its elements, and how many numbers each has.
+    """
+
+    begins: Array
+    counts: Array
+    widths: Array
+
+    @classmethod
+    def of(cls, document: Document) -> PlainAccessors:
+        accessors, views = document.accessors, document.buffer_views
+        if not accessors or not views:
+            none = np.zeros(len(accessors), np.int64)
+            return cls(none - 1, none, none)
+        rows = [
+            (a.buffer_view, a.byte_offset, a.count, WIDTHS.get(a.type, 0))
+            if a.component_type == FLOAT and a.sparse is None and a.buffer_view is not None
+            else (0, 0, 0, 0)
+            for a in accessors
+        ]
+        lying = [(v.buffer, v.byte_offset, v.byte_length, v.byte_stride) for v in views]
+        view, offset, count, width = (column([*some]) for some in zip(*rows, strict=True))
+        buffer, view_begin, length, stride = (column([*some]) for some in zip(*lying, strict=True))
+        packed = np.array([v.packed is not None for v in views])
+        offset, count, view_begin, length = (
+            np.minimum(a, _MOST) for a in (offset, count, view_begin, length)
+        )
+        there = (width > 0) & (view < len(views))
+        view = np.where(there, view, 0)
+        begin, size = view_begin[view] + offset, 4 * width
+        there &= (buffer[view] == 0) & ~packed[view] & (begin & 3 == 0)
+        there &= (offset + size * count <= length[view]) & ((stride[view] == 0) | (stride[view] == size))
+        return cls(np.where(there, begin, -1), count, width)
+
+    def starts(self, indices: Array, counts: Array | int, width: int, size: int) -> Array:
+        """Return where among a first buffer of `size` bytes, as numbers, accessors begin that hold `counts`
+        elements of `width` numbers, or more; -1 for all that do not, or lie in other ways.
+        """
+        if not len(self.begins):
+            return np.full(len(indices), -1)
+        there = indices < len(self.begins)
+        which = np.where(there, indices, 0)
+        begins = self.begins[which]
+        fits = there & (begins >= 0) & (self.widths[which] == width) & (self.counts[which] >= counts)
+        return np.where(fits & (begins <= size - 4 * width * counts), begins // 4, -1)
+
+
+@dataclass(frozen=True, eq=False)
+class ChannelTable:
+    """Channels of all animations, one after another. begins `[A + 1]`: where each animation's are. samplers,
+    nodes, paths `[C]`: what each names; -1 for no node. inputs, modes, outputs `[C]`: of the sampler; of one
+    that does not exist -1, of a mode that is unknown `NO_MODE`.
+    """
+
+    begins: Array
+    samplers: Array
+    nodes: Array
+    paths: Array
+    inputs: Array
+    modes: Array
+    outputs: Array
+
+    @cached_property
+    def odd(self) -> frozenset[int]:
+        """Animations with channels that make no sense, that move no joint or that nothing is known of."""
+        odd = (self.inputs < 0) | (self.modes == NO_MODE) | (self.nodes < 0) | (self.paths > SCALE)
+        return frozenset((np.searchsorted(self.begins, np.flatnonzero(odd), "right") - 1).tolist())
+
+    @classmethod
+    def of(cls, animations: Sequence[Animation]) -> ChannelTable:
+        counts = [len(animation.channels) for animation in animations]
+        sampler_counts = np.array([len(animation.samplers) for animation in animations], int)
+        every = [c for animation in animations for c in animation.channels]
+        samplers = [s for animation in animations for s in animation.samplers]
+        which = column([c.sampler for c in every])
+        nodes = column([-1 if c.target.node is None else c.target.node for c in every])
+        paths = column([PATHS.get(c.target.path, UNKNOWN) for c in every])
+        inputs, outputs = column([s.input for s in samplers]), column([s.output for s in samplers])
+        modes = column([MODES.get(s.interpolation, NO_MODE) for s in samplers])
+        of = np.repeat(np.arange(len(animations)), counts)
+        there = which < sampler_counts[of]
+        place = np.where(there, (np.cumsum(sampler_counts) - sampler_counts)[of] + which, 0)
+        none = np.full(len(which), -1)
+        some = [np.where(there, a[place], -1) if len(a) else none for a in (inputs, modes, outputs)]
+        return cls(np.cumsum([0, *counts]), which, nodes, paths, *some)

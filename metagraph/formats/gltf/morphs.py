@@ -1,0 +1,73 @@
+"""Morph targets of a glTF file: their names, and their weights in its animations."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.common.wording import told
+from metagraph.formats.gltf.file import Gltf, extras
+from metagraph.formats.gltf.sampling import Grid, sample
+
+Array = NDArray[Any]
+
+
+def morph_names(gltf: Gltf, node: int) -> tuple[str, ...]:
+    """Return the names of the morph targets of a node's mesh: from `targetNames`, else made from the mesh's
+    name.
+    """
+    mesh_index = gltf.json.nodes[node].mesh
+    if mesh_index is None:
+        return ()
+    mesh = gltf.item(gltf.json.meshes, mesh_index, "mesh", f"node {node}")
+    count = max((len(p.targets) for p in mesh.primitives), default=0)
+    if not count:
+        return ()
+    first = mesh.primitives[0]
+    for raw in (mesh.extras, gltf.json.nodes[node].extras, first.extras):
+        names = extras(raw).get("targetNames")
+        if (
+            isinstance(names, list)
+            and len(names) >= count
+            and all(isinstance(n, str) and n for n in names[:count])
+        ):
+            return tuple(names[:count])
+    return tuple(f"{mesh.name or 'mesh'}_morph_{k}" for k in range(count))
+
+
+def morph_weights(
+    gltf: Gltf, channels: list[tuple[int, str, int, int]], keys: dict[int, Array], grid: Grid, where: str
+) -> tuple[tuple[str, ...], Array | None]:
+    """Return morph names and weights `[F, K]`; meshes that share a target's name share its weight."""
+    columns: dict[str, Array] = {}
+    for source, mode, node, output in channels:
+        if node >= len(gltf.json.nodes):
+            gltf.fail(told("its target node {node} does not exist", node=node), where)
+        names = morph_names(gltf, node)
+        values = gltf.array(output, where, "SCALAR")
+        count = len(keys[source]) * (3 if mode == "CUBICSPLINE" else 1)
+        if not names:
+            continue
+        if len(values) != count * len(names):
+            gltf.fail(
+                told(
+                    "accessor {output} holds {count} weights, expected {count2} x {count3}",
+                    output=output,
+                    count=len(values),
+                    count2=count,
+                    count3=len(names),
+                ),
+                where,
+            )
+        gltf.spend(len(grid.times) * len(names) * 8, where)
+        tracks = np.asarray(values, np.float64).reshape(count, len(names)).T[..., None]
+        for name, track in zip(names, sample(keys[source], tracks, grid, mode, False)[..., 0], strict=True):
+            columns.setdefault(name, track)
+    if not columns:
+        return (), None
+    weights = np.stack(list(columns.values()), 1)
+    if not np.isfinite(weights).all() or np.abs(weights).max() > 1e6:
+        gltf.fail(told("a morph weight is not a sensible number"), where)
+    return tuple(columns), weights

@@ -1,0 +1,112 @@
+"""Read and write glTF 2.0: .glb, .gltf, .vrm. Everything comes out in metres, Y up, on one skeleton per
+file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from pathlib import Path
+
+import numpy as np
+
+from metagraph.common.files import guarded
+from metagraph.common.wording import told
+from metagraph.errors import FileError
+from metagraph.formats.gltf.character import character_of
+from metagraph.formats.gltf.clips import read_clips
+from metagraph.formats.gltf.file import extras, open_gltf
+from metagraph.formats.gltf.morphs import morph_names
+from metagraph.formats.gltf.skeleton import build_rig
+from metagraph.formats.gltf.writer import write_glb
+from metagraph.formats.takes import unique_takes
+from metagraph.motion.character_mesh import Character
+from metagraph.motion.clip import Clip
+
+# Numbers out of a broken file overflow on their way to the check that refuses them; that is no reason to
+# warn.
+_QUIET = np.errstate(all="ignore")
+
+__all__ = ["has_skinned_mesh", "read_character", "read_gltf_clips", "vrm_roles", "write_glb"]
+
+
+@guarded
+@_QUIET
+def read_gltf_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
+    """Return every animation of a file as a clip; all share one Skeleton.
+
+    Keys are resampled to the constant frame rate they lie on (30 when any would do). The rest pose comes from
+    the skin's inverse bind matrices where they are sound, else from the nodes. Raises FileError, also when
+    there is no animation of the skeleton. as_is: repairs (`takes.REPAIRS`) not to make.
+    """
+    gltf = open_gltf(path)
+    if not gltf.json.animations:
+        raise FileError(
+            path,
+            told("it holds no animation"),
+            told("its animations"),
+            told("Export it with its animation, or open it as a character."),
+        )
+    rig = build_rig(gltf, as_is)
+    clips = read_clips(gltf, rig, as_is)
+    if not clips:
+        raise FileError(
+            path,
+            told("none of its animations moves the skeleton"),
+            told("its animations"),
+            told("Export it with its animation."),
+        )
+    return unique_takes(clips)
+
+
+@guarded
+@_QUIET
+def read_character(path: str | Path) -> Character:
+    """Return all meshes of the default scene as one skinned character in its skeleton's rest pose. Raises
+    FileError.
+    """
+    gltf = open_gltf(path)
+    return character_of(gltf, build_rig(gltf))
+
+
+@guarded
+def has_skinned_mesh(path: str | Path) -> bool:
+    """Return whether a file holds a mesh on a skeleton: something to draw. Raises FileError."""
+    nodes = open_gltf(path).json.nodes
+    return any(node.mesh is not None and node.skin is not None for node in nodes)
+
+
+@guarded
+def morph_targets(path: str | Path) -> tuple[str, ...]:
+    """Return the names of a character's morph targets, as `read_character` has them. Raises FileError."""
+    gltf = open_gltf(path)
+    nodes = [n for n, node in enumerate(gltf.json.nodes) if node.mesh is not None]
+    return tuple(dict.fromkeys(name for n in nodes for name in morph_names(gltf, n)))
+
+
+@guarded
+@_QUIET
+def vrm_roles(path: str | Path) -> dict[str, int]:
+    """Return role -> joint as a VRM 0.x, VRM 1.0 or VRMA file states it; empty for other files. Raises
+    FileError.
+    """
+    gltf = open_gltf(path)
+    stated = extras(gltf.json.extensions)
+    bones: dict[str, object] = {}
+    for name in ("VRMC_vrm", "VRMC_vrm_animation", "VRM"):
+        humanoid = stated.get(name, {}).get("humanoid", {}) if isinstance(stated.get(name), dict) else {}
+        found = humanoid.get("humanBones", {}) if isinstance(humanoid, dict) else {}
+        if isinstance(found, list):  # VRM 0.x
+            found = {b["bone"]: b for b in found if isinstance(b, dict) and isinstance(b.get("bone"), str)}
+        if isinstance(found, dict):
+            bones.update(
+                {k: v.get("node") for k, v in found.items() if isinstance(k, str) and isinstance(v, dict)}
+            )
+    if not bones:
+        return {}
+    places = build_rig(gltf).places
+    out = {}
+    for bone, node in bones.items():
+        role = "".join(f"_{c.lower()}" if c.isupper() else c for c in bone)
+        if isinstance(node, int) and not isinstance(node, bool) and node in places:
+            out[role] = places[node]
+    return out

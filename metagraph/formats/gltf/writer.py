@@ -1,0 +1,315 @@
+"""Write clips, and a character if there is one, as a single binary glTF file."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.formats.atomic import write_atomically
+from metagraph.formats.gltf.binary import (
+    ARRAY_BUFFER,
+    BYTE,
+    ELEMENT_BUFFER,
+    FLOAT,
+    SHORT,
+    UBYTE,
+    UINT,
+    USHORT,
+    BinaryChunk,
+    Packing,
+    glb_bytes,
+)
+from metagraph.formats.gltf.key_thinning import kept_frames
+from metagraph.motion import rotation
+from metagraph.motion.character_mesh import Character
+from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import Pose, Skeleton
+
+Array = NDArray[Any]
+
+# How far packed files may be off: turns 0.007 degrees, keys of joints 8 micrometres, a mesh 15, texture
+# coordinates a sixteenth of a pixel of 2,048.
+TURNS = Packing(filter="QUATERNION", amount=15)
+MOVES = Packing(filter="EXPONENTIAL", amount=-16)
+PLACES = Packing(filter="EXPONENTIAL", amount=-15)
+MORPHS = Packing(filter="EXPONENTIAL", amount=-17)
+COORDINATES = Packing(filter="EXPONENTIAL", amount=-14)
+NORMALS = Packing(filter="OCTAHEDRAL", amount=8)
+AS_THEY_ARE, INDICES = Packing(), Packing("INDICES")
+
+
+TOGETHER = 64  # clips whose keys are chosen together: of a large set not all are in memory twice
+SCENE = "Character"  # what the scene of a GLB that stands in a pose is called
+
+
+def write_glb(
+    path: str | Path,
+    clips: Sequence[Clip],
+    character: Character | None = None,
+    quantize: bool = True,
+    tolerance: float | None = None,
+    pose_nodes: bool = False,
+    stand: Pose | None = None,
+    moved: Mapping[str, Collection[int]] | None = None,
+    extensions: Mapping[str, Any] | None = None,
+    expressions: Mapping[str, Mapping[str, float]] | None = None,
+    compress: bool = False,
+) -> None:
+    """Write one skeleton, its skin and every clip as an animation.
+
+    clips: all on the same skeleton, which is also the character's. quantize: store rotations as normalised
+    16-bit integers (error below 0.003 degrees). tolerance: how far keys may be thinned out: the largest
+    change of a quaternion component or, in metres, of a translation; by default 5e-5 when quantizing, else 0.
+    A rotation that stays the same keeps one key. pose_nodes: joints that stand still, alike in every clip,
+    are posed by their nodes and cost no key at all; the rest pose is then only in the inverse bind matrices,
+    as in many exporters' files. stand: the pose the joints' nodes have, the rest pose when None; the skin
+    stays bound to the rest pose, and the scene gets a name, with which some engines' paths begin. moved: clip
+    name -> the joints it moves, all where None. extensions: of the document, by name. expressions: name ->
+    morph target -> weight, beside the targets' names in the mesh's `extras`. compress: pack the file, by
+    EXT_meshopt_compression and KHR_mesh_quantization, which whoever reads it must know then; and leave out
+    channels that keep a joint as its node is posed. Raises FileError when the file
+    cannot be written, ValueError for mixed skeletons.
+    """
+    path = Path(path)
+    if not clips and character is None:
+        raise ValueError("nothing to write: neither a clip nor a character")
+    skeleton = character.skeleton if character is not None else clips[0].skeleton
+    for clip in clips:
+        if clip.skeleton is not skeleton and clip.skeleton != skeleton:
+            raise ValueError(f"clip '{clip.name}' is on another skeleton; retarget it first")
+    tolerance = (5e-5 if quantize else 0.0) if tolerance is None else tolerance
+    body = BinaryChunk(compress)
+    document: dict[str, Any] = {"asset": {"version": "2.0", "generator": "Metagraph"}, "scene": 0}
+    document["nodes"] = nodes = _joint_nodes(skeleton, skeleton.rest if stand is None else stand)
+    roots = [i for i, p in enumerate(skeleton.parents) if p < 0]
+    # Two roots need a common node above them for the skin to be valid.
+    if len(roots) > 1:
+        nodes.append({"name": "Armature", "children": roots})
+        roots = [len(nodes) - 1]
+    rest_r, rest_p = skeleton.globals(skeleton.rest)
+    inverse = np.tile(np.eye(4), (len(skeleton), 1, 1))
+    inverse[:, :3, :3] = rotation.to_matrix(rest_r).transpose(0, 2, 1)
+    inverse[:, :3, 3] = -np.einsum("jab,jb->ja", inverse[:, :3, :3], rest_p)
+    document["skins"] = [
+        {
+            "name": "Skin",
+            "joints": list(range(len(skeleton))),
+            "inverseBindMatrices": body.array(inverse.transpose(0, 2, 1).reshape(-1, 16), FLOAT),
+            "skeleton": roots[0],
+        }
+    ]
+    morphs: tuple[str, ...] = ()
+    mesh_node = None
+    if character is not None and len(character.triangles):
+        mesh_node = _add_character(document, body, character)
+        morphs = character.morphs
+        if expressions and morphs:
+            document["meshes"][0].setdefault("extras", {})["expressions"] = expressions
+        roots = [*roots, mesh_node]
+    document["scenes"] = [{"nodes": roots} if stand is None else {"name": SCENE, "nodes": roots}]
+    posed = _pose_still_nodes(nodes, clips, tolerance) if pose_nodes and clips else frozenset()
+    animations = []
+    for first in range(0, len(clips), TOGETHER):
+        some = clips[first : first + TOGETHER]
+        turns = kept_frames([clip.rotations for clip in some], tolerance, True)
+        moves = kept_frames([clip.translations for clip in some], tolerance, False)
+        animations += [
+            _animation(body, nodes, clip, kept, quantize, tolerance, morphs, mesh_node, posed, moved)
+            for clip, *kept in zip(some, turns, moves, strict=True)
+        ]
+    if animations:
+        document["animations"] = animations
+    if extensions:
+        document["extensionsUsed"] = sorted(extensions)
+        document["extensions"] = dict(extensions)
+    if compress and character is not None and len(character.triangles):
+        for name in ("extensionsUsed", "extensionsRequired"):
+            document[name] = sorted({*document.get(name, ()), "KHR_mesh_quantization"})
+    write_atomically(path, glb_bytes(document, body))
+
+
+def _joint_nodes(skeleton: Skeleton, pose: Pose) -> list[dict[str, Any]]:
+    out: list[dict[str, Any]] = []
+    for i, name in enumerate(skeleton.names):
+        node: dict[str, Any] = {
+            "name": name,
+            "translation": pose.translations[i].tolist(),
+            "rotation": pose.rotations[i].tolist(),
+        }
+        if skeleton.children[i]:
+            node["children"] = list(skeleton.children[i])
+        out.append(node)
+    return out
+
+
+def _add_character(document: dict[str, Any], body: BinaryChunk, character: Character) -> int:
+    """Add mesh, materials and images; return the node that carries the mesh."""
+    weights = np.maximum(np.asarray(character.weights, np.float32), 0)
+    total = weights.sum(1, keepdims=True)
+    weights = np.where(
+        total > 0, weights / np.where(total > 0, total, 1), np.array([1, 0, 0, 0], np.float32)
+    ).astype(np.float32)
+    joints = np.where(weights > 0, character.joints, 0)
+    normals = np.asarray(character.normals, np.float64)
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    normals = np.where(length > 1e-9, normals / np.maximum(length, 1e-9), [0.0, 1.0, 0.0])
+    attributes = {
+        "POSITION": body.array(character.positions, FLOAT, target=ARRAY_BUFFER, bounds=True, packing=PLACES),
+        "NORMAL": _normals(body, normals),
+        "TEXCOORD_0": body.array(character.uvs, FLOAT, target=ARRAY_BUFFER, packing=COORDINATES),
+        "JOINTS_0": body.array(
+            joints,
+            UBYTE if len(character.skeleton) <= 255 else USHORT,
+            target=ARRAY_BUFFER,
+            packing=AS_THEY_ARE,
+        ),
+        "WEIGHTS_0": _weights(body, weights),
+    }
+    targets = []
+    if character.morph_positions is not None:
+        targets = [
+            {"POSITION": body.sparse(np.asarray(offsets, np.float32), MORPHS)}
+            for offsets in character.morph_positions
+        ]
+    primitives = []
+    for surface in character.surfaces:
+        if not surface.count:
+            continue
+        order = np.asarray(character.triangles[surface.first : surface.first + surface.count]).reshape(-1)
+        primitive: dict[str, Any] = {
+            "attributes": attributes,
+            "indices": body.array(
+                order,
+                USHORT if int(order.max()) < 65535 else UINT,
+                target=ELEMENT_BUFFER,
+                packing=INDICES,
+            ),
+            "material": surface.material,
+        }
+        if targets:
+            primitive["targets"] = targets
+        primitives.append(primitive)
+    mesh: dict[str, Any] = {"name": character.name, "primitives": primitives}
+    if targets:
+        mesh["weights"] = [0.0] * len(targets)
+        mesh["extras"] = {"targetNames": list(character.morphs)}
+    images: list[dict[str, Any]] = []
+    known: dict[bytes, int] = {}
+    materials = []
+    for material in character.materials:
+        pbr: dict[str, Any] = {
+            "baseColorFactor": list(material.color),
+            "metallicFactor": 0.0,
+            "roughnessFactor": material.roughness,
+        }
+        if material.image is not None:
+            if material.image not in known:
+                known[material.image] = len(images)
+                kind = "image/png" if material.image[:4] == b"\x89PNG" else "image/jpeg"
+                images.append({"bufferView": body.view(material.image), "mimeType": kind})
+            pbr["baseColorTexture"] = {"index": known[material.image]}
+        value: dict[str, Any] = {"name": material.name, "pbrMetallicRoughness": pbr}
+        if material.double_sided:
+            value["doubleSided"] = True
+        materials.append(value)
+    if materials:
+        document["materials"] = materials
+    if images:
+        document["images"] = images
+        document["textures"] = [{"source": i} for i in range(len(images))]
+    document["meshes"] = [mesh]
+    document["nodes"].append({"name": character.name, "mesh": 0, "skin": 0})
+    return len(document["nodes"]) - 1
+
+
+def _normals(body: BinaryChunk, normals: Array) -> int:
+    """Add normals: floats, or where the file is packed bytes, which have room for what is packed."""
+    if not body.compress:
+        return body.array(normals, FLOAT, target=ARRAY_BUFFER)
+    small = np.rint(normals * 127)
+    return body.array(small, BYTE, target=ARRAY_BUFFER, normalized=True, packing=NORMALS)
+
+
+def _weights(body: BinaryChunk, weights: Array) -> int:
+    """Add skin weights: floats, or where the file is packed whole numbers that still sum up."""
+    if not body.compress:
+        return body.array(weights, FLOAT, target=ARRAY_BUFFER)
+    whole = np.rint(weights.astype(np.float64) * 65535)
+    rows = np.arange(len(whole))
+    whole[rows, whole.argmax(1)] += 65535 - whole.sum(1)
+    return body.array(whole, USHORT, target=ARRAY_BUFFER, normalized=True, packing=AS_THEY_ARE)
+
+
+def _pose_still_nodes(nodes: list[dict[str, Any]], clips: Sequence[Clip], tolerance: float) -> frozenset[int]:
+    """Turn the nodes of joints whose rotation no clip changes, and return those joints."""
+    first = clips[0].rotations[0].astype(np.float64)
+    away = np.max([np.abs(clip.rotations - first).max((0, 2)) for clip in clips], axis=0)
+    still = np.flatnonzero(away <= max(tolerance, 1e-7))
+    for joint in still.tolist():
+        nodes[joint]["rotation"] = np.round(rotation.normalize(first[joint]), 7).tolist()
+    return frozenset(still.tolist())
+
+
+def _animation(
+    body: BinaryChunk,
+    nodes: list[dict[str, Any]],
+    clip: Clip,
+    frames: Sequence[list[Array]],
+    quantize: bool,
+    tolerance: float,
+    morphs: tuple[str, ...],
+    mesh_node: int | None,
+    posed: frozenset[int],
+    moved: Mapping[str, Collection[int]] | None,
+) -> dict[str, Any]:
+    """Return a clip as an animation. frames: those to keep of each joint's turns, and of each translation."""
+    chosen = range(len(clip.skeleton)) if moved is None else moved[clip.name]
+    times = np.arange(clip.frames) / clip.fps
+    samplers: list[dict[str, Any]] = []
+    channels: list[dict[str, Any]] = []
+    places: dict[tuple[int, int], int] = {}
+
+    def add(node: int, path: str, kept: Array, values: Array, component: int) -> None:
+        packing = TURNS if component == SHORT else AS_THEY_ARE if path == "rotation" else MOVES
+        source = body.array(times[kept], FLOAT, bounds=True, shared="times")
+        output = body.array(values, component, normalized=component == SHORT, packing=packing, shared=path)
+        place = places.setdefault((source, output), len(samplers))
+        if place == len(samplers):
+            samplers.append({"input": source, "output": output})
+        channels.append({"sampler": place, "target": {"node": node, "path": path}})
+
+    rotations = clip.rotations.astype(np.float64)
+    written = np.round(rotation.normalize(rotations) * 32767) if quantize else rotations
+    for joint, kept in enumerate(frames[0]):
+        if joint in posed or joint not in chosen:
+            continue
+        if moved is not None and joint == min(chosen) and joint != 0 and clip.frames > 1 and len(kept) == 1:
+            kept = np.array([0, clip.frames - 1])  # keeps the clip's length, whatever else stands still
+        node = nodes[joint]
+        single = body.compress and len(kept) == 1 and joint > 0
+        if single and _as_posed(rotations[kept[0], joint], node["rotation"]):
+            continue
+        add(joint, "rotation", kept, written[kept, joint], SHORT if quantize else FLOAT)
+    translations = clip.translations.astype(np.float64)
+    for place, kept in zip(clip.translated, frames[1], strict=True):
+        if place not in chosen:
+            continue
+        if place == 0 and clip.frames > 1 and len(kept) == 1:
+            kept = np.array([0, clip.frames - 1])  # keeps the clip's length, whatever else stands still
+        add(place, "translation", kept, translations[kept, clip.translated.index(place)], FLOAT)
+    shared = [clip.morphs.index(name) if name in clip.morphs else -1 for name in morphs]
+    if mesh_node is not None and clip.weights is not None and any(i >= 0 for i in shared):
+        weights = np.stack([clip.weights[:, i] if i >= 0 else np.zeros(clip.frames) for i in shared], 1)
+        still = bool((np.abs(weights - weights[:1]) <= tolerance).all())
+        kept = np.array([0]) if still else np.arange(clip.frames)
+        add(mesh_node, "weights", kept, weights[kept].reshape(-1), FLOAT)
+    return {"name": clip.name, "samplers": samplers, "channels": channels, "extras": {"fps": clip.fps}}
+
+
+def _as_posed(turn: Array, node: list[float]) -> bool:
+    """Whether a turn is what a node has by itself, which readers take where no channel tells."""
+    return bool(np.minimum(np.abs(turn - node).max(), np.abs(turn + node).max()) < 1e-6)

@@ -1,0 +1,1 @@
+"""Keypoints that pose estimators find in videos."""

@@ -1,0 +1,1 @@
+"""How a project is kept: its text and fields, its journal, versions, merging and verifying."""

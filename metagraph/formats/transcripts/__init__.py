@@ -1,0 +1,1 @@
+"""Transcripts: who says which word when, from every format of them that is read."""

@@ -1,0 +1,248 @@
+"""JSON transcripts: those of Whisper and its kin (openai-whisper, faster-whisper, WhisperX, the API's verbose
+JSON), of IBM Speech to Text, and what `metagraph speech` writes.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from metagraph.common.wording import told
+from metagraph.errors import FileError
+from metagraph.formats.transcripts.words import Collected, Transcript
+
+_REMEDY = told(
+    "Whisper writes 'segments', with 'words' where word timestamps were asked for; IBM writes "
+    "'results' with 'timestamps'."
+)
+
+
+def read_json(path: Path, text: str) -> Transcript:
+    """Read a JSON transcript. Raises FileError."""
+    try:
+        data = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise FileError(
+            path,
+            told("is not JSON ({msg})", msg=error.msg),
+            told("line {lineno}, column {colno}", lineno=error.lineno, colno=error.colno),
+            told("Save the transcript anew."),
+        ) from None
+    except (RecursionError, ValueError):
+        raise FileError(
+            path, told("lists lie too deep in it, or its numbers are too long"), "", _REMEDY
+        ) from None
+    out = Collected(path)
+    if isinstance(data, dict) and "sides" in data:
+        return _ours(out, text)
+    if isinstance(data, list):
+        if all(isinstance(x, dict) and "results" in x for x in data) and data:
+            data = {
+                "results": [r for x in data for r in _list(out, x["results"], "results")],
+                "speaker_labels": [
+                    s for x in data for s in _list(out, x.get("speaker_labels") or [], "speaker_labels")
+                ],
+            }
+        else:
+            data = (
+                {"segments": data}
+                if any(isinstance(x, dict) and "text" in x for x in data)
+                else {"words": data}
+            )
+    if "results" in data:
+        _ibm(out, data)
+    elif "segments" in data:
+        _whisper(out, data)
+    elif "word_segments" in data or "words" in data:
+        key = "word_segments" if "word_segments" in data else "words"
+        _words(out, _list(out, data[key], key), "", key, None)
+    else:
+        names = ", ".join(f"'{str(k)[:30]}'" for k in list(data)[:6]) or "nothing"
+        raise FileError(
+            path,
+            told("is JSON, but of no transcript that is known; it holds {names}", names=names),
+            "",
+            _REMEDY,
+        )
+    return out.finished()
+
+
+def _ours(out: Collected, text: str) -> Transcript:
+    import msgspec
+
+    from metagraph.graph.conversation.model import Conversation
+
+    try:
+        read = msgspec.json.decode(text, type=Conversation)
+    except (msgspec.ValidationError, msgspec.DecodeError, ValueError) as error:
+        raise out.fail(
+            told("is no conversation as 'metagraph speech' writes it: {error}", error=error)
+        ) from None
+    names = [side.name or str(n + 1) for n, side in enumerate(read.sides)]
+    if len(set(names)) < len(names):
+        names = [str(n + 1) for n in range(len(names))]
+    for name, side in zip(names, read.sides, strict=True):
+        out.speakers[name] = []
+        for word in side.words:
+            out.add(name, word.text, word.start, word.end, whole=True)
+    return out.finished({name: side.segments for name, side in zip(names, read.sides, strict=True)})
+
+
+def _list(out: Collected, value: Any, where: str) -> Sequence[Any]:
+    if not isinstance(value, list):
+        raise out.fail(told("is no list but {kind}", kind=_kind(value)), f"'{where}'", _REMEDY)
+    return value
+
+
+def _dict(out: Collected, value: Any, where: str) -> Mapping[str, Any]:
+    if not isinstance(value, dict):
+        raise out.fail(told("is no object but {kind}", kind=_kind(value)), f"'{where}'", _REMEDY)
+    return value
+
+
+def _kind(value: Any) -> str:
+    names = {
+        dict: told("an object"),
+        list: told("a list"),
+        str: told("a text"),
+        bool: told("true or false"),
+        int: told("a number"),
+        float: told("a number"),
+    }
+    return names.get(type(value), told("nothing"))
+
+
+def _time(out: Collected, value: Any, where: str) -> float | None:
+    """Return seconds; None where there are none."""
+    if value is None:
+        return None
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        raise out.fail(told("a time is {kind}", kind=_kind(value)), where)
+    try:
+        seconds = float(value)
+    except (ValueError, OverflowError):
+        raise out.fail(told("a time is '{value}'", value=str(value)[:30]), where) from None
+    if not math.isfinite(seconds):
+        raise out.fail(told("a time is {seconds:g}", seconds=seconds), where)
+    return seconds
+
+
+def _text(value: Any) -> str:
+    return value if isinstance(value, str) else ""
+
+
+def _name(value: Any) -> str:
+    return str(value).strip() if isinstance(value, str | int | float) and not isinstance(value, bool) else ""
+
+
+# --- Whisper
+
+
+def _whisper(out: Collected, data: Mapping[str, Any]) -> None:
+    rows = _list(out, data["segments"], "segments")
+    inside = any(isinstance(r, dict) and r.get("words") for r in rows)
+    beside = data.get("word_segments") or data.get("words")
+    if not inside and beside:  # the API's verbose JSON lists words apart
+        _words(out, _list(out, beside, "words"), "", "words", None)
+        return
+    for n, row in enumerate(rows):
+        where = f"segments[{n}]"
+        one = _dict(out, row, where)
+        speaker = _name(one.get("speaker", one.get("channel", "")))
+        start, end = _time(out, one.get("start"), where), _time(out, one.get("end"), where)
+        if one.get("words"):
+            _words(out, _list(out, one["words"], f"{where}.words"), speaker, f"{where}.words", (start, end))
+        elif start is None or end is None:
+            raise out.fail(told("has no start and end"), where)
+        else:
+            out.add(speaker, _text(one.get("text")), start, end, where)
+
+
+def _words(
+    out: Collected,
+    rows: Sequence[Any],
+    speaker: str,
+    where: str,
+    span: tuple[float | None, float | None] | None,
+) -> None:
+    """Add words; those without times (WhisperX gives numbers none) share what is between their neighbours."""
+    read: list[tuple[str, str, float | None, float | None]] = []
+    for n, row in enumerate(rows):
+        one = _dict(out, row, f"{where}[{n}]")
+        text = _text(one.get("word", one.get("text", one.get("punctuated_word"))))
+        place = f"{where}[{n}]"
+        read.append(
+            (
+                _name(one.get("speaker", "")) or speaker,
+                text,
+                _time(out, one.get("start"), place),
+                _time(out, one.get("end"), place),
+            )
+        )
+    timed = [r for r in read if r[2] is not None and r[3] is not None]
+    if read and not timed and (span is None or None in span):
+        raise out.fail(told("no word has a start and an end"), where, _REMEDY)
+    first = span[0] if span is not None and span[0] is not None else timed[0][2] if timed else 0.0
+    last = span[1] if span is not None and span[1] is not None else timed[-1][3] if timed else 0.0
+    n = 0
+    while n < len(read):
+        who, text, start, end = read[n]
+        if start is not None and end is not None:
+            out.add(who, text, start, end, f"{where}[{n}]")
+            n += 1
+            continue
+        behind = n
+        while behind < len(read) and (read[behind][2] is None or read[behind][3] is None):
+            behind += 1
+        begin = (read[n - 1][3] if n else first) or 0.0
+        until = (read[behind][2] if behind < len(read) else last) or begin
+        step = max(until - begin, 0.0) / (behind - n)
+        for m in range(n, behind):
+            out.add(
+                read[m][0], read[m][1], begin + step * (m - n), begin + step * (m - n + 1), f"{where}[{m}]"
+            )
+        out.spread += behind - n
+        n = behind
+
+
+# --- IBM
+
+
+def _ibm(out: Collected, data: Mapping[str, Any]) -> None:
+    """results[].alternatives[0].timestamps: [word, start, end]; speaker_labels[]: from, to, speaker."""
+    labels: dict[float, str] = {}
+    for n, row in enumerate(_list(out, data.get("speaker_labels") or [], "speaker_labels")):
+        one = _dict(out, row, f"speaker_labels[{n}]")
+        at = _time(out, one.get("from"), f"speaker_labels[{n}]")
+        if at is not None:
+            labels[round(at, 2)] = _name(one.get("speaker", ""))
+    words = untimed = 0
+    for n, row in enumerate(_list(out, data["results"], "results")):
+        where = f"results[{n}]"
+        one = _dict(out, row, where)
+        tries = _list(out, one.get("alternatives") or [], f"{where}.alternatives")
+        if one.get("final") is False or not tries:
+            continue
+        best = _dict(out, tries[0], f"{where}.alternatives[0]")
+        stamps = _list(out, best.get("timestamps") or [], f"{where}.timestamps")
+        untimed += not stamps and bool(_text(best.get("transcript")).strip())
+        for m, stamp in enumerate(stamps):
+            place = f"{where}.timestamps[{m}]"
+            if not isinstance(stamp, list) or len(stamp) < 3 or not isinstance(stamp[0], str):
+                raise out.fail(told("is no word with its start and end"), place, _REMEDY)
+            start, end = _time(out, stamp[1], place), _time(out, stamp[2], place)
+            if start is None or end is None:
+                raise out.fail(told("is no word with its start and end"), place, _REMEDY)
+            out.add(labels.get(round(start, 2), next(iter(labels.values()), "")), stamp[0], start, end, place)
+            words += 1
+    if untimed and not words:
+        raise out.fail(
+            told("its words have no times"),
+            "'results'",
+            told("Ask the service for timestamps (timestamps=true)."),
+        )
+    if untimed:
+        out.notes.append(told("{untimed} results have no times and were left out", untimed=untimed))

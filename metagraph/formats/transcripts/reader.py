@@ -1,0 +1,43 @@
+"""Transcripts: who says which word when, from TextGrid, ELAN, WebVTT, SRT, CTM, tables and the JSON of
+Whisper's kin and of IBM.
+
+What a file is, its content says. Our own exports are read back whole: words and segments, as corrected by
+hand.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from metagraph.common.files import guarded
+from metagraph.common.wording import told
+from metagraph.errors import FileError
+from metagraph.formats.transcripts.json_files import read_json
+from metagraph.formats.transcripts.text_files import is_ctm, is_table, read_ctm, read_cues, read_table
+from metagraph.formats.transcripts.tiers import read_elan_tiers, read_textgrid_tiers
+from metagraph.formats.transcripts.words import REMEDY, Transcript, text_of
+
+
+@guarded
+def read_transcript(path: str | Path) -> Transcript:
+    """Read a transcript, whatever of `SUFFIXES` it is. Raises FileError."""
+    path = Path(path)
+    text = text_of(path)
+    head = text.lstrip("\ufeff \t\n")[:4000]
+    if not head:
+        return Transcript({}, {}, ("it is empty",))
+    if "\0" in head[:200]:
+        raise FileError(path, told("is no text"), told("its beginning"), REMEDY)
+    if head.startswith(('File type = "ooTextFile', '"ooTextFile')) or path.suffix.casefold() == ".textgrid":
+        return read_textgrid_tiers(path)
+    if head.startswith("<"):
+        return read_elan_tiers(path)
+    if head.startswith(("{", "[")):
+        return read_json(path, text)
+    if head.startswith("WEBVTT") or "-->" in text:
+        return read_cues(path, text)
+    if is_table(text):
+        return read_table(path, text)
+    if is_ctm(text):
+        return read_ctm(path, text)
+    raise FileError(path, told("is none of the transcripts that can be read"), told("its beginning"), REMEDY)

@@ -1,0 +1,127 @@
+"""Problems of the base pose."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from metagraph.common.wording import told
+from metagraph.graph import anatomy
+from metagraph.graph.checks import end_gaps
+from metagraph.graph.model import LAYERS, Action, Layer, Project
+from metagraph.graph.problem import Problem
+from metagraph.motion import rotation
+from metagraph.motion.features import pose_distance
+
+FLOATS = 0.06  # of the height: how far the base pose's feet may be from where the stances have them
+TWISTED = np.radians(50)  # how far the base pose's hips may be turned from the stance's
+
+
+def check_base(project: Project) -> Iterator[Problem]:
+    """Yield what is wrong with the base pose: it is missing, or far from how the character stands."""
+    if project.skeleton is None:
+        return
+    if project.base.clip is not None:
+        entry = project.clips.get(project.base.clip)
+        if entry is None or entry.motion is None:
+            yield Problem(
+                "error",
+                "base-missing",
+                told("the clip of the base pose is missing"),
+                told("Choose another base pose."),
+                clip=project.base.clip,
+            )
+            return
+        if project.base.frame >= entry.frames:
+            last = entry.frames - 1
+            yield Problem(
+                "error",
+                "base-frame",
+                told(
+                    "the base pose is frame {frame} of '{name}', which ends at {last}",
+                    frame=project.base.frame,
+                    name=entry.name,
+                    last=last,
+                ),
+                told("Choose a frame inside the clip."),
+                clip=entry.id,
+            )
+    elif any(project.graphs[layer].actions for layer in LAYERS):
+        first = _first_pose(project, _start_loop(project, "body") or _start_loop(project, "arms"))
+        if (
+            first is not None
+            and float(pose_distance(project.skeleton, first, anatomy.base_pose(project)))
+            > 0.25 * project.skeleton.height
+        ):
+            yield Problem(
+                "warning",
+                "base-rest",
+                told(
+                    "the base pose is the skeleton's rest pose, far from how the character stands; "
+                    "layers will add up to a twisted pose"
+                ),
+                told(
+                    "Take the base pose from a frame with the hands at the sides: right-click a clip, "
+                    "'Use this frame as base pose'."
+                ),
+            )
+    loop = _start_loop(project, "body")
+    stance = _first_pose(project, loop)
+    if loop is None or stance is None:
+        return
+    rests = stance_name(project, loop.stance)
+    base = anatomy.base_pose(project)
+    height = project.skeleton.height
+    base_r, base_p = project.skeleton.globals(base)
+    stance_r, stance_p = project.skeleton.globals(stance)
+    roles = anatomy.roles(project)
+    feet = [roles[r] for r in ("left_foot", "right_foot", "left_toes", "right_toes") if r in roles]
+    lift = float(base_p[feet, 1].min() - stance_p[feet, 1].min()) if feet else 0.0
+    if abs(lift) > FLOATS * height:
+        way = told("above") if lift > 0 else told("below")
+        yield Problem(
+            "warning",
+            "base-floats",
+            told(
+                "the base pose stands {far:.0f} cm {way} stance '{rests}'; the character will "
+                "leave the ground",
+                far=abs(lift) * 100,
+                way=way,
+                rests=rests,
+            ),
+            told("Take the base pose from a clip in which the character stands as in its stances."),
+            clip=project.base.clip,
+        )
+    hips = roles.get("hips", 0)
+    turn = float(rotation.angle_between(base_r[hips], stance_r[hips]))
+    if turn > TWISTED:
+        yield Problem(
+            "warning",
+            "base-twisted",
+            told(
+                "the base pose's hips are turned {degrees:.0f} degrees from stance '{rests}'; the "
+                "character will twist",
+                degrees=np.degrees(turn),
+                rests=rests,
+            ),
+            told("Take the base pose from a clip facing the same way."),
+            clip=project.base.clip,
+        )
+
+
+def _start_loop(project: Project, layer: Layer) -> Action | None:
+    graph = project.graphs[layer]
+    return next(iter(graph.of(graph.start, "stance")), None) if graph.start else None
+
+
+def _first_pose(project: Project, loop: Action | None) -> Any:
+    motion = end_gaps.motion_of(project, loop)
+    return motion.pose_at(project.span(loop)[0]) if motion is not None and loop is not None else None
+
+
+def stance_name(project: Project, stance: str | None) -> str:
+    """Return a stance's name, "?" where there is none."""
+    found = project.stance(stance)
+    return found.name if found is not None else "?"

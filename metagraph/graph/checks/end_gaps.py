@@ -1,0 +1,165 @@
+"""How far a clip's ends are from the stances it leaves and enters, and how far they may be: what everything
+that warns of a pop goes by.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, Literal
+from weakref import ref
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.common.wording import told
+from metagraph.graph import anatomy
+from metagraph.graph.expand import ends_in
+from metagraph.graph.model import PARTS, Action, MetaGraph, Part, Project
+from metagraph.motion.clip import Clip
+from metagraph.motion.features import pose_distance
+from metagraph.motion.rig_controls import rig_controls
+from metagraph.motion.skeleton import Skeleton
+
+Array = NDArray[Any]
+Edge = Literal["begins", "ends"]
+
+TALL = 1.6  # metres of the figure that the others are for
+FAR = 0.08  # metres a joint may be from the stance at a clip's ends before it shows
+OPEN_LOOP = 0.05  # metres a loop may be open where its seam is not blended
+LONG = 0.4  # seconds of blending, from which on it is a movement of its own and no hidden seam
+UNHURRIED = 1.0  # metres a second, on average, that the farthest joint may go on such a blend
+
+
+@dataclass(frozen=True)
+class Gap:
+    """edge: of the clip. stance: beside which, by id. metres: of the farthest joint. most: metres that do not
+    show, for how long it blends there.
+    """
+
+    edge: Edge
+    stance: str
+    metres: float
+    most: float
+    blend: float
+
+    @property
+    def far(self) -> bool:
+        return self.metres > self.most
+
+    @property
+    def slow(self) -> bool:
+        """Whether a long blend covers it, at an unhurried pace."""
+        return self.blend >= LONG and not self.far
+
+
+def gap_words(gap: Gap, stance: str) -> str:
+    """Say a gap, in the words of every place that warns of one. stance: its name."""
+    far = gap.metres * 100
+    if gap.edge == "begins":
+        return told("begins {far:.0f} cm from stance '{stance}'", far=far, stance=stance)
+    return told("ends {far:.0f} cm from stance '{stance}'", far=far, stance=stance)
+
+
+def hidden(height: float, blend: float) -> float:
+    """Return how many metres a blend of some seconds covers so that nothing pops. height: of the skeleton."""
+    return max(FAR, UNHURRIED * blend if blend >= LONG else 0.0) * height / TALL
+
+
+def blend_for(height: float, metres: float) -> float:
+    """Return the shortest blend that covers a distance at an unhurried pace, seconds."""
+    return max(LONG, metres * TALL / height / UNHURRIED)
+
+
+def slow(metres: Array, height: float, blend: float) -> Array:
+    """Return where a long blend of some seconds covers distances, in metres, at an unhurried pace."""
+    return np.asarray((blend >= LONG) & (metres <= hidden(height, blend)))
+
+
+def distances(project: Project, action: Action, times: Array) -> tuple[Array, Array]:
+    """Return how far the pose at each of `times` `[F]`, seconds of an action's clip, is from the stance it
+    leaves and from the one it enters, metres `[F]`; infinite where that cannot be measured.
+    """
+    motion = motion_of(project, action)
+    graph, out = project.graphs[action.layer], []
+    for stance in (action.stance, ends_in(action)):
+        loop = next(iter(graph.of(stance, "stance")), None) if stance else None
+        target = motion_of(project, loop)
+        if motion is None or loop is None or target is None:
+            out.append(np.full(len(times), np.inf))
+            continue
+        there = target.pose_at(np.full(len(times), project.span(loop)[0]))
+        joints = _reached(project, graph, action)
+        out.append(pose_distance(motion.skeleton, motion.pose_at(times), there, joints))
+    return out[0], out[1]
+
+
+def gaps(project: Project, graph: MetaGraph, action: Action) -> list[Gap]:
+    """Return the gaps at both ends of an action that is no loop, on the joints its layer moves; those that
+    can be measured.
+    """
+    motion = motion_of(project, action)
+    if motion is None or project.skeleton is None or action.kind == "stance":
+        return []
+    joints, height = _reached(project, graph, action), project.skeleton.height
+    start, end = project.span(action)
+    t, out = action.timing, []
+    ends: tuple[tuple[Edge, str | None, float, float], ...] = (
+        ("begins", action.stance, start, t.blend_in),
+        ("ends", ends_in(action), end, t.blend_out),
+    )
+    for edge, stance, moment, blend in ends:
+        loop = next(iter(graph.of(stance, "stance")), None) if stance else None
+        target = motion_of(project, loop)
+        if stance is not None and loop is not None and target is not None:
+            metres = _gap(ref(motion), moment, ref(target), project.span(loop)[0], joints)
+            out.append(Gap(edge, stance, metres, hidden(height, blend), blend))
+    return out
+
+
+def seam(project: Project, graph: MetaGraph, loop: Action) -> Gap | None:
+    """Return how far a loop's ends are apart, on the joints its layer moves, against what shows where it is
+    not blended; None where that cannot be measured.
+    """
+    motion = motion_of(project, loop)
+    if motion is None or project.skeleton is None:
+        return None
+    start, end = project.span(loop)
+    metres = _gap(ref(motion), start, ref(motion), end, _reached(project, graph, loop))
+    return Gap("ends", loop.stance, metres, OPEN_LOOP * project.skeleton.height / TALL, 0.0)
+
+
+def motion_of(project: Project, action: Action | None) -> Clip | None:
+    """Return an action's clip, if it is there and has the project's skeleton."""
+    entry = project.clips.get(action.clip) if action is not None else None
+    motion = entry.motion if entry is not None else None
+    return motion if motion is not None and motion.skeleton == project.skeleton else None
+
+
+def _reached(project: Project, graph: MetaGraph, action: Action) -> tuple[int, ...]:
+    moved = anatomy.mask(project, action)
+    weighty = tuple(part for part in PARTS if part != "face" and graph.weight(part) > 0)
+    reached = _reached_by(project.skeleton, anatomy.parts(project), weighty)
+    if moved is None:
+        return reached
+    moves = moved.tolist()
+    return tuple(j for j in reached if moves[j] > 0)
+
+
+@lru_cache(maxsize=64)
+def _reached_by(
+    skeleton: Skeleton | None, parts: tuple[Part, ...], weighty: tuple[Part, ...]
+) -> tuple[int, ...]:
+    """Return the joints of the body parts that a layer moves, but for those that only steer others."""
+    controls = rig_controls(skeleton) if skeleton is not None else ()
+    return tuple(j for j, part in enumerate(parts) if part in weighty and j not in controls)
+
+
+@lru_cache(maxsize=65536)
+def _gap(a: ref[Clip], seconds_a: float, b: ref[Clip], seconds_b: float, joints: tuple[int, ...]) -> float:
+    """Largest distance in metres of the joints, root aside. Clips compare by identity, so edits elsewhere
+    cost nothing; and by `ref`, so that those of a closed project are let go.
+    """
+    one, other = a(), b()
+    assert one is not None and other is not None
+    return float(pose_distance(one.skeleton, one.pose_at(seconds_a), other.pose_at(seconds_b), joints))

@@ -1,0 +1,1 @@
+"""Edits beside `graph.edits`: pure functions Project -> Project, one subject a module."""

@@ -1,0 +1,177 @@
+"""What differs between two states of a project, as lines to read: clips, actions, stances and settings added,
+removed, changed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+import msgspec
+
+from metagraph.common.wording import Told, told
+from metagraph.graph.model import LAYERS, Project
+
+_NAMED = {
+    "clips": told("Clip"),
+    "lines": told("Line"),
+    "points": told("Point"),
+    "performances": told("Performance"),
+    "conversations": told("Conversation"),
+}
+_KINDS = {
+    "stance": told("Stance loop"),
+    "gesture": told("Gesture"),
+    "fidget": told("Fidget"),
+    "transition": told("Transition"),
+}
+_REST = {
+    "name": told("Name"),
+    "character": told("Character"),
+    "hidden": told("Hidden"),
+    "base": told("Base"),
+    "roles": told("Roles"),
+    "parts": told("Parts"),
+    "markov": told("Markov"),
+    "settings": told("Settings"),
+    "language": told("Language"),
+    "life": told("Life"),
+    "face": told("Face"),
+    "tiers": told("Tiers"),
+    "labels": told("Labels"),
+    "notes": told("Notes"),
+    "marks": told("Marks"),
+    "joint_maps": told("Joint maps"),
+    "skeleton": told("Skeleton"),
+}
+_UNSEEN = ("id", "digest", "clip_name", "clip_sha256")  # of no use to a reader
+
+
+def differences(before: Project, after: Project) -> list[str]:
+    """Return what was done to `before` to make it `after`, one line a thing, in the order of the project
+    file.
+    """
+    if before is after:
+        return []
+    lines: list[str] = []
+    for name, word in _REST.items():
+        old, new = getattr(before, name), getattr(after, name)
+        if old is not new and old != new:
+            lines.append(_line(word, "changed", _what(old, new)))
+    for name, word in _NAMED.items():
+        lines += _keyed(word, getattr(before, name), getattr(after, name))
+    for layer in LAYERS:
+        old, new = before.graphs[layer], after.graphs[layer]
+        lines += _keyed(told("Stance"), old.stances, new.stances, layer)
+        lines += _keyed("", old.actions, new.actions, layer)
+        if old.start != new.start:
+            names = [
+                f"'{g.stances[g.start].name}'"
+                if g.start is not None and g.start in g.stances
+                else told("none")
+                for g in (old, new)
+            ]
+            first, then = (" ".join(n.split()) if n.startswith("'") else n for n in names)
+            words = told(
+                "First stance of {layer}: {before} → {after}", layer=_plain(layer), before=first, after=then
+            )
+            lines.append(words)
+        if old.weights != new.weights:
+            weights = told("Weights of {layer}", layer=_plain(layer))
+            lines.append(_line(weights, "changed", _what(old.weights, new.weights)))
+        old_machine, new_machine = before.manual.get(layer), after.manual.get(layer)
+        if old_machine != new_machine:
+            machine = told("Manual state machine ({layer})", layer=_plain(layer))
+            lines.append(_line(machine, _fate(old_machine, new_machine)))
+    return lines
+
+
+def _line(what: str, fate: str, how: str = "") -> str:
+    """Return a line: what it is, what became of it, and which fields differ."""
+    if fate == "added":
+        return told("{what} added", what=what)
+    if fate == "removed":
+        return told("{what} removed", what=what)
+    if not how:
+        return told("{what} changed", what=what)
+    return told("{what} changed: {how}", what=what, how=" ".join(how.split()))  # values may hold anything
+
+
+def _plain(word: str) -> str:
+    """Return a word of the project file, as words that know their template."""
+    return Told(word, {})
+
+
+def _fate(old: object, new: object) -> str:
+    return "added" if old is None else "removed" if new is None else "changed"
+
+
+def _keyed(word: str, before: Mapping[str, Any], after: Mapping[str, Any], layer: str = "") -> Iterator[str]:
+    if before is after:
+        return
+    for ident in dict.fromkeys((*before, *after)):
+        old, new = before.get(ident), after.get(ident)
+        if old is new or old == new:
+            continue
+        if old is not None and new is not None and all(a == b for _, a, b in _fields(old, new)):
+            continue  # only what no reader sees
+        some: Any = old if new is None else new
+        kind = word or _KINDS[some.kind]
+        name = " ".join(_title(some, ident).split())  # names may hold anything
+        title = (
+            told("{kind} '{name}' ({layer})", kind=kind, name=name, layer=_plain(layer))
+            if layer
+            else told("{kind} '{name}'", kind=kind, name=name)
+        )
+        fate = _fate(old, new)
+        yield _line(title, fate, _what(old, new) if fate == "changed" else "")
+
+
+def _title(value: Any, ident: str) -> str:
+    return str(getattr(value, "name", "") or getattr(value, "text", "") or ident)
+
+
+def _what(old: Any, new: Any) -> str:
+    """Return which fields differ, with their values where those are short."""
+    words = [word for name, a, b in _fields(old, new) if a != b and (word := _change(name, a, b))]
+    return ", ".join(words)
+
+
+def _fields(old: Any, new: Any, prefix: str = "") -> Iterator[tuple[str, Any, Any]]:
+    if is_dataclass(old) and type(old) is type(new):
+        names = [f.name for f in fields(old) if f.compare and f.name not in _UNSEEN]
+    elif isinstance(old, msgspec.Struct) and type(old) is type(new):
+        names = list(old.__struct_fields__)
+    elif isinstance(old, Mapping) and isinstance(new, Mapping):
+        for name in dict.fromkeys((*old, *new)):
+            yield f"{prefix}{name}", old.get(name), new.get(name)
+        return
+    else:
+        yield prefix.rstrip("."), old, new
+        return
+    for name in names:
+        a, b = getattr(old, name), getattr(new, name)
+        if is_dataclass(a) and is_dataclass(b):
+            yield from _fields(a, b)
+        else:
+            yield f"{prefix}{name}", a, b
+
+
+def _change(name: str, old: Any, new: Any) -> str:
+    name = name.replace("_", " ")
+    a, b = _shown(old), _shown(new)
+    return f"{name} {a} → {b}".strip() if a and b else name
+
+
+def _shown(value: Any) -> str:
+    """Return a value in a few characters, "" where it takes more."""
+    if isinstance(value, tuple) and all(isinstance(x, str) for x in value):
+        value = ", ".join(value) or None
+    if value is None:
+        return "none"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, int | float):
+        return f"{value:g}"
+    return f"'{value}'" if isinstance(value, str) and len(value) <= 40 else ""

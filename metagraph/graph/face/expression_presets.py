@@ -1,0 +1,54 @@
+"""VRM's expression presets, made of whatever morph targets a face has.
+
+What reads a GLB of ours knows from them how to make a face happy or its mouth say "ah", whatever the targets
+are called. The presets are those of VRM 1.0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from metagraph.graph.face.names import find_morphs, plain
+
+# Preset -> ((channel of a face, how much of it), ...); the amounts are ours.
+PRESETS: dict[str, tuple[tuple[str, float], ...]] = {
+    "happy": (("smile", 1.0), ("cheeks", 1.0)),
+    "angry": (("brow_down", 1.0), ("frown", 0.3)),
+    "sad": (("frown", 1.0), ("brow_up", 1.0)),
+    "relaxed": (("smile", 0.4),),
+    "surprised": (("brows", 1.0), ("wide_left", 0.7), ("wide_right", 0.7), ("jaw_open", 0.3)),
+    "aa": (("viseme_aa", 1.0),),
+    "ih": (("viseme_I", 1.0),),
+    "ou": (("viseme_U", 1.0),),
+    "ee": (("viseme_E", 1.0),),
+    "oh": (("viseme_O", 1.0),),
+    "blink": (("blink", 1.0), ("blink_left", 1.0), ("blink_right", 1.0)),
+    "blinkLeft": (("blink_left", 1.0),),
+    "blinkRight": (("blink_right", 1.0),),
+    "lookUp": (("look_up_left", 1.0), ("look_up_right", 1.0)),
+    "lookDown": (("look_down_left", 1.0), ("look_down_right", 1.0)),
+    "lookLeft": (("look_left_left", 1.0), ("look_left_right", 1.0)),
+    "lookRight": (("look_right_left", 1.0), ("look_right_right", 1.0)),
+}
+
+
+def presets_of(names: Iterable[str], bound: Mapping[str, str] | None = None) -> dict[str, dict[str, float]]:
+    """Return preset -> morph target -> weight, 0..1, without presets that the face cannot make.
+
+    A target that is called like a preset is that preset. bound: as for `find_morphs`.
+    """
+    targets = list(names)
+    channels = find_morphs(targets, bound)
+    own = {plain(name): name for name in reversed(targets)}
+    out: dict[str, dict[str, float]] = {}
+    for preset, parts in PRESETS.items():
+        if preset.lower() in own:
+            out[preset] = {own[preset.lower()]: 1.0}
+            continue
+        made: dict[str, float] = {}
+        for channel, amount in parts:
+            for name, weight in channels.get(channel, ()):
+                made[name] = min(1.0, round(made.get(name, 0.0) + amount * weight, 6))
+        if made:
+            out[preset] = made
+    return out

@@ -1,0 +1,1 @@
+"""Behaviour Markup Language (BML 1.0), read and written."""

@@ -1,0 +1,1 @@
+"""What annotated recordings teach: acts, sequences and the models they give."""

@@ -1,0 +1,1 @@
+"""The planner: from asks to a plan of specific actions."""

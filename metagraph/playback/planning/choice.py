@@ -1,0 +1,65 @@
+"""Keyed randomness: every draw is a hash of (seed, key, purpose), in 32-bit integers that any language can
+mix alike.
+
+Nothing is remembered between draws, so changing one request leaves the draws of all others as they were.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from metagraph.playback.planning.hashing import Bits, absorb, begun, mix
+
+ALL = 4294967296.0  # numbers of 32 bits
+
+
+def key32(seed: Bits, *words: str) -> Bits:
+    """Return the 32-bit hash of a seed and words: FNV-1a over their UTF-8 bytes, each word closed by a zero
+    byte, then mixed.
+
+    The seed, mixed, is xored into FNV's offset basis.
+    """
+    return mix(keyed(seed, *words))
+
+
+def keyed(seed: Bits, *words: str) -> Bits:
+    """Return what draws of one key have in common: the hash of a seed and words before it is mixed."""
+    value = begun(seed)
+    for word in words:
+        value = absorb(value, word)
+    return value
+
+
+def uniform(seed: Bits, *words: str) -> float:
+    """Return a number in the open interval (0, 1)."""
+    return (mix(keyed(seed, *words)) + 0.5) / ALL
+
+
+def chance_of(key: Bits, purpose: str) -> float:
+    """Return what `uniform` does with one word more than a key has."""
+    return (mix(absorb(key, purpose)) + 0.5) / ALL
+
+
+def pick(seed: Bits, key: str, purpose: str, weights: Mapping[str, float]) -> str:
+    """Return one of the ids, as `picked` does."""
+    return picked(keyed(seed, key), purpose, weights)
+
+
+def picked(key: Bits, purpose: str, weights: Mapping[str, float]) -> str:
+    """Return one of the ids, id k with probability weight_k / sum.
+
+    Each id runs its own race, the shortest of exponential times -log(u_k) / weight_k wins; so adding or
+    removing one candidate changes the choice only where that candidate wins. Raises ValueError when no weight
+    is positive.
+    """
+    best, shortest = "", math.inf
+    start = absorb(key, purpose)
+    for ident, weight in weights.items():
+        if weight > 0:
+            time = -math.log((mix(absorb(start, ident)) + 0.5) / ALL) / weight
+            if time < shortest or (time == shortest and ident < best):
+                best, shortest = ident, time
+    if best == "":
+        raise ValueError("nothing to choose from")
+    return best

@@ -1,0 +1,318 @@
+"""How a mood shows: which actions become likelier, how large and fast they are played, and what it makes of
+breath, blinks, gaze, posture and face.
+
+A mood is a point in Russell's circumplex (1980): valence, how pleasant, and arousal, how excited, both -1..1;
+beside it an intensity, 0..2, 1 as made. Neutral (0, 0, 1) changes nothing, to the last digit: every factor
+is 1 and every offset 0 there. All below rises or falls monotonically with what it depends on.
+
+What is known and followed here: arousal goes with the speed, acceleration and jerk of movements (Pollick et
+al. 2001, of arms that knock and drink); elated joy and hot anger are expansive and full of movement, sadness
+and boredom neither (Wallbott 1998); the sad walk slowly, with small movements and bowed heads (Roether et al.
+2009). By how much - the numbers below - is ours, chosen so that every clip still looks as if it was made so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import sqrt
+
+from metagraph.playback.planning.choice import uniform
+from metagraph.playback.planning.hashing import Bits
+
+FADE = 1.5  # seconds in which posture and face go from one mood to the next
+LEAST_EXTENT = 0.6
+MOST_EXTENT = 1.25
+LEAST_TEMPO = 0.8
+MOST_TEMPO = 1.25
+CLOSE = 0.5  # an action that is tagged with a mood no farther away than this was made for it
+PLEASANT = "positive"  # tags
+UNPLEASANT = "negative"
+HELD = "contact"  # tag of actions that touch something: smaller or larger they would miss it
+
+# Named moods: valence, arousal. Directions are Russell's (1980, table of 28 words, by circular scaling): calm
+# 316.2, content 323, happy 7.8, excited 48.6, tense 92.8, angry 99, afraid 116, sad 207.5, bored 242 and
+# tired 267.7 degrees, at 0.8 from the middle, which is ours. "warm" is ours.
+MOODS: dict[str, tuple[float, float]] = {
+    "neutral": (0.0, 0.0),
+    "calm": (0.58, -0.55),
+    "content": (0.64, -0.48),
+    "warm": (0.6, 0.1),
+    "happy": (0.79, 0.11),
+    "excited": (0.53, 0.6),
+    "tense": (-0.04, 0.8),
+    "angry": (-0.13, 0.79),
+    "afraid": (-0.35, 0.72),
+    "sad": (-0.71, -0.37),
+    "bored": (-0.38, -0.71),
+    "tired": (-0.03, -0.8),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Mood:
+    """valence, arousal: -1..1. intensity: 0..2, 1 as made."""
+
+    valence: float = 0.0
+    arousal: float = 0.0
+    intensity: float = 1.0
+
+    @property
+    def neutral(self) -> bool:
+        """Whether it changes nothing."""
+        return self.valence == 0 and self.arousal == 0 and self.intensity == 1
+
+    def like(self, other: Mood) -> bool:
+        """Whether it is the same."""
+        return (
+            self.valence == other.valence
+            and self.arousal == other.arousal
+            and self.intensity == other.intensity
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class MoodFrom:
+    """A mood told from `start` on, until `end`; what it leaves out stays as it would be without it. Of two
+    that last the later began counts, and the other again when that is over.
+    """
+
+    id: str
+    start: float
+    valence: float | None = None
+    arousal: float | None = None
+    intensity: float | None = None
+    end: float = float("inf")
+
+
+@dataclass(frozen=True)
+class Moods:
+    """The mood over time. base: where nothing is told; told: by start."""
+
+    base: Mood = Mood()
+    told: Sequence[MoodFrom] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class LifeMood:
+    """What a mood makes of the life layers' amounts and rates: factors, as those of a manner."""
+
+    breathing: float
+    breath_rate: float
+    aversion_rate: float
+    saccade_rate: float
+    blinks: float
+
+
+@dataclass(frozen=True, slots=True)
+class Bearing:
+    """Posture and face of a mood. droop: -0.4 upright .. 1 bowed. lift: of the shoulders, in breaths. lids:
+    how far they hang, 0..1. smile, frown, brow_down, brow_up: weights of the face, 0..1. thrust: how far the
+    body leans into it, 0..1. tension: of shoulders, arms and hands, 0..1.
+    """
+
+    droop: float = 0.0
+    lift: float = 0.0
+    lids: float = 0.0
+    smile: float = 0.0
+    frown: float = 0.0
+    brow_down: float = 0.0
+    brow_up: float = 0.0
+    thrust: float = 0.0
+    tension: float = 0.0
+
+
+def changed(mood: Mood, valence: float | None, arousal: float | None, intensity: float | None) -> Mood:
+    """Return a mood with what is told of it changed, each within its range."""
+    return Mood(
+        mood.valence if valence is None else within(valence, -1.0, 1.0),
+        mood.arousal if arousal is None else within(arousal, -1.0, 1.0),
+        mood.intensity if intensity is None else within(intensity, 0.0, 2.0),
+    )
+
+
+def mood_at(moods: Moods, seconds: float) -> Mood:
+    """Return the mood wanted at a time; posture and face take a while to follow (`shown`)."""
+    out = moods.base
+    for told in moods.told:
+        if told.start > seconds:
+            break
+        if seconds < told.end:
+            out = changed(out, told.valence, told.arousal, told.intensity)
+    return out
+
+
+def lasting(told: Sequence[MoodFrom], seconds: float) -> list[MoodFrom]:
+    """Return those that may still show at `seconds` or later: not what is over and has faded, nor what
+    another that lasts for ever has replaced.
+    """
+    out: list[MoodFrom] = []
+    for place, one in enumerate(told):
+        if one.end <= seconds - FADE:
+            continue
+        if not any(_replaces(other, one, seconds) for other in told[place + 1 :]):
+            out.append(one)
+    return out
+
+
+def _replaces(later: MoodFrom, one: MoodFrom, seconds: float) -> bool:
+    return (
+        later.end == float("inf")
+        and later.start <= seconds - FADE
+        and (one.valence is None or later.valence is not None)
+        and (one.arousal is None or later.arousal is not None)
+        and (one.intensity is None or later.intensity is not None)
+    )
+
+
+def mood_edges(moods: Moods, start: float, end: float) -> list[float]:
+    """Return the times from `start` to before `end` at which the mood may change, ascending, `start`
+    first.
+    """
+    edges = [start]
+    for told in moods.told:
+        for edge in (told.start, told.end):
+            if start < edge < end and edge not in edges:
+                edges.append(edge)
+    return sorted(edges)
+
+
+def faded(x: float) -> float:
+    """Return how much of a change shows after `x` of its fade: 3x^2 - 2x^3 of x clamped to 0..1."""
+    y = within(x, 0.0, 1.0)
+    return y * y * (3 - 2 * y)
+
+
+def shown(starts: Sequence[float], values: Sequence[Sequence[float]], seconds: float) -> Mood:
+    """Return the mood that shows at a time, on its way from those before. starts: when each begins,
+    ascending; values: valence, arousal, intensity of each. Before the first it is the first.
+    """
+    place = len(starts) - 1
+    while place > 0 and starts[place] > seconds:
+        place -= 1
+    if place < 0:
+        return Mood()
+    valence, arousal, intensity, left = 0.0, 0.0, 0.0, 1.0
+    while left > 0:
+        share = left
+        if place > 0:
+            share = min(left, faded((seconds - starts[place]) / FADE) - (1 - left))
+        valence += share * values[place][0]
+        arousal += share * values[place][1]
+        intensity += share * values[place][2]
+        left -= share
+        place -= 1
+    return Mood(valence, arousal, intensity)
+
+
+def within(x: float, low: float, high: float) -> float:
+    """Return a number clamped to a range."""
+    return min(max(x, low), high)
+
+
+def leaning(x: float, most: float) -> float:
+    """Return 1 at 0, `most` at 1 and 1 / `most` at -1, and beyond as there; smooth and rising."""
+    y = within(x, -1.0, 1.0) * (most - 1) / (most + 1)
+    return (1 + y) / (1 - y)
+
+
+def extent(mood: Mood) -> float:
+    """Return how large gestures and fidgets of arms and head are played: a factor of their turns away from
+    the stance.
+    """
+    drive = within(mood.arousal + 0.25 * mood.valence, -1.0, 1.0)
+    by_mood = 1 + 0.25 * drive if drive > 0 else 1 + 0.4 * drive
+    dial = mood.intensity - 1
+    by_dial = 1 + 0.25 * dial if dial > 0 else 1 + 0.4 * dial
+    return within(by_mood * by_dial, LEAST_EXTENT, MOST_EXTENT)
+
+
+def tempo(mood: Mood) -> float:
+    """Return how fast actions are played: a factor of their own speed."""
+    by_mood = 1 + 0.25 * mood.arousal if mood.arousal > 0 else 1 + 0.2 * mood.arousal
+    return within(by_mood, LEAST_TEMPO, MOST_TEMPO)
+
+
+def drag(seconds: float, speed: float) -> float:
+    """Return how much longer clip seconds take at a speed than at their own, 0 at that, to the last digit."""
+    return seconds * (1 / speed - 1)
+
+
+def turn_extent(extent: float, real: float) -> float:
+    """Return how far a joint turns away from its stance, a factor, for a cue's extent. real: the real part of
+    the turn as it was made, a unit quaternion: turns of nearly half a circle, whose short way changes sides,
+    stay as they are.
+    """
+    return 1 + (extent - 1) * faded((abs(real) - 0.1) / 0.4)
+
+
+def made_for(mood: Mood, tags: Sequence[str]) -> bool:
+    """Whether an action was made for a mood: tagged with one that is near."""
+    return any(tag in MOODS and distance(mood, tag) <= CLOSE for tag in tags)
+
+
+def distance(mood: Mood, name: str) -> float:
+    """Return how far a mood is from a named one, 0..2.8."""
+    valence, arousal = MOODS[name]
+    x = mood.valence - valence
+    y = mood.arousal - arousal
+    return sqrt(x * x + y * y)
+
+
+def favour(mood: Mood, tags: Sequence[str], vigour: float) -> float:
+    """Return how much likelier than usual an action is. vigour: how energetic it is beside others of its
+    layer and kind, -1..1. Up to 4 times for that, 4 for a tag of valence, 9 for a tag that names a mood; and
+    as much rarer where they are against it.
+    """
+    out = leaning(vigour * within(mood.arousal + (mood.intensity - 1), -1.0, 1.0), 4.0)
+    if PLEASANT in tags:
+        out *= leaning(mood.valence, 4.0)
+    if UNPLEASANT in tags:
+        out *= leaning(-mood.valence, 4.0)
+    strength = min(1.0, sqrt(mood.valence * mood.valence + mood.arousal * mood.arousal) / CLOSE)
+    for tag in tags:
+        if tag in MOODS:
+            out *= leaning(strength * (1 - distance(mood, tag) / CLOSE), 9.0)
+    return out
+
+
+def stirs(mood: Mood, seed: Bits, key: str) -> bool:
+    """Whether something a model wrote is performed in a mood: the less aroused, the less of it, down to
+    0.6.
+    """
+    return mood.arousal >= 0 or uniform(seed, key, "mood") < 1 + 0.4 * mood.arousal
+
+
+def life_of(mood: Mood) -> LifeMood:
+    """Return what a mood makes of the life layers. Breath quickens and deepens with arousal, eyes dart and
+    blink more; who feels bad looks away more, who feels well less. The amounts are ours.
+    """
+    a, v = mood.arousal, mood.valence
+    return LifeMood(
+        1 + 0.25 * a,
+        1 + 0.4 * a if a > 0 else 1 + 0.25 * a,
+        1 - 0.4 * v if v < 0 else 1 - 0.25 * v,
+        1 + 0.4 * a,
+        1 + 0.4 * a if a > 0 else 1 + 0.25 * a,
+    )
+
+
+def bearing(mood: Mood) -> Bearing:
+    """Return posture and face of a mood, stronger with its intensity. The head bows with sadness (Roether et
+    al. 2009); shoulders rise, fists close and the body goes ahead with arousal that is not joy; the amounts
+    are ours.
+    """
+    v, a, i = mood.valence, mood.arousal, mood.intensity
+    up, down = max(0.0, a), max(0.0, -a)
+    well, ill = max(0.0, v), max(0.0, -v)
+    return Bearing(
+        within(i * (-0.7 * v - 0.5 * a), -0.4, 1.0),
+        within(i * (2.0 * up * (1 - well) - down), -1.0, 2.0),
+        within(i * 0.3 * down, 0.0, 0.5),
+        within(i * well, 0.0, 1.0),
+        within(i * ill, 0.0, 1.0),
+        within(i * 1.8 * up * max(0.0, 0.4 - v), 0.0, 1.0),
+        within(i * ill * max(0.0, 0.6 - a), 0.0, 1.0),
+        within(i * 2.2 * up * max(0.0, 0.3 - v), 0.0, 1.0),
+        within(i * 1.2 * up * max(0.0, 1.0 - 2.0 * well), 0.0, 1.0),
+    )

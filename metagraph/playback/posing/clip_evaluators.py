@@ -1,0 +1,98 @@
+"""Clips looked at alone, and clips that move a character while a plan says where it looks and what it says:
+evaluators of the same kind as `evaluator.Evaluator`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.graph.face.curves import worn
+from metagraph.graph.model import Project
+from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import Pose
+from metagraph.playback.evaluator import Evaluator
+from metagraph.playback.plan import Plan
+from metagraph.playback.posing.overlay import Overlay, clip_overlay
+
+Array = NDArray[Any]
+Faces = list[dict[str, float]]
+
+
+class ClipEvaluator:
+    """A clip by itself, on its own skeleton."""
+
+    def __init__(self, project: Project, clip: Clip) -> None:
+        self._clip = worn(project, clip)
+
+    def at(self, seconds: Any) -> Pose:
+        """Return the pose at `seconds`, a number or an array `[...]`."""
+        return self._clip.pose_at(seconds)
+
+    def morphs_at(self, seconds: float) -> dict[str, float]:
+        """Return morph target weights, 0..1, at one time."""
+        return self._clip.morphs_at(seconds)
+
+    def faces_at(self, times: Array) -> Faces:
+        """Return morph target weights, 0..1, at each of `times [N]`."""
+        return [self.morphs_at(float(time)) for time in times]
+
+
+class MovedEvaluator(Evaluator):
+    """A clip that moves the whole body; the plan moves eyes, lids and lips, and breathes."""
+
+    def __init__(self, plan: Plan, project: Project, clip: Clip) -> None:
+        super().__init__(plan, project)
+        self._clip = clip
+
+    def at(self, seconds: Any, alive: bool = True, overlay: Overlay | None = None) -> Pose:
+        times = np.asarray(seconds, np.float64).reshape(-1)
+        pose = self._clip.pose_at(np.clip(times, 0.0, self._clip.duration))
+        if alive and self._lives:
+            pose = self._life.run(pose, times)
+        shape = (*np.shape(seconds), len(self._clip.skeleton))
+        return Pose(pose.rotations.reshape(*shape, 4), pose.translations.reshape(*shape, 3))
+
+    def faces_at(self, times: Array) -> Faces:
+        return [self.morphs_at(float(time)) for time in times]
+
+
+class OverlaidEvaluator(Evaluator):
+    """A plan with live motion over it. over: what lies over it at a time, seconds; None for nothing."""
+
+    def __init__(self, plan: Plan, project: Project, over: Callable[[float], Overlay | None]) -> None:
+        super().__init__(plan, project)
+        self._over = over
+
+    def at(self, seconds: Any, alive: bool = True, overlay: Overlay | None = None) -> Pose:
+        if overlay is not None or np.size(seconds) == 0:
+            return super().at(seconds, alive, overlay)
+        if np.ndim(seconds) == 0:
+            return super().at(seconds, alive, self._over(float(seconds)))
+        poses = [self.at(time, alive) for time in np.asarray(seconds, np.float64).reshape(-1).tolist()]
+        shape = (*np.shape(seconds), len(self.rigs.composer.ground.skeleton))
+        return Pose(
+            np.stack([pose.rotations for pose in poses]).reshape(*shape, 4),
+            np.stack([pose.translations for pose in poses]).reshape(*shape, 3),
+        )
+
+
+class GeneratedEvaluator(Evaluator):
+    """A generated clip: it moves what is above the hips, the plan moves the rest."""
+
+    def __init__(self, plan: Plan, project: Project, clip: Clip) -> None:
+        super().__init__(plan, project)
+        self._clip = clip
+
+    def at(self, seconds: Any, alive: bool = True, overlay: Overlay | None = None) -> Pose:
+        times = np.asarray(seconds, np.float64).reshape(-1)
+        return super().at(seconds, alive, overlay or clip_overlay(self.project, self._clip, times))
+
+    def morphs_at(self, seconds: float, alive: bool = True, composed: Pose | None = None) -> dict[str, float]:
+        return super().morphs_at(seconds, alive, composed or self.at(seconds, alive=False))
+
+    def faces_at(self, times: Array) -> Faces:
+        return [self.morphs_at(float(time)) for time in times]

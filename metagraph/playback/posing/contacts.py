@@ -1,0 +1,259 @@
+"""Hands that stay where they touch, and out of the body: what contacts and the guard make of composed poses.
+
+The rules are `motion.contact_solve`'s and `contact_goals`', which all runtimes share; here they meet arrays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.graph import anatomy
+from metagraph.graph.checks.end_gaps import motion_of
+from metagraph.graph.face.rig import axes_of
+from metagraph.graph.model import LAYERS, Project
+from metagraph.motion import rotation
+from metagraph.motion.body_capsules import SIDES, BodyPart, body_capsules
+from metagraph.motion.character_mesh import Character
+from metagraph.motion.contact_solve import (
+    FOREARM,
+    HAND,
+    OBSTACLE,
+    BodyCapsule,
+    ContactArm,
+    ContactPose,
+    ContactRig,
+    HandGoal,
+    solve_contacts,
+    spread,
+)
+from metagraph.motion.skeleton import Pose, Skeleton
+from metagraph.playback.plan import Plan
+from metagraph.playback.posing.contact_goals import LEAST, layer_goals
+
+Array = NDArray[Any]
+
+FEW = 2  # poses
+
+
+def parts_of(project: Project, character: Character | None = None) -> tuple[BodyPart, ...]:
+    """Return the parts of a project's body: as it says, else found from its skeleton, or from the mesh of a
+    character on that.
+    """
+    if project.touch.parts or project.skeleton is None:
+        return project.touch.parts
+    roles, base = anatomy.roles(project), anatomy.base_pose(project)
+    _, at = project.skeleton.globals(base)
+    axes = axes_of(project.skeleton, {r: j for r, j in roles.items() if not r.endswith("eye")}, at)
+    return body_capsules(project.skeleton, roles, base, axes, character)
+
+
+def find_contact_rig(project: Project) -> ContactRig | None:
+    """Return what contacts need of a project, None of one without two arms."""
+    skeleton, roles, targets = project.skeleton, anatomy.roles(project), sorted(project.touched)
+    arms = [[roles.get(f"{s}_{p}") for p in ("upper_arm", "lower_arm", "hand")] for s in SIDES]
+    if skeleton is None or any(j is None for arm in arms for j in arm):
+        return None
+    return rig_on(
+        skeleton, [[j for j in arm if j is not None] for arm in arms], parts_of(project), targets, project
+    )
+
+
+def rig_on(
+    skeleton: Skeleton,
+    arms: Sequence[Sequence[int]],
+    parts: Sequence[BodyPart],
+    targets: Sequence[str],
+    project: Project,
+) -> ContactRig | None:
+    """Return a rig of some joints of a skeleton: those of the arms (upper, lower, hand), of the parts, those
+    that contacts are with, and all above them. None where an arm's joints are not one below the other.
+    """
+    if any(
+        lower not in skeleton.descendants(upper) or upper == lower
+        for arm in arms
+        for upper, lower in pairwise(arm)
+    ):
+        return None
+    wanted = {j for arm in arms for j in arm}
+    wanted |= {skeleton.index(n) for p in parts for n in (p.joint, p.to) if n in skeleton}
+    wanted |= {skeleton.index(n) for n in targets if n in skeleton}
+    joints = sorted({j for one in wanted for j in skeleton.chain(one)})
+    place = {j: n for n, j in enumerate(joints)}
+    made = []
+    for arm in arms:
+        below = tuple(place[j] for j in skeleton.descendants(arm[0]) if j in place)
+        made.append(ContactArm(place[arm[0]], place[arm[1]], place[arm[2]], below))
+    capsules = [_capsule(skeleton, arms, place, p) for p in parts if p.joint in skeleton and p.to in skeleton]
+    return ContactRig(
+        tuple(joints),
+        tuple(place.get(int(skeleton.parents[j]), -1) for j in joints),
+        {skeleton.names[j]: n for j, n in place.items()},
+        tuple(made),
+        tuple(skeleton.names[arm[2]] for arm in arms),
+        tuple(capsules),
+        project.touch.contacts,
+        project.touch.guard,
+    )
+
+
+def _capsule(
+    skeleton: Skeleton, arms: Sequence[Sequence[int]], place: Mapping[int, int], part: BodyPart
+) -> BodyCapsule:
+    joint, to = skeleton.index(part.joint), skeleton.index(part.to)
+    side, kind = -1, OBSTACLE
+    for n, (upper, lower, hand) in enumerate(arms):
+        if joint in skeleton.descendants(upper):
+            side = n
+            inside = joint in skeleton.descendants(lower)
+            kind = HAND if joint in skeleton.descendants(hand) else FOREARM if inside else OBSTACLE
+    return BodyCapsule(place[joint], part.a, place[to], part.b, part.radius, side, kind)
+
+
+def goals_at(plan: Plan, project: Project, rig: ContactRig, time: float) -> list[HandGoal]:
+    """Return where the contacts of all layers want the hands at a time."""
+    out: list[HandGoal] = []
+    for layer in LAYERS:
+        of, strength = plan.layers[layer], min(1.0, project.graphs[layer].weight("arms"))
+        if strength <= 0:
+            continue
+        cue = of.cue_at(time)
+        if cue is not None and motion_of(project, cue.action) is None:
+            cue = None
+        place = max(int(of.fade_starts.searchsorted(time, "right")) - 1, 0) if of.rests else -1
+        if not any(of.rests[n].action.contacts for n in (place, place - 1) if n >= 0) and not (
+            cue is not None and cue.action.contacts
+        ):
+            continue
+        out += layer_goals(rig, project, of, cue, place, time, strength)
+    return out
+
+
+def matters(project: Project) -> bool:
+    """Whether a project has the guard on, or contacts that are on."""
+    touch = project.touch
+    return project.skeleton is not None and (touch.guard or (touch.contacts and bool(project.touched)))
+
+
+class ContactStage:
+    """Keeps the hands of a plan in contact, and out of the body."""
+
+    def __init__(self, plan: Plan, project: Project, rig: ContactRig | None) -> None:
+        self._plan, self._project = plan, project
+        self._rig = rig if matters(project) else None
+
+    def run(self, pose: Pose, times: Array, shown: Array | None = None) -> Pose:
+        """Return composed poses `[N, J]` with hands kept in contact and out of the body at `times [N]`; the
+        very same arrays where nothing is to be done. shown `[N]`: how much of what the plan does with arms is
+        seen, 0..1; None for all.
+        """
+        rig = self._rig
+        if rig is None or not len(times):
+            return pose
+        none: list[HandGoal] = []
+        plan, project = self._plan, self._project
+        goals = [goals_at(plan, project, rig, t) if rig.contacts else none for t in times.tolist()]
+        if shown is not None:
+            goals = [
+                [replace(g, weight=g.weight * part) for g in some if g.weight * part > LEAST]
+                for some, part in zip(goals, shown.tolist(), strict=True)
+            ]
+        return solved(pose, rig, goals)
+
+
+def solved(pose: Pose, rig: ContactRig, goals: Sequence[Sequence[HandGoal]]) -> Pose:
+    """Return poses `[N, J]` with hands at their goals, and out of the body where the rig's guard is on."""
+    busy = np.array([bool(g) for g in goals])
+    if rig.guard and not busy.all():
+        idle = np.flatnonzero(~busy)
+        # For a few, arrays are not worth their while: they are gone through one by one.
+        few = len(idle) <= FEW
+        busy[idle] = few or inside(rig, Pose(pose.rotations[idle], pose.translations[idle]))
+    if not busy.any():
+        return pose
+    rotations = pose.rotations
+    joints = list(rig.joints)
+    changed = [rig.joints[p] for arm in rig.arms for p in (arm.upper, arm.lower, arm.hand)]
+    places = [p for arm in rig.arms for p in (arm.upper, arm.lower, arm.hand)]
+    for n in np.flatnonzero(busy).tolist():
+        one = ContactPose(
+            [tuple(q) for q in pose.rotations[n, joints].tolist()],
+            [tuple(v) for v in pose.translations[n, joints].tolist()],
+        )
+        spread(rig, one)
+        if solve_contacts(rig, one, goals[n]):
+            if rotations is pose.rotations:
+                rotations = np.array(rotations)
+            rotations[n, changed] = rotation.normalize(np.array([one.local[p] for p in places]))
+    return pose if rotations is pose.rotations else Pose(rotations, pose.translations)
+
+
+def inside(rig: ContactRig, pose: Pose) -> Array:
+    """Return `[N]` whether a forearm or hand is inside another part of the body in poses `[N, J]`."""
+    return np.asarray((depths(rig, pose) > 0).any(-1))
+
+
+def depths(rig: ContactRig, pose: Pose) -> Array:
+    """Return `[N, P]` how deep forearms and hands are inside other parts, metres, below 0 where outside, for
+    every pair of them.
+    """
+    first, second, _ = pairs(rig)
+    a, b = ends(rig, pose)
+    radii = np.array([c.radius for c in rig.capsules])
+    way, _ = nearest(a[:, first], b[:, first], a[:, second], b[:, second])
+    return np.asarray(radii[first] + radii[second] - np.linalg.norm(way, axis=-1))
+
+
+def pairs(rig: ContactRig) -> tuple[list[int], list[int], list[tuple[int, int]]]:
+    """Return the places of capsules that are kept out of each other: those pushed, the others, and both."""
+    both = [
+        (i, k)
+        for i, mine in enumerate(rig.capsules)
+        for k, other in enumerate(rig.capsules)
+        if mine.kind != OBSTACLE and other.arm != mine.arm and (other.kind == OBSTACLE or i < k)
+    ]
+    return [i for i, _ in both], [k for _, k in both], both
+
+
+def ends(rig: ContactRig, pose: Pose) -> tuple[Array, Array]:
+    """Return where the capsules' lines begin and end in poses `[N, J]`: `[N, C, 3]` each."""
+    joints = list(rig.joints)
+    local, moved = (
+        np.asarray(pose.rotations[:, joints], float),
+        np.asarray(pose.translations[:, joints], float),
+    )
+    turned, at = local.copy(), moved.copy()
+    for n, above in enumerate(rig.parents):
+        if above >= 0:
+            turned[:, n] = rotation.multiply(turned[:, above], local[:, n])
+            at[:, n] = at[:, above] + rotation.rotate(turned[:, above], moved[:, n])
+    out = []
+    for joint, point in (
+        ([c.joint for c in rig.capsules], [c.a for c in rig.capsules]),
+        ([c.to for c in rig.capsules], [c.b for c in rig.capsules]),
+    ):
+        out.append(at[:, joint] + rotation.rotate(turned[:, joint], np.array(point)))
+    return out[0], out[1]
+
+
+def nearest(a: Array, b: Array, c: Array, d: Array) -> tuple[Array, Array]:
+    """Return the shortest ways `[..., 3]` from lines from c to d to those from a to b, `[..., 3]` each, and
+    how far along the latter they end, 0..1: `contact_solve.apart` for arrays.
+    """
+    u, v, w = b - a, d - c, a - c
+    uu, uv, vv = (u * u).sum(-1), (u * v).sum(-1), (v * v).sum(-1)
+    uw, vw = (u * w).sum(-1), (v * w).sum(-1)
+    below = uu * vv - uv * uv
+    long, other = uu > 1e-12, vv > 1e-12
+    safe = below > 1e-9 * uu * vv
+    s = np.where(safe & long, np.clip((uv * vw - vv * uw) / np.where(safe, below, 1), 0, 1), 0.0)
+    t = np.where(other, (uv * s + vw) / np.where(other, vv, 1), 0.0)
+    inner = np.clip(t, 0, 1)
+    s = np.where((t == inner) & other, s, np.clip((uv * inner - uw) / np.where(long, uu, 1), 0, 1))
+    s = np.where(long, s, 0.0)
+    return w + u * s[..., None] - v * inner[..., None], s

@@ -1,0 +1,106 @@
+"""Where the feet of a project's clips are and when they stand, and where a plan wants them at a time.
+
+The rules are `planted_feet`'s and `motion.feet_solve`'s, which all runtimes share; here they meet arrays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.graph import anatomy
+from metagraph.graph.checks.end_gaps import motion_of
+from metagraph.graph.model import LAYERS, Project
+from metagraph.motion import rotation
+from metagraph.motion.clip import Clip
+from metagraph.motion.feet_solve import FootGoal
+from metagraph.motion.weight_solve import WeightRig
+from metagraph.playback.plan import Plan
+from metagraph.playback.posing.planted_feet import FOOT_NUMBERS, FOOT_RATE, FOOT_UNIT, FootTrack, foot_goals
+
+Array = NDArray[Any]
+Rows = Sequence[Sequence[float]]
+
+STANDS = 0.03  # of the height a second: a foot whose joints are slower stands
+SAME = 10  # units of a row: what moves less all along needs one row
+# How fast joints are is told over as long as two rows are apart: from one frame to the next, clips that are
+# stored in 16 bits tremble.
+
+
+def moved_alone(project: Project, rig: WeightRig) -> bool:
+    """Whether the body's layer alone moves the joints from the root to the feet, as much as it was made:
+    feet are then where its clips have them.
+    """
+    parts = anatomy.parts(project)
+    legs = {rig.body.joints[p] for leg in rig.body.arms for p in leg.below}
+    above = [j for j in range(len(rig.body.parents)) if rig.body.joints[j] not in legs]
+    chain = legs | {rig.body.joints[p] for p in above if _leads(rig, p)}
+    return all(
+        project.graphs[layer].weight(parts[joint]) == (1 if layer == "body" else 0)
+        for joint in chain
+        for layer in LAYERS
+    )
+
+
+def _leads(rig: WeightRig, place: int) -> bool:
+    """Whether a place lies above a leg."""
+    for leg in rig.body.arms:
+        here = leg.upper
+        while here >= 0:
+            if here == place:
+                return True
+            here = rig.body.parents[here]
+    return False
+
+
+def rows_of_feet(project: Project, motion: Clip, rig: WeightRig) -> Rows:
+    """Return the rows of a clip's `FootTrack`."""
+    skeleton, roles = motion.skeleton, anatomy.roles(project)
+    count = int(np.ceil(motion.duration * FOOT_RATE - 1e-6)) + 1
+    times = np.arange(count) / FOOT_RATE
+    turned, at = skeleton.globals(motion.pose_at(times))
+    half = 0.5 / FOOT_RATE
+    ends = np.clip(np.stack([times - half, times + half]), 0.0, motion.duration)
+    sides = [skeleton.globals(motion.pose_at(end))[1].astype(float) for end in ends]
+    apart = np.maximum(ends[1] - ends[0], 1e-6)
+    out = np.zeros((count, 2 * FOOT_NUMBERS))
+    for side, leg in enumerate(rig.body.arms):
+        foot = rig.body.joints[leg.hand]
+        toes = roles.get(f"{('left', 'right')[side]}_toes", foot)
+        speed = np.max([np.linalg.norm(sides[1][:, j] - sides[0][:, j], axis=-1) for j in (foot, toes)], 0)
+        still = speed / apart < STANDS * rig.height
+        still &= np.append(still[1:], True) & np.insert(still[:-1], 0, True)
+        n = FOOT_NUMBERS * side
+        out[:, n] = still
+        out[:, n + 1 : n + 4] = at[:, foot]
+        out[:, n + 4 : n + 8] = rotation.continuous(turned[:, foot].astype(float))
+    found = np.round(out / FOOT_UNIT)
+    if (np.ptp(found, axis=0) <= SAME).all():
+        found = found[:1]
+    return tuple(tuple(row) for row in found.tolist())
+
+
+class FeetOfPlan:
+    """Where the feet should be in a plan."""
+
+    def __init__(self, rows: Any, height: float) -> None:
+        self.rows, self.height = rows, height
+        self.tracks: dict[str, FootTrack] = {}
+
+    def goals(self, plan: Plan, project: Project, time: float) -> list[FootGoal]:
+        """Return where both should be at a time, nothing where nothing blends."""
+        layer = plan.layers["body"]
+        if not layer.rests:
+            return []
+        cue = layer.cue_at(time)
+        if cue is not None and motion_of(project, cue.action) is None:
+            cue = None
+        place = max(int(layer.fade_starts.searchsorted(time, "right")) - 1, 0)
+        nearby = range(max(0, place - 4), min(len(layer.rests), place + 5))
+        for action in [layer.rests[n].action for n in nearby] + ([cue.action] if cue is not None else []):
+            if action.id not in self.tracks:
+                self.tracks[action.id] = FootTrack(self.rows(project, action.clip))
+        return foot_goals(project, self.tracks, self.height, layer, cue, place, time)

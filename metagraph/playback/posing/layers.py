@@ -1,0 +1,249 @@
+"""What the layers of a plan add to the base pose, at a time or at many: clips played, faded, and led in from
+and out to their stances.
+"""
+
+from __future__ import annotations
+
+from math import inf
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.graph import anatomy
+from metagraph.graph.model import LAYERS, Action, Layer, Project
+from metagraph.motion import rotation
+from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import Pose
+from metagraph.playback.plan import Cue, LayerPlan, Plan, Rest
+from metagraph.playback.posing.composer import ComposerRig, Ground, Reach, playable
+
+Array = NDArray[Any]
+# Offsets on the joints a layer reaches: rotations [N, n, 4], translations [N, n, 3].
+Sample = tuple[Array, Array]
+
+_RESTING, _ENTERING, _FULL, _LEAVING = range(4)  # a cue's phases
+Met = tuple[int, bool, int, int]  # the place of the rest, whether it fades in, that of the cue, its phase
+
+
+class LayersStage:
+    """The layers of a plan, composed."""
+
+    def __init__(self, plan: Plan, project: Project, rig: ComposerRig) -> None:
+        self._rig = rig
+        self._layers = {
+            layer: _LayerStage(of, project, rig.ground, rig.reach[layer])
+            for layer in LAYERS
+            if (of := plan.layers[layer]).rests
+        }
+
+    def offsets(self, times: Array) -> dict[Layer, Sample]:
+        """Return what each layer adds at `times [N]`, on the joints it reaches."""
+        return {layer: of.offsets(times) for layer, of in self._layers.items()} if len(times) else {}
+
+    def run(self, times: Array) -> Pose:
+        """Return what the layers compose at `times [N]`: rotations `[N, J, 4]`, translations `[N, J, 3]`."""
+        return self._rig.compose(self.offsets(times), len(times))
+
+
+class _LayerStage:
+    """One layer of a plan."""
+
+    def __init__(self, plan: LayerPlan, project: Project, ground: Ground, reach: Reach) -> None:
+        self._plan, self._project, self._ground, self._reach = plan, project, ground, reach
+        self._scales = anatomy.scales(project)[:, reach.joints]
+        self._lately: tuple[float, float, Met] = (
+            inf,
+            inf,
+            (0, False, 0, 0),
+        )  # from when until when, what is met
+
+    def offsets(self, times: Array) -> Sample:
+        """Return the layer's offsets at `times [N]`."""
+        if len(times) == 1:
+            return self._together(times, *self._meets(float(times[0])))
+        alike: dict[Met, list[int]] = {}  # what is met -> places among the times
+        for n, time in enumerate(times.tolist()):
+            alike.setdefault(self._meets(time), []).append(n)
+        if len(alike) == 1:
+            return self._together(times, *next(iter(alike)))
+        count = len(self._reach.joints)
+        out = np.empty((len(times), count, 4), np.float32), np.empty((len(times), count, 3), np.float32)
+        for met, here in alike.items():
+            out[0][here], out[1][here] = self._together(times[here], *met)
+        return out
+
+    def _meets(self, time: float) -> Met:
+        """Return what a time meets."""
+        begin, until, met = self._lately
+        if begin <= time < until:
+            return met
+        plan = self._plan
+        current = max(int(plan.fade_starts.searchsorted(time, "right")) - 1, 0)
+        playing = int(plan.starts.searchsorted(time, "right")) - 1
+        edges = [plan.fade_ends[current], *plan.fade_starts[current + 1 : current + 2]]
+        edges += plan.starts[playing + 1 : playing + 2].tolist()
+        phase = _RESTING
+        if playing >= 0:
+            ends = plan.full_from[playing], plan.full_to[playing], plan.ends[playing]
+            edges += ends
+            if time < ends[2]:
+                phase = _ENTERING if time < ends[0] else _LEAVING if time >= ends[1] else _FULL
+        met = current, current > 0 and bool(plan.fade_ends[current] > time), playing, phase
+        self._lately = time, min((edge for edge in edges if edge > time), default=inf), met
+        return met
+
+    def _together(self, times: Array, current: int, fading: bool, playing: int, phase: int) -> Sample:
+        """Return offsets at `times [N]` that all meet the same rest and the same phase of the same cue."""
+        project, plan, reach = self._project, self._plan, self._reach
+        cue = plan.cues[playing] if phase != _RESTING else None
+        motion = playable(project, cue.action) if cue is not None else None
+        if cue is None or motion is None:
+            return self._stance(times, current, fading)
+        shown = self._sample(motion, cue.clip_seconds(times))
+        mask = anatomy.mask(project, cue.action)
+        moved = None if mask is None or (mask[reach.joints] == 1).all() else mask[reach.joints]
+        if phase == _FULL and moved is None and cue.extent == 1:
+            return shown
+        stance = self._stance(times, current, fading)
+        if phase != _FULL:
+            edge = self._sample(motion, np.array([cue.entry if phase == _ENTERING else cue.last]))
+            shown = _lead(shown, stance, edge, 1 - cue_weight(cue, times))
+        if cue.extent != 1:
+            shown = _extended(shown, stance, cue.extent, self._scales)
+        if moved is not None:
+            keep_to(shown, stance, moved)
+        return shown
+
+    def _stance(self, times: Array, current: int, fading: bool) -> Sample:
+        """Return the offsets of the stance that lies under the cues."""
+        rest = self._plan.rests[current]
+        found = self._rest(rest, times)
+        if not fading:
+            return found
+        before = self._rest(self._plan.rests[current - 1], times)
+        return mix(before, found, ease((times - rest.fade_start) / rest.fade))
+
+    def _rest(self, rest: Rest, times: Array) -> Sample:
+        motion = playable(self._project, rest.action)
+        if motion is None:
+            return no_offsets(len(times), len(self._reach.joints))
+        seconds, other, old = loop_seconds(self._project, rest.action, times - rest.start)
+        found = self._sample(motion, seconds)
+        return mix(found, self._sample(motion, other), old) if old.any() else found
+
+    def _sample(self, motion: Clip, seconds: Array) -> Sample:
+        return sample(self._ground, self._reach, motion, seconds)
+
+
+def no_offsets(count: int, joints: int) -> Sample:
+    """Return offsets that leave the base pose as it is."""
+    return rotation.identity((count, joints), np.float32), np.zeros((count, joints, 3), np.float32)
+
+
+def ease(x: Array) -> Array:
+    """The blending curve: 3x^2 - 2x^3 of x clamped to 0..1."""
+    x = np.clip(x, 0.0, 1.0)
+    return np.asarray(x * x * (3 - 2 * x))
+
+
+def cue_weight(cue: Cue, times: Array) -> Array:
+    """Return how much of the cue shows at `times [N]`: 0 outside it, rising over its blend in, falling over
+    its blend out.
+    """
+    rise = (
+        ease((times - cue.start) / cue.blend_in) if cue.blend_in > 0 else (times >= cue.start).astype(float)
+    )
+    fall = ease((cue.end - times) / cue.blend_out) if cue.blend_out > 0 else (times < cue.end).astype(float)
+    return np.asarray(rise * fall)
+
+
+def loop_seconds(project: Project, action: Action, elapsed: Array) -> tuple[Array, Array, Array]:
+    """Return for seconds since a loop began: clip seconds, clip seconds of the seam's other side, and how
+    much of that shows.
+
+    With a seam of x seconds the loop's last x seconds fade into its first, and its period is x shorter.
+    Before its beginning a loop runs as if it had gone on for ever; one with a seam waits in its first pose,
+    so that it starts without a jump.
+    """
+    start, end = project.span(action)
+    length = end - start
+    seam = min(max(0.0, action.timing.blend_in), length / 2)
+    period = length - seam
+    if period <= 0:
+        zero = np.zeros_like(elapsed)
+        return zero + start, zero + start, zero
+    phase = np.mod(np.maximum(elapsed, 0.0) if seam > 0 else elapsed, period)
+    if seam <= 0:
+        return start + phase, start + phase, np.zeros_like(phase)
+    old = np.where(elapsed >= period, 1 - ease(phase / seam), 0.0)
+    return start + phase, start + np.minimum(period + phase, length), old
+
+
+def keep_to(shown: Sample, rest: Sample, moved: Array) -> None:
+    """Change a sample in place where joints move only in part, or not at all: how far, `moved [n]` 0..1, they
+    go from where they rest to where they are shown.
+    """
+    still, soft = np.flatnonzero(moved == 0), np.flatnonzero((moved > 0) & (moved < 1))
+    for part, other in zip(shown, rest, strict=True):
+        part[:, still] = other[:, still]
+    if len(soft) == 0:
+        return
+    weight = np.broadcast_to(moved[soft], (len(shown[0]), len(soft)))
+    shown[0][:, soft] = rotation.nlerp(rest[0][:, soft], shown[0][:, soft], weight)
+    shown[1][:, soft] = rest[1][:, soft] + (shown[1][:, soft] - rest[1][:, soft]) * weight[..., None]
+
+
+def _extended(shown: Sample, stance: Sample, extent: float, scales: Array) -> Sample:
+    """Play a sample larger or smaller round its stance. scales `[2, n]`: as `anatomy.scales`."""
+    share = (extent - 1) * scales[0 if extent > 1 else 1]
+    apart = rotation.multiply(rotation.conjugate(stance[0]), shown[0])
+    factor = 1 + share * ease((np.abs(apart[..., 3]) - 0.1) / 0.4)  # mood.turn_extent
+    moved = stance[1] + (shown[1] - stance[1]) * (1 + share[:, None])
+    return rotation.multiply(stance[0], rotation.power(apart, factor)).astype(np.float32), moved
+
+
+def _lead(shown: Sample, stance: Sample, edge: Sample, weight: Array) -> Sample:
+    """Lead a clip in from, or out to, its stance: add `weight [N]` of what the stance differs from the clip's
+    pose at that edge.
+
+    A plain crossfade would hold the clip back and then hurry it, up to 1.7 times as fast as it was made; this
+    way the clip keeps its own speed, and where it begins in its stance there is next to nothing to add.
+    """
+    w = weight.astype(np.float32)[:, None, None]
+    apart = rotation.multiply(rotation.conjugate(edge[0]), stance[0])
+    return rotation.multiply(shown[0], _part(apart, w)), shown[1] + (stance[1] - edge[1]) * w
+
+
+def _part(turn: Array, weight: Array) -> Array:
+    """Return part of a turn: the normalised straight line from no rotation."""
+    out = turn * np.where(turn[..., 3:] < 0, -weight, weight)
+    out[..., 3:] += 1 - weight
+    return _unit(out)
+
+
+def _unit(q: Array) -> Array:
+    q /= np.sqrt(np.maximum(np.einsum("...i,...i->...", q, q), 1e-20))[..., None]
+    return q
+
+
+def mix(a: Sample, b: Sample, weight: Array) -> Sample:
+    """Crossfade two samples, `weight [N]` of the second."""
+    w = weight.astype(np.float32)[:, None]
+    return rotation.nlerp(a[0], b[0], np.broadcast_to(w, b[0].shape[:-1])), a[1] + (b[1] - a[1]) * w[
+        ..., None
+    ]
+
+
+def sample(ground: Ground, reach: Reach, clip: Clip, seconds: Array) -> Sample:
+    """Return a clip's offsets at clip seconds `[N]`; the arrays are the caller's."""
+    offsets = ground.offsets(clip, reach)
+    low, high, part = clip.locate(seconds)
+    w = part[:, None, None]
+    a = offsets.rotations[low]
+    mixed = _unit(a + (offsets.rotations[high] - a) * w)  # neighbours are on the same side
+    away = np.zeros((len(low), len(reach.joints), 3), np.float32)
+    if len(offsets.moved):
+        a = offsets.translations[low]
+        away[:, offsets.moved] = a + (offsets.translations[high] - a) * w
+    return mixed, away

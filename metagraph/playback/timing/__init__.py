@@ -1,0 +1,1 @@
+"""When an action prepares, strikes and retracts, and how its timing is edited."""

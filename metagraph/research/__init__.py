@@ -1,0 +1,1 @@
+"""What researchers use: studies, exhibits, evaluations. Nothing else in the domain imports it."""

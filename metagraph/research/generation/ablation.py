@@ -1,0 +1,270 @@
+"""What each part of a model is good for: it is trained again and again on the same takes for the same time,
+one thing changed at a time. The paper changes several at once: its CVAE has neither past poses nor a flow,
+and MoGlow is six times as large.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, Protocol
+
+import msgspec
+import numpy as np
+from msgspec import Struct
+from msgspec.structs import replace as changed
+from numpy.typing import NDArray
+
+from metagraph.errors import FileError
+from metagraph.formats.atomic import write_atomically
+from metagraph.generation.features import BOTH, MELS, NONE, PARTNER, SELF, features
+from metagraph.generation.networks import ACTIVITY, FPS, CvaeSizes, FlowSizes, Kind, MatchingSizes, Sizes
+from metagraph.generation.poses import PoseRig
+from metagraph.generation.statistics import DRAWS, Performance, Row, performance, table
+from metagraph.generation.stored import SUFFIX, read_model
+from metagraph.generation.take_files import TakeFiles, read_speech
+from metagraph.generation.takes import Take
+from metagraph.research.generation.evaluation import Manner, generated, truth
+
+Array = NDArray[Any]
+
+CARD = "ablation.json"
+WHOLE = "whole"
+
+
+@dataclass(frozen=True)
+class Change:
+    """One thing that is changed. name: short; words: what it is. settings: of the training. hearing: what
+    of a take is left out. mirrored: twins of the takes are learned from as well. guidance: how it is
+    sampled.
+    """
+
+    name: str
+    words: str
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    hearing: str = ""
+    mirrored: bool = False
+    guidance: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Job:
+    """One training. seconds: of the processor. out: the model's file."""
+
+    kind: Kind
+    sizes: Sizes
+    settings: Mapping[str, Any]
+    seed: int
+    seconds: float
+    learned: tuple[Take, ...]
+    held: tuple[Take, ...]
+    out: Path
+
+
+class Trainer(Protocol):
+    """Trains, and writes the model whole or not at all."""
+
+    def __call__(self, job: Job) -> None: ...
+
+
+CHANGES = (
+    Change(WHOLE, "nothing changed"),
+    Change("paper's loss", "the loss as in the paper, with both of its faults", {"loss": "paper"}),
+    Change("no third term", "the paper's loss without its third term", {"loss": "paper", "third": 0.0}),
+    Change(
+        "one step",
+        "a flow of a single step: the nearest to a Gaussian code that the same network can be, with the same "
+        "control and past poses",
+    ),
+    Change("no vae", "the flow on poses themselves, as many steps and units"),
+    Change("no past", "no past poses"),
+    Change("no partner", "the partner neither heard nor known to speak", hearing="partner"),
+    Change("no activity", "nobody tells who speaks", hearing="activity"),
+    Change("no ahead", "no sound after the frame; as many frames before it instead"),
+    Change("past told", "past poses are never dropped in training", {"past_dropped": 0.0}),
+    Change("no head", "no head that predicts how fast joints move", {"head": 0.0}),
+    Change("own sounds", "no sounds but the takes' own: no other voices, rooms or noise", {"voices": 0.0}),
+    Change("any crop", "crops in which who speaks changes are as likely as others", {"turns": 0.0}),
+    Change("any moment", "moments of a flow as likely late as early", {"early": 0.0, "spread": 1.0}),
+    Change("apart", "pieces are told by their own tokens alone, and do not meet"),
+    Change("no guidance", "follows the speech as it has learned to, no more", guidance=1.0),
+    Change("mirrored", "mirror twins are learned from as well", mirrored=True),
+)
+NAMES = tuple(c.name for c in CHANGES)
+
+
+def sizes_for(change: Change, kind: Kind, sizes: Sizes) -> tuple[Kind, Sizes] | None:
+    """Return what is trained, None where the change says nothing about such a model."""
+    name = change.name
+    if name in ("paper's loss", "no third term"):
+        return (kind, sizes) if isinstance(sizes, FlowSizes) and sizes.code == "autoencoder" else None
+    if name == "one step":
+        return (kind, changed(sizes, steps=1)) if isinstance(sizes, FlowSizes) else None
+    if name == "no vae":
+        if not isinstance(sizes, FlowSizes) or sizes.code == "none":
+            return None
+        return "moglow", changed(sizes, code="none", dims=sizes.pose * sizes.span)
+    if name == "no past":
+        if isinstance(sizes, MatchingSizes):  # its tokens go on from each other; nothing else joins them
+            return None
+        return None if isinstance(sizes, CvaeSizes) else (kind, _control(sizes, past=0))
+    if name in ("no guidance", "any moment"):
+        return (kind, sizes) if isinstance(sizes, MatchingSizes) else None
+    if name == "apart":
+        return (kind, changed(sizes, around=0)) if isinstance(sizes, MatchingSizes) and sizes.around else None
+    if name == "past told":
+        return None if isinstance(sizes, CvaeSizes) else (kind, sizes)
+    if name == "no ahead":
+        if isinstance(sizes, MatchingSizes):  # a chunk hears itself
+            return None
+        control = sizes.control
+        return kind, _control(sizes, before=control.before + control.ahead, ahead=0)
+    return kind, sizes
+
+
+def _control(sizes: FlowSizes | CvaeSizes, **new: int) -> FlowSizes | CvaeSizes:
+    return changed(sizes, control=changed(sizes.control, **new))
+
+
+def heard(change: Change, take: Take, files: Mapping[str, TakeFiles]) -> Array:
+    """Return what is left of a take's features `[T, audio + 4]`. files: by the takes' names, whose sounds are
+    heard again without the partner. Raises FileError.
+    """
+    out = take.features.copy()
+    activity = out[:, -ACTIVITY:]
+    if change.hearing == "activity":
+        activity[:] = 0
+        activity[:, NONE] = 1
+    elif change.hearing == "partner":
+        activity[:, SELF] += activity[:, BOTH]
+        activity[:, NONE] += activity[:, PARTNER]
+        activity[:, [PARTNER, BOTH]] = 0
+        found = files.get(take.source.name)
+        samples = read_speech(found).samples if found is not None else None
+        tracks = (out.shape[1] - ACTIVITY) // MELS
+        if samples is not None and len(samples) == 2:
+            samples = np.stack([samples[0], np.zeros_like(samples[0])])
+            first = round(take.source.start * FPS)
+            alone = features(samples, np.zeros((0, ACTIVITY)), tracks)
+            out[:, :-ACTIVITY] = alone[first : first + len(out), :-ACTIVITY]
+    return out
+
+
+class Asked(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What an ablation's folder is of. takes: hashes of their files."""
+
+    format: int = 1
+    kind: Kind
+    sizes: Sizes
+    seconds: float
+    trainings: int
+    takes: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Ablated:
+    """rows: the table, what stands beside first. ran: what was trained just now; kept: what was there. left:
+    changes that say nothing about such a model.
+    """
+
+    rows: tuple[Row, ...]
+    ran: tuple[str, ...]
+    kept: tuple[str, ...]
+    left: tuple[str, ...]
+
+
+def file_of(folder: Path, change: Change, training: int) -> Path:
+    """Return where a model of an ablation is kept."""
+    return folder / f"{change.name.replace(' ', '-').replace(chr(39), '')}-{training}{SUFFIX}"
+
+
+def ablate(
+    folder: Path,
+    trainer: Trainer,
+    rig: PoseRig,
+    kind: Kind,
+    sizes: Sizes,
+    learned: Sequence[Take],
+    held: Sequence[Take],
+    files: Mapping[str, TakeFiles],
+    twins: Callable[[], Sequence[Take]],
+    changes: Sequence[Change] = CHANGES,
+    seconds: float = 60.0,
+    trainings: int = 1,
+    floor: Sequence[Array] | None = None,
+    manner: Manner = Manner(),  # noqa: B008
+    draws: int = DRAWS,
+    progress: Callable[[str], None] | None = None,
+) -> Ablated:
+    """Train and judge a model with one thing changed at a time. folder: where models are kept, and found
+    again by the next run. trainings: seeds. twins: mirror twins of what is learned from. floor: as for
+    `evaluation.judge`. Raises FileError where the folder is of another ablation, and what trainings raise.
+    """
+    if not seconds > 0 or not 1 <= trainings <= 20:
+        raise ValueError("an ablation has 1 to 20 trainings of each kind, of more than 0 s")
+    digests = tuple(t.source.digests[0] if t.source.digests else t.source.name for t in (*learned, *held))
+    asked = Asked(kind=kind, sizes=sizes, seconds=seconds, trainings=trainings, takes=digests)
+    _own(folder, asked)
+    true = tuple(performance(rig, t.poses, t) for t in held)
+    systems: dict[str, list[tuple[Performance, ...]]] = {}
+    ran, kept, left = [], [], []
+    for change in changes:
+        wanted = sizes_for(change, kind, sizes)
+        if wanted is None:
+            left.append(change.name)
+            continue
+        hearing = [replace(t, features=heard(change, t, files)) for t in held] if change.hearing else held
+        systems[change.name] = []
+        for training in range(1, trainings + 1):
+            # What differs in how it is sampled alone is not trained again.
+            out = file_of(folder, change if change.guidance is None else CHANGES[0], training)
+            name = f"{change.name}, seed {training}"
+            if progress is not None:
+                progress(name)
+            if out.exists():
+                kept.append(name)
+            else:
+                some = list(learned)
+                if change.hearing:
+                    some = [replace(t, features=heard(change, t, files)) for t in learned]
+                if change.mirrored:
+                    some += twins()
+                trainer(Job(*wanted, change.settings, training, seconds, tuple(some), tuple(hearing), out))
+                ran.append(name)
+            model = read_model(out)
+            how = manner if change.guidance is None else replace(manner, guidance=change.guidance)
+            for seed in range(1, manner.seeds + 1):
+                poses = [generated(model, t.features, seed, n, how) for n, t in enumerate(hearing)]
+                # What is judged is the motion beside all that was said, whatever the model heard of it.
+                made = tuple(performance(rig, p, t) for p, t in zip(poses, held, strict=True))
+                systems[change.name].append(made)
+    other = None if floor is None else [performance(rig, p, t) for p, t in zip(floor, held, strict=True)]
+    rows = [truth(true, other, draws), *table(systems, true, other, draws)]
+    return Ablated(tuple(rows), tuple(ran), tuple(kept), tuple(left))
+
+
+def _own(folder: Path, asked: Asked) -> None:
+    path = folder / CARD
+    text = msgspec.json.encode(asked)
+    if path.is_file():
+        try:
+            there = msgspec.json.decode(path.read_bytes(), type=Asked)
+        except msgspec.DecodeError as error:
+            raise FileError(
+                path, f"tells of no ablation ({error})", remedy="Choose another folder."
+            ) from None
+        # More trainings of the same may be added.
+        if changed(there, trainings=asked.trainings) != asked:
+            what = [
+                n for n in ("kind", "sizes", "seconds", "takes") if getattr(there, n) != getattr(asked, n)
+            ]
+            raise FileError(
+                folder,
+                f"is of an ablation with other {', '.join(what) or 'format'}",
+                remedy="Choose another folder, or ask for the same.",
+            )
+    elif folder.is_dir() and any(folder.iterdir()):
+        raise FileError(folder, "holds other files", remedy="Choose an empty or a new folder.")
+    folder.mkdir(parents=True, exist_ok=True)
+    write_atomically(path, text + b"\n")

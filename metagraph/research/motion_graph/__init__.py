@@ -1,0 +1,1 @@
+"""Evaluations of searches in motion graphs."""

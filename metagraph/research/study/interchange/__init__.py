@@ -1,0 +1,1 @@
+"""A study's data as other tools read it: BIDS and XES."""

@@ -1,0 +1,79 @@
+"""Gaps in a log: times in which nothing was told. What of them is absence and what is watching nobody
+knows, so how much there was is told, and what another limit would make of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import inf
+
+from metagraph.research.study.scores.tasks import AWAY, Event, steps
+
+SHORTEST = 30.0  # seconds; shorter ones are work by any limit
+LIMITS = (30.0, AWAY, 120.0, inf)  # seconds above which a gap is taken to be absence
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """seconds: of more than SHORTEST. playing: the preview was running meanwhile."""
+
+    seconds: float
+    playing: bool
+
+
+def gaps(events: Sequence[Event]) -> dict[int, tuple[Gap, ...]]:
+    """Return the gaps of each task, by its place in the sitting; pauses are none."""
+    out: dict[int, list[Gap]] = {}
+    task: int | None = None
+    playing = False
+    for event, seconds, why in steps(events):
+        if task is not None and why != "paused" and seconds > SHORTEST:
+            out[task].append(Gap(seconds, playing))
+        if event["type"] == "phase":
+            begins = event.get("name") == "task" and event.get("state") == "begin"
+            task = place_of(event) if begins else None
+            if task is not None:
+                out[task] = []
+        elif event["type"] == "playback" and event.get("what") in ("play", "pause"):
+            playing = event["what"] == "play"
+    return {index: tuple(found) for index, found in out.items()}
+
+
+def place_of(phase: Event) -> int:
+    """Return a phase's place in the sitting, -1 where it does not say."""
+    index = phase.get("index", -1)
+    return int(index) if isinstance(index, int | float) else -1
+
+
+def seconds_within(active: float, found: Sequence[Gap], limit: float) -> float:
+    """Return a task's seconds by another limit. active: by that of AWAY."""
+    there = sum(g.seconds for g in found if g.seconds <= AWAY)
+    return active - there + sum(g.seconds for g in found if g.seconds <= limit)
+
+
+@dataclass(frozen=True)
+class Vanished:
+    """Gaps of more than AWAY in a condition, which no time counts. seconds: a task, on average; share: of
+    that and the time that counts; longest: seconds; playing: the share of it in which the preview was
+    running.
+    """
+
+    count: int
+    seconds: float
+    share: float
+    longest: float
+    playing: float
+
+
+def vanished(tasks: Sequence[tuple[float, Sequence[Gap]]]) -> Vanished:
+    """Return what vanished of tasks, each (active seconds, gaps)."""
+    lost = [g for _, found in tasks for g in found if g.seconds > AWAY]
+    total, active = sum(g.seconds for g in lost), sum(a for a, _ in tasks)
+    return Vanished(
+        len(lost),
+        total / len(tasks) if tasks else 0.0,
+        total / (total + active) if total + active else 0.0,
+        max((g.seconds for g in lost), default=0.0),
+        sum(g.seconds for g in lost if g.playing) / total if total else 0.0,
+    )

@@ -1,0 +1,1 @@
+"""Machines that participants made, in normal form, and what drawing them takes."""

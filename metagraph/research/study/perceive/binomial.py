@@ -1,0 +1,162 @@
+"""Exact inference on shares: counts of choices between two.
+
+The test sums what is at most as likely as what was seen. Intervals: Clopper and Pearson (1934), "The use of
+confidence or fiducial limits illustrated in the case of the binomial", Biometrika 26. Fisher's exact test of
+two shares likewise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import ceil, comb, exp, lgamma, log
+from statistics import NormalDist
+
+import numpy as np
+
+from metagraph.research.study.statistics.small_samples import LEVEL, Estimate
+from metagraph.research.study.statistics.student_t import incomplete_beta
+
+MOST = 100_000  # answers beyond which no study is planned
+STEADY = 100  # more answers with which the power must hold, since it goes up and down like a saw
+CLOSE = 1 + 1e-7  # what counts as just as likely
+
+
+def at_most(k: int, n: int, share: float) -> float:
+    """Return how likely k of n, or fewer, are where each is with probability `share`, 0..1."""
+    if k < 0:
+        return 0.0
+    if k >= n:
+        return 1.0
+    return incomplete_beta(n - k, k + 1, 1 - share)
+
+
+def two_sided(k: int, n: int, share: float = 0.5) -> float | None:
+    """Return the p value of k of n against a share, 0 < share < 1; None of nothing. Raises ValueError."""
+    _checked(k, n)
+    if not n:
+        return None
+    logs = _logs(n, share)
+    edge = logs[k] + log(CLOSE)
+    return float(min(1.0, np.exp(logs[logs <= edge]).sum()))
+
+
+def share_of(k: int, n: int, level: float = LEVEL) -> Estimate:
+    """Return the share k / n with its exact interval. Raises ValueError for nothing."""
+    _checked(k, n)
+    if not n:
+        raise ValueError("nothing has no share")
+    tail = (1 - level) / 2
+    low = 0.0 if k == 0 else _solve(lambda p: 1 - at_most(k - 1, n, p) >= tail)
+    high = 1.0 if k == n else _solve(lambda p: at_most(k, n, p) <= tail)
+    return Estimate(k / n, low, high, n)
+
+
+def fisher(a: int, n: int, b: int, m: int) -> float | None:
+    """Return the p value of a of n being the same share as b of m; None where either has none."""
+    _checked(a, n)
+    _checked(b, m)
+    if not n or not m:
+        return None
+    both = a + b
+    ways = {x: comb(n, x) * comb(m, both - x) for x in range(max(0, both - m), min(n, both) + 1)}
+    total, here = sum(ways.values()), ways[a]
+    return min(1.0, sum(w for w in ways.values() if w <= here) / total)
+
+
+def power(n: int, share: float, alpha: float = 0.05) -> float:
+    """Return how likely n answers show a share to be other than a half."""
+    if n < 1:
+        return 0.0
+    half = np.exp(_logs(n, 0.5))
+    below = np.cumsum(half)
+    out = np.flatnonzero(2 * below * CLOSE**-1 <= alpha)  # a half is symmetric: twice the lower tail
+    if not len(out):
+        return 0.0
+    edge = int(out[-1])
+    return at_most(edge, n, share) + at_most(edge, n, 1 - share)
+
+
+def needed(share: float, chance: float = 0.8, alpha: float = 0.05) -> int | None:
+    """Return with how many answers a share is shown to be other than a half with a chance, and with all
+    somewhat larger numbers, too; None beyond MOST. Raises ValueError.
+    """
+    _probability(share, chance, alpha)
+    off = abs(share - 0.5)
+    if off < 1e-9:
+        return None
+    z = NormalDist().inv_cdf(1 - alpha / 2) + NormalDist().inv_cdf(chance)
+    return _from(ceil((z * 0.5 / off) ** 2), lambda n: power(n, share, alpha) >= chance)
+
+
+def equivalence_power(n: int, margin: float, share: float = 0.5, alpha: float = 0.05) -> float:
+    """Return how likely the exact interval of level 1 - 2 alpha of n answers lies within a half and a margin
+    either way.
+    """
+    low, high = 0.5 - margin, 0.5 + margin
+    counts = [k for k in range(n + 1) if 1 - at_most(k - 1, n, low) < alpha and at_most(k, n, high) < alpha]
+    if not counts:
+        return 0.0
+    return at_most(counts[-1], n, share) - at_most(counts[0] - 1, n, share)
+
+
+def equivalence_needed(margin: float, chance: float = 0.8, alpha: float = 0.05) -> int | None:
+    """Return with how many answers a true half is shown to be within a margin either way; None beyond MOST.
+    Raises ValueError.
+    """
+    _probability(chance, alpha)
+    if not 0 < margin < 0.5:
+        raise ValueError(f"a margin lies between 0 and 0.5, not {margin:g}")
+    z = NormalDist().inv_cdf(1 - alpha) + NormalDist().inv_cdf((1 + chance) / 2)
+    return _from(
+        ceil((z * 0.5 / margin) ** 2), lambda n: equivalence_power(n, margin, 0.5, alpha) >= chance, 20
+    )
+
+
+def _from(about: int, enough: Callable[[int], bool], steady: int = STEADY) -> int | None:
+    """Return the number after the last one for which something does not hold, near and below an estimate."""
+    if about > MOST:
+        return None
+    top = about + max(steady, about // 4)
+    while not enough(top):
+        top = top * 5 // 4 + 1
+        if top > MOST:
+            return None
+    n = top
+    while n > 1 and enough(n - 1):
+        n -= 1
+        if top - n > steady and n < about // 2:
+            break
+    # Teeth of the saw may lie below: the first number whose followers all hold is the answer.
+    return n
+
+
+def _logs(n: int, share: float) -> np.ndarray:
+    """Return the logs of the probabilities of 0..n of n."""
+    k = np.arange(n + 1)
+    ways = np.array([lgamma(x + 1) for x in range(n + 1)])
+    return np.asarray(ways[n] - ways - ways[::-1] + k * log(share) + (n - k) * log(1 - share))
+
+
+def _solve(reached: Callable[[float], bool]) -> float:
+    """Return the share from which on something holds; by bisection."""
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (low, middle) if reached(middle) else (middle, high)
+    return (low + high) / 2
+
+
+def _checked(k: int, n: int) -> None:
+    if not 0 <= k <= n:
+        raise ValueError(f"{k} of {n} is no count")
+
+
+def _probability(*values: float) -> None:
+    for v in values:
+        if not 0 < v < 1:
+            raise ValueError(f"shares and chances lie between 0 and 1, not at {v:g}")
+
+
+def logistic(x: float) -> float:
+    """Return the share of log odds."""
+    return 1 / (1 + exp(-x)) if x >= 0 else exp(x) / (1 + exp(x))

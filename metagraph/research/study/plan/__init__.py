@@ -1,0 +1,1 @@
+"""Planning a study: people, orders, sites, allocation and preregistration."""

@@ -1,0 +1,303 @@
+"""The report of a study: one HTML page that needs nothing beside it, its figures as files, and tables as CSV.
+The same data give the same bytes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+from metagraph.common.xml_text import escape
+from metagraph.formats.atomic import write_together
+from metagraph.research.study.analysis.reading import TOTALS
+from metagraph.research.study.analysis.results import ABOVE, BELOW, TITLES, Comparison, Measure, Results
+from metagraph.research.study.reports import plots
+from metagraph.research.study.reports.cells import (
+    apa,
+    chance,
+    figure,
+    gathered,
+    interval,
+    spread,
+    table,
+    tested,
+    times,
+    two,
+    who,
+)
+from metagraph.research.study.reports.doubts import (
+    equivalence_told,
+    flow_figure,
+    gaps_told,
+    missing_told,
+    others_told,
+    otherwise,
+    otherwise_figure,
+    sites_told,
+)
+from metagraph.research.study.reports.figure_files import standalone
+from metagraph.research.study.reports.plots import seconds
+from metagraph.research.study.reports.style import METHODS, STYLE
+from metagraph.research.study.reports.tables import tables
+from metagraph.research.study.statistics.small_samples import Estimate
+
+__all__ = ["NAME", "Paper", "chance", "figures", "gathered", "page", "summary", "write_report"]
+
+NAME = "report.html"
+Paper = Callable[[str], bytes]
+Files = Mapping[str, bytes]
+
+
+def write_report(results: Results, folder: Path, paper: Paper | None = None) -> list[Path]:
+    """Write the page, the tables and the figures into a folder; return what was written, the page first.
+    paper: makes a PDF of an SVG file's text, where that can be done. Raises FileError.
+    """
+    drawn = {name: standalone(drawing) for name, (drawing, _) in figures(results).items()}
+    papers = {name: paper(text) for name, text in drawn.items()} if paper is not None else {}
+    content: dict[str, bytes] = {NAME: page(results, papers).encode()}
+    content |= {name: text.encode() for name, text in tables(results).items()}
+    content |= {f"figures/{name}.svg": text.encode() for name, text in drawn.items()}
+    content |= {f"figures/{name}.pdf": made for name, made in papers.items()}
+    notebooks = Path(__file__).with_name("notebooks")
+    content |= {f"notebooks/{n}": (notebooks / n).read_bytes() for n in ("figures.ipynb", "figures.R")}
+    return write_together(folder, content)
+
+
+def figures(results: Results) -> dict[str, tuple[str, str]]:
+    """Return name -> drawing (SVG, for the page's style) and caption."""
+    out: dict[str, tuple[str, str]] = {}
+    drawing = flow_figure(results)
+    if drawing is not None:
+        out["participants"] = drawing, "From all who were planned to all who count."
+    time = results.time
+    if time is not None:
+        if time.people:
+            pairs = [(p.participant, p.below, p.above) for p in time.people]
+            sides = (time.means[BELOW], time.means[ABOVE])
+            out["times"] = (
+                plots.paired(pairs, sides, (TITLES[BELOW], TITLES[ABOVE]), time.unit),
+                "Each line is one person. Beside them the geometric means with 95 % intervals.",
+            )
+        rows: list[tuple[str, Estimate]] = [("all tasks", time.ratio)]
+        rows += [(results.data.tasks[t], e) for t, e in results.by_task.items() if len(results.by_task) > 1]
+        rows += [(TITLES[c.pair[0]], c.ratio) for c in results.others]
+        out["ratios"] = plots.ratios(rows), "How many times as long it took by hand, with 95 % intervals."
+    again = otherwise_figure(results)
+    if again is not None:
+        out["otherwise"] = again, "The ratio of all tasks, reckoned otherwise, with 95 % intervals."
+    if results.curves:
+        lines = {c: (curve.seconds, curve.first, curve.slope.value) for c, curve in results.curves.items()}
+        out["practice"] = (
+            plots.curves(lines, TITLES),
+            "Geometric means over those who came so far, and the power law of practice.",
+        )
+    if any(results.spent.values()):
+        out["spent"] = plots.stacked(results.spent, TITLES), "What a task went into, arithmetic means."
+    known = [(m.name, m.means) for m in results.ratings if m.name in TOTALS and set(m.means) <= set(TITLES)]
+    if known:
+        out["ratings"] = (
+            plots.means(known, names=TITLES),
+            "Means with 95 % intervals. SUS: more is better; NASA-TLX: less is better.",
+        )
+    return out
+
+
+def page(results: Results, papers: Files | None = None) -> str:
+    """Return the page. papers: its figures as PDF, by name."""
+    data = results.data
+    drawn = {n: figure(n, drawing, words, papers or {}) for n, (drawing, words) in figures(results).items()}
+    parts = [
+        f"<h1>{escape(data.title)}</h1>",
+        "<p class='warn'>Nobody took part: these participants were simulated.</p>" if data.simulated else "",
+        _headline(results),
+        _time(results, drawn),
+        otherwise(results, drawn.get("otherwise", "")),
+        _learning(results, drawn),
+        _spent(results, drawn),
+        _measures(
+            "Mistakes",
+            "Beside the task's reference, a task on average; a time is wrong when it is more than "
+            f"{data.tolerance:g} s off. The difference is by hand less meta-graph.",
+            results.mistakes,
+        ),
+        _ratings(results, drawn),
+        _together(results),
+        missing_told(results, drawn.get("participants", "")),
+        f"<h2>How it was reckoned</h2>{METHODS}",
+    ]
+    head = (
+        "<meta charset='utf-8'><meta name='viewport' content='width=device-width'><link rel='icon' "
+        "href='data:,'>"
+    )
+    head += f"<title>{escape(data.title)}: report</title><style>{STYLE}</style>"
+    body = "\n".join(filter(None, parts))
+    return f"<!doctype html>\n<html lang='en'><head>{head}</head><body>\n{body}\n</body></html>\n"
+
+
+def summary(results: Results) -> list[str]:
+    """Return the findings as sentences, the most important first."""
+    data, time = results.data, results.time
+    done = [r for r in data.rows if r.done]
+    if not data.rows:
+        return ["Nobody has begun a task yet."]
+    if time is None:
+        found = sorted({TITLES[r.run.condition] for r in done})
+        return [
+            f"There is nothing to compare yet: {f'only {found[0]} was' if found else 'no task was'} brought "
+            "to an end."
+        ]
+    first = f"Working on the {TITLES[ABOVE]} took {times(time.ratio)} as long as with the {TITLES[BELOW]}"
+    out = [f"{first} ({who(time)})."]
+    f1 = next((m for m in results.mistakes if m.name.startswith("F1")), None)
+    if f1 is not None and ABOVE in f1.means and BELOW in f1.means:
+        below, above = (f1.means[c].value for c in (BELOW, ABOVE))
+        out.append(
+            f"Connections were right to {below:.1f} % (F1) with the meta-graph, to {above:.1f} % by hand."
+        )
+    for name, better in (("SUS", "higher"), ("NASA-TLX, raw", "lower")):
+        found_rating = next(
+            (m for m in results.ratings if m.name == name and ABOVE in m.means and BELOW in m.means), None
+        )
+        if found_rating is not None:
+            means = found_rating.means
+            out.append(
+                f"{name} ({better} is better): {means[BELOW].value:.1f} with the meta-graph, "
+                f"{means[ABOVE].value:.1f} by hand."
+            )
+    return out
+
+
+# --- parts
+
+
+def _headline(results: Results) -> str:
+    first, *rest = summary(results)
+    cautions = results.time.cautions if results.time is not None else ()
+    big = f"<p class='big'>{escape(first)}</p>" + "".join(f"<p>{escape(words)}</p>" for words in rest)
+    warned = "".join(f"<li>{escape(words)}</li>" for words in cautions)
+    return f"<div class='card'>{big}</div>" + (
+        f"<div class='card warn'><ul>{warned}</ul></div>" if warned else ""
+    )
+
+
+def _time(results: Results, drawn: Mapping[str, str]) -> str:
+    time = results.time
+    if time is None:
+        return ""
+    body = [
+        [f"{TITLES[c]}, a {time.unit}", interval(time.means[c], seconds)]
+        for c in (BELOW, ABOVE)
+    ]  # fmt: skip
+    body.append(["ratio", interval(time.ratio, two)])
+    if time.effect is not None:
+        body.append(["effect size, d<sub>z</sub> (Hedges)", interval(time.effect, two)])
+    for task, ratio in results.by_task.items() if len(results.by_task) > 1 else ():
+        body.append([f"ratio, {escape(results.data.tasks[task])}", interval(ratio, two)])
+    out = "<h2>Time</h2>" + drawn.get("times", "") + drawn.get("ratios", "")
+    out += table(("", "value, 95 % interval"), body)
+    out += f"<p class='dim'>For a paper: {apa(time)}</p>"
+    return out + equivalence_told(results) + others_told(results) + sites_told(results) + _order(time)
+
+
+def _order(time: Comparison) -> str:
+    order = time.order
+    if order is None:
+        return ""
+    second = f"A second sitting took {times(order.second)} as long as a first one ({spread(order.second)})."
+    carried = (
+        f"Those who began by hand took {times(order.carried)} as long over both as those who began with the "
+        "meta-graph "
+        f"({spread(order.carried)}): "
+    )
+    if order.carried.holds(1.0):
+        carried += (
+            "no sign that anything carried over from one to the other, though such a check finds "
+            "only "
+            "large effects."
+        )
+    else:
+        carried += (
+            "something carried over, or the two groups were unlike. By first sittings alone, which nothing "
+            "can have carried over to, the "
+            f"ratio is {order.first.value:.2f} ({spread(order.first)})."
+        )
+    return f"<h3>Order</h3><p>{second}</p><p>{carried}</p>"
+
+
+def _learning(results: Results, drawn: Mapping[str, str]) -> str:
+    if not results.curves:
+        return ""
+    said = []
+    for c, curve in results.curves.items():
+        twice = 2**curve.slope.value
+        words = f"With each doubling of the clips done, a clip took {twice:.2f} of the time"
+        said.append(
+            f"<li>{escape(TITLES[c])}: slope {interval(curve.slope, lambda v: f'{v:.3f}')}. {words}.</li>"
+        )
+    return f"<h2>Practice</h2>{drawn.get('practice', '')}<ul>{''.join(said)}</ul>"
+
+
+def _spent(results: Results, drawn: Mapping[str, str]) -> str:
+    if not results.spent:
+        return ""
+    out = "<h2>Where the time went</h2>"
+    out += drawn.get("spent", "")
+    out += (
+        "<p class='dim'>The seconds before each event belong to it; those with a button held are dragging. "
+        "<i>Before the end</i> is what came after the last event of a task.</p>"
+    )
+    out += gaps_told(results)
+    if results.predicted:
+        rows = [
+            [
+                TITLES[c],
+                interval(p.observed, seconds),
+                interval(p.model, seconds),
+                interval(p.share, two),
+            ]
+            for c, p in results.predicted.items()
+        ]
+        out += (
+            "<h3>Beside the keystroke-level model</h3><p>What an expert who makes no mistake would need "
+            "for the same operators.</p>"
+        )
+        out += table(("a task", "observed", "predicted", "observed / predicted"), rows)
+    return out
+
+
+def _measures(title: str, words: str, measures: Sequence[Measure]) -> str:
+    if not measures:
+        return ""
+    columns = [c for c in (BELOW, ABOVE) if any(c in m.means for m in measures)]
+    never = [m.name for m in measures if all(e.value == 0 and e.low in (0, None) for e in m.means.values())]
+    rows = [
+        [
+            escape(m.name),
+            *(interval(m.means.get(c), two) for c in columns),
+            interval(m.difference, two),
+        ]
+        for m in measures
+        if m.name not in never
+    ]
+    if never:
+        words += f" Nobody ever had: {', '.join(never)}."
+    return f"<h2>{title}</h2><p>{escape(words)}</p>" + table(
+        ("", *(TITLES[c] for c in columns), "difference"), rows
+    )
+
+
+def _ratings(results: Results, drawn: Mapping[str, str]) -> str:
+    told = _measures("Ratings", "The difference is by hand less meta-graph.", results.ratings)
+    return told.replace("</h2>", f"</h2>{drawn.get('ratings', '')}", 1) if told else ""
+
+
+def _together(results: Results) -> str:
+    if not results.together:
+        return ""
+    rows = [[escape(name), tested(test), chance(p)] for name, test, p in results.together]
+    words = (
+        "What was asked of these people, by paired t tests, which agree with the intervals above; the "
+        "last column "
+        f"takes into account that {len(rows)} were asked (Holm). Nothing else on this page is tested."
+    )
+    return f"<h2>The tests</h2><p>{words}</p>" + table(("", "alone", "together"), rows)

@@ -1,0 +1,1 @@
+"""The parts of a study's report: figures, tables, words and style."""

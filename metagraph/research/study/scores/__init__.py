@@ -1,0 +1,1 @@
+"""What participants achieved, and what their time went into."""

@@ -1,0 +1,378 @@
+"""Study files: who works on what under which conditions. `study.yaml` is read here and checked to the last
+field.
+
+Beside it lie `data/<participant>/` with the log and what was made, and `report/`. Paths in it are relative to
+it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Annotated, Any, Literal, TypeVar
+
+import msgspec
+from msgspec import Meta, Struct
+
+from metagraph.common.budgets import TEXT_FILE
+from metagraph.common.files import read_file
+from metagraph.common.network_paths import refused
+from metagraph.errors import FileError, shown
+from metagraph.formats.clips import find_clip_files
+from metagraph.formats.project.text import TextError, parse
+from metagraph.research.study.logs.log import NAME
+from metagraph.research.study.machines.klm import Times
+from metagraph.research.study.plan.faults import faults
+from metagraph.research.study.plan.order import latin
+from metagraph.research.study.questionnaires import BUILT_IN, Name, Questionnaire, When
+
+VERSION = 1
+FILE = "study.yaml"
+MOST = 1000  # participants
+_CORRECT = "Correct it; docs/studies.md describes every field."
+P = TypeVar("P")
+
+ConditionName = Literal["meta", "manual"]
+Minutes = Annotated[float, Meta(gt=0, le=1440)]
+CONDITION_TITLES: Mapping[str, str] = {
+    "meta": "Meta-graph",
+    "manual": "State machine",
+    "unreal": "Unreal Engine",  # done there, and imported
+    "unity": "Unity",
+    "godot": "Godot",
+}
+
+
+class Task(Struct, frozen=True, forbid_unknown_fields=True):
+    """clips: a folder, or files. reference: the project that is the right answer. minutes: the limit, null
+    for none. instructions: Markdown.
+    """
+
+    id: Name
+    clips: str | tuple[str, ...]
+    title: str = ""
+    instructions: str = ""
+    reference: str | None = None
+    minutes: Minutes | None = None
+
+    @property
+    def name(self) -> str:
+        return self.title or self.id
+
+
+class Training(Struct, frozen=True, forbid_unknown_fields=True):
+    """Practice with one condition's editor, before its tasks; it is logged and not counted."""
+
+    condition: ConditionName
+    clips: str | tuple[str, ...]
+    instructions: str = ""
+    minutes: Minutes | None = None
+
+
+class Given(Struct, frozen=True, forbid_unknown_fields=True):
+    """given: for each participant the conditions in order ("meta"), or conditions with a task each
+    ("meta/ten").
+    """
+
+    given: dict[str, tuple[str, ...]]
+
+
+class Plan(Struct, frozen=True, forbid_unknown_fields=True):
+    """study: the version of the format. participants: how many, or their pseudonyms. order: `latin`
+    counterbalances conditions and tasks, `fixed` keeps to the file, `concealed` draws who gets which of the
+    counterbalanced orders when they begin. smallest: the smallest ratio of times that would matter. site:
+    where this copy of the study is run. claps: each task begins with a flash and a sound, so that
+    recordings of screen, voice and eyes can be brought into the log's time. lsl: its events are sent as
+    markers of the Lab Streaming Layer. breaks: minutes after each
+    condition but the last. when: what questionnaires are about that do not say it themselves. tolerance:
+    seconds by which a timing may differ from the reference. allow: `labels` lets proposals be asked for.
+    operators: seconds each operator of the keystroke-level model takes these participants, where it is not
+    as `klm.Times` has it.
+    """
+
+    study: int
+    title: str
+    participants: (
+        Annotated[int, Meta(ge=1, le=MOST)] | Annotated[tuple[Name, ...], Meta(min_length=1, max_length=MOST)]
+    )
+    conditions: Annotated[tuple[ConditionName, ...], Meta(min_length=1)]
+    tasks: Annotated[tuple[Task, ...], Meta(min_length=1)]
+    consent: str = ""
+    instructions: str = ""
+    training: tuple[Training, ...] = ()
+    order: Literal["latin", "fixed", "concealed"] | Given = "latin"
+    breaks: Annotated[float, Meta(ge=0, le=1440)] = 0
+    questionnaires: tuple[str | Questionnaire, ...] = ()
+    when: When = "after_condition"
+    seed: Annotated[int, Meta(ge=0, le=0xFFFFFFFF)] = 0
+    tolerance: Annotated[float, Meta(ge=0, le=60)] = 0.1
+    operators: dict[Literal["K", "P", "B", "H", "M"], Annotated[float, Meta(ge=0, le=60)]] = {}
+    allow: tuple[Literal["labels"], ...] = ()
+    thanks: str = ""
+    smallest: Annotated[float, Meta(gt=1, le=100)] | None = None
+    site: str = ""
+    claps: bool = False
+    lsl: bool = False
+
+    @property
+    def times(self) -> Times:
+        """Return what the operators take."""
+        return replace(Times(), **self.operators)
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """Return the participants' pseudonyms, in the order of their numbers."""
+        if not isinstance(self.participants, int):
+            return self.participants
+        width = max(2, len(str(self.participants)))
+        return tuple(f"P{n:0{width}}" for n in range(1, self.participants + 1))
+
+    def task(self, ident: str) -> Task:
+        """Return a task. Raises KeyError."""
+        return {t.id: t for t in self.tasks}[ident]
+
+    def questions(self) -> tuple[Questionnaire, ...]:
+        """Return all questionnaires, those that are built in written out."""
+        return tuple(BUILT_IN[q] if isinstance(q, str) else q for q in self.questionnaires)
+
+    def known(self, participant: str) -> None:
+        """Raises ValueError for a stranger."""
+        if participant not in self.ids:
+            raise ValueError(f"'{participant}' does not take part; there are {_listed(self.ids)}")
+
+    def blocks(self, participant: str, drawn: int | None = None) -> tuple[tuple[str, tuple[str, ...]], ...]:
+        """Return a participant's conditions in order, each with the ids of its tasks in order. drawn: the
+        number of the order that was drawn for them, where the order is concealed. Raises ValueError for a
+        stranger, and for one for whom none was drawn yet.
+        """
+        self.known(participant)
+        tasks = tuple(t.id for t in self.tasks)
+        if self.order == "fixed":
+            return tuple((c, tasks) for c in self.conditions)
+        if self.order == "concealed" and drawn is None:
+            raise ValueError(f"the order of '{participant}' is concealed, and drawn when they begin")
+        if isinstance(self.order, str):
+            number = self.ids.index(participant) if drawn is None else drawn
+            return latin(self.conditions, tasks, number, self.seed)
+        out: list[tuple[str, tuple[str, ...]]] = []
+        for step in self.order.given[participant]:
+            condition, _, task = step.partition("/")
+            if task and out and out[-1][0] == condition:
+                out[-1] = condition, (*out[-1][1], task)
+            else:
+                out.append((condition, (task,) if task else tasks))
+        return tuple(out)
+
+
+@dataclass(frozen=True)
+class Study:
+    """A plan and where it is. digest: SHA-256 of the file."""
+
+    path: Path
+    plan: Plan
+    digest: str
+
+    @property
+    def folder(self) -> Path:
+        return self.path.parent
+
+    def blocks(self, participant: str) -> tuple[tuple[str, tuple[str, ...]], ...]:
+        """Return a participant's conditions in order, each with its tasks. Raises ValueError as the
+        plan's.
+        """
+        from metagraph.research.study.plan.allocation import drawn
+
+        found = drawn(self).get(participant) if self.plan.order == "concealed" else None
+        return self.plan.blocks(participant, found)
+
+    def known(self, participant: str) -> None:
+        """Raises ValueError for a stranger."""
+        self.plan.known(participant)
+
+    def data(self, participant: str) -> Path:
+        return self.folder / "data" / participant
+
+    def log(self, participant: str) -> Path:
+        return self.data(participant) / NAME
+
+    def clips(self, named: str | tuple[str, ...]) -> tuple[Path, ...]:
+        """Return the clip files of a task or a training. Raises FileError when one is not there, or a folder
+        has none.
+        """
+        if isinstance(named, str):
+            folder = self.folder / named
+            found = [folder] if folder.is_file() else find_clip_files(folder) if folder.is_dir() else []
+            if not found:
+                raise FileError(
+                    self.path,
+                    f"there are no clips in '{named}'",
+                    "clips",
+                    "Name a folder beside the study file that has some.",
+                )
+            return tuple(found)
+        for name in named:
+            if not (self.folder / name).is_file():
+                raise FileError(
+                    self.path,
+                    f"there is no clip '{name}'",
+                    "clips",
+                    "Name files by their paths from the study file.",
+                )
+        return tuple(self.folder / name for name in named)
+
+    def reference(self, task: str) -> Path | None:
+        """Return where the task's right answer lies."""
+        found = self.plan.task(task).reference
+        return self.folder / found if found is not None else None
+
+    def problems(self) -> list[str]:
+        """Return what would hamper a sitting: clips and references that are not there, or do not belong
+        together.
+        """
+        from metagraph.formats.store import read_project
+
+        out: list[str] = []
+        parts: tuple[Task | Training, ...] = (*self.plan.tasks, *self.plan.training)
+        for part in parts:
+            who = f"task '{part.id}'" if isinstance(part, Task) else f"training for '{part.condition}'"
+            try:
+                names = {p.name for p in self.clips(part.clips)}
+                if not isinstance(part, Task):
+                    continue
+                if part.reference is None:
+                    out.append(f"{who} has no reference: its mistakes cannot be counted")
+                    continue
+                used = {Path(c.path).name for c in read_project(self.folder / part.reference).clips.values()}
+            except FileError as error:
+                out.append(f"{who}: {error}")
+                continue
+            if used != names:
+                few = _listed(tuple(sorted(used ^ names)))
+                out.append(f"{who}: its clips and those of its reference are not the same: {few}")
+        return out
+
+
+# --- reading
+
+
+def read_study(path: str | Path) -> Study:
+    """Read a study file, or the one in a folder. Raises FileError with the line, the cause and the remedy."""
+    path = Path(path)
+    path = path / FILE if path.is_dir() else path
+    try:
+        content = read_file(path, TEXT_FILE)
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise FileError(path, "is not text", f"byte {error.start}", "Choose a study file.") from None
+    return Study(path.resolve(), from_text(text, path), hashlib.sha256(content).hexdigest())
+
+
+def from_text(text: str, path: Path = Path(FILE)) -> Plan:
+    """Return the plan of a study file's text. Raises FileError."""
+    return plan_from(text, path, Plan, "study", "no study", VERSION, faults, _CORRECT)
+
+
+def plan_from(
+    text: str,
+    path: Path,
+    kind: type[P],
+    key: str,
+    lacking: str,
+    newest: int,
+    faults_of: Callable[[P], Iterable[tuple[str, str]]],
+    remedy: str,
+) -> P:
+    """Return the plan of a YAML text that begins with its key and version. lacking: what a text without them
+    is. faults_of: what is wrong that the fields' types do not say, (field, cause). Raises FileError naming
+    the line.
+    """
+    try:
+        data, lines = parse(text)
+    except TextError as error:
+        place = f"line {error.line}" if error.line else "its text"
+        raise FileError(path, f"not valid YAML ({error})", place, remedy) from None
+
+    def failure(cause: str, where: str) -> FileError:
+        place = where
+        while place not in lines and place:
+            place = place[: max(place.rfind("."), place.rfind("["), 0)]
+        told = f"line {lines.get(place, 1)}" + (f" ({where})" if where else "")
+        return FileError(path, cause, told, remedy)
+
+    version = data.get(key) if isinstance(data, Mapping) else None
+    if not isinstance(data, Mapping) or key not in data:
+        raise failure(f"is {lacking}: it should begin with '{key}: 1'", "")
+    if isinstance(version, int) and version > newest:
+        newer = f"is of a newer version ({version}; this one reads {newest})"
+        raise FileError(path, newer, key, "Update Metagraph.")
+    if version != newest or isinstance(version, bool):
+        raise failure(f"should be the version of the format, {newest}", key)
+    try:
+        plan = msgspec.convert(data, kind)
+    except msgspec.ValidationError as error:
+        message, _, where = str(error).partition(" - at `$")
+        where = where.rstrip("`").lstrip(".").replace("[...]", "")
+        unknown = re.search(r"unknown field `(\w+)`", message)
+        raise failure(
+            plain_words(message), ".".join(filter(None, (where, unknown[1] if unknown else "")))
+        ) from None
+    for where, cause in (*_strange_files(data, path.parent), *faults_of(plan)):
+        raise failure(cause, where)
+    return plan
+
+
+FILES = ("clips", "reference", "project", "motion", "video", "audio")  # fields that name files
+
+
+def _strange_files(
+    data: Any, folder: Path, where: str = "", named: bool = False
+) -> Iterator[tuple[str, str]]:
+    """Yield the files of a plan that are on other computers or devices, and are not to be opened."""
+    if isinstance(data, Mapping):
+        for key, value in data.items():
+            yield from _strange_files(value, folder, f"{where}.{key}".lstrip("."), key in FILES)
+    elif isinstance(data, list):
+        for n, value in enumerate(data):
+            yield from _strange_files(value, folder, f"{where}[{n}]", named)
+    elif named and isinstance(data, str) and (why := refused(data, folder)) is not None:
+        yield where, f"'{shown(data)[:200]}' is not opened: {why}; give the command --network if you trust it"
+
+
+def plain_words(message: str) -> str:
+    """Return msgspec's words as ours."""
+    for pattern, words in (
+        (r"Object contains unknown field `(\w+)`", r"there is no field '\1'"),
+        (r"Object missing required field `(\w+)`", r"the field '\1' is missing"),
+        (r"Expected `(.*)`, got `(.*)`", r"should be \1, not \2"),
+        (r"Expected `(.*)` matching regex .*", r"should be a name of letters, digits, '-' and '_'"),
+        (r"Invalid enum value (.*)", r"\1 is none of the words that can stand there"),
+    ):
+        if re.match(pattern, message):
+            return re.sub(pattern, words, message)
+    return message[:1].lower() + message[1:]
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return ", ".join(names[:4]) + (f" and {len(names) - 4} more" if len(names) > 4 else "")
+
+
+# --- the published schema
+
+SCHEMA = Path(__file__).with_name("study.schema.json")
+
+
+def schema_text() -> bytes:
+    """Return the JSON Schema (draft 2020-12) of study files, as it is published beside this module."""
+    schema: dict[str, Any] = {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Metagraph study",
+        **msgspec.json.schema(Plan),
+    }
+    return msgspec.json.format(msgspec.json.encode(schema), indent=2) + b"\n"
+
+
+if __name__ == "__main__":
+    SCHEMA.write_bytes(schema_text())

@@ -1,0 +1,1 @@
+"""Which actions would jump visibly, and how to avoid it."""

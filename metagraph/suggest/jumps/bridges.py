@@ -1,0 +1,200 @@
+"""Ways between stances that no clip leads to or from: blends from pose to pose, told as what they are.
+
+A set of takes often lacks a transition. Without it a stance is never reached and all its gestures never play.
+A bridge is a transition that plays the loop of the stance it ends in and takes long to blend into it; where
+that is a single pose, the loop of the stance it leaves, and takes long to blend out of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.graph import edits
+from metagraph.graph.checks.end_gaps import TALL, motion_of
+from metagraph.graph.expand import reachable
+from metagraph.graph.model import LAYERS, Action, Layer, MetaGraph, Project
+
+Array = NDArray[Any]
+
+# Of a figure TALL metres high:
+SPEED = 0.6  # metres a second that the farthest joint goes on a bridge, on average: an unhurried movement
+NOTICED = 0.3  # metres that a joint goes on a bridge, from which on a clip would look better
+SHORTEST, LONGEST = 0.6, 1.6  # seconds of a bridge
+FADE = 0.25  # of a bridge, that it takes to blend into or out of the loop that it is of
+CAREFUL = 0.9  # seconds of a bridge by a moment of a clip that moves before and after it, at least
+STILL = 0.2  # seconds, below which a clip is too short to be blended over
+
+
+@dataclass(frozen=True)
+class Bridge:
+    """A transition made of nothing but a blend. start, end: ids of stances. metres: how far the farthest
+    joint goes. seconds: how long it takes.
+    """
+
+    action: str
+    start: str
+    end: str
+    metres: float
+    seconds: float
+
+
+def bridged(project: Project) -> tuple[Project, tuple[Bridge, ...]]:
+    """Return the project with transitions by blending to stances its start does not lead to, and back from
+    those that do not lead to it; and what was made. Stances without a loop are left as they are, and so
+    are those between which there are but single poses.
+    """
+    out: list[Bridge] = []
+    for layer in LAYERS:
+        poses = _poses(project, project.graphs[layer])
+        start = project.graphs[layer].start
+        if start not in poses:
+            continue
+        for there in (True, False):
+            while True:
+                home, lost = _parted(project.graphs[layer], start, poses, there)
+                project, made = _nearest(project, poses, home, lost, there)
+                if made is None:
+                    break
+                out.append(made)
+    return project, tuple(out)
+
+
+def bridged_at(project: Project, stance: str) -> tuple[Project, tuple[Bridge, ...]]:
+    """Return the project with one stance joined to the rest of its layer by blending, and what was made: a
+    way to it if the start does not lead there, and a way from it if it leads nowhere, or not back. Nothing is
+    made where it has no loop, or is the only one that has.
+    """
+    there = project.stance(stance)
+    graph = project.graphs[there.layer] if there is not None else None
+    poses = _poses(project, graph) if graph is not None else {}
+    if graph is None or stance not in poses:
+        return project, ()
+    out: list[Bridge] = []
+    others = [s for s in poses if s != stance]
+    for to in (True, False):
+        graph = project.graphs[graph.layer]
+        if graph.start in poses and graph.start != stance:
+            home, lost = _parted(graph, graph.start, poses, to)
+            ends = [s for s in home if s != stance] if stance in lost else []
+        else:  # the start itself, or none: a way that leads anywhere at all
+            ends = [] if to or len(reachable(graph, stance)) > 1 else others
+        project, made = _nearest(project, poses, ends, [stance], to)
+        out += [made] if made is not None else []
+    return project, tuple(out)
+
+
+def missing(project: Project) -> list[str]:
+    """Return the stances that bridges would join to the start of their layer, in the order of the project."""
+    after, made = bridged(project)
+    if not made:
+        return []
+    return [
+        stance
+        for layer in LAYERS
+        for stance in project.graphs[layer].stances
+        if _joined(after, layer, stance) and not _joined(project, layer, stance)
+    ]
+
+
+def _joined(project: Project, layer: Layer, stance: str) -> bool:
+    graph = project.graphs[layer]
+    start = graph.start or ""
+    return stance in reachable(graph, start) and start in reachable(graph, stance)
+
+
+def told(project: Project, bridges: Iterable[Bridge]) -> list[str]:
+    """Return a line for each bridge, in words."""
+    names: Mapping[str, str] = {s.id: s.name for g in project.graphs.values() for s in g.stances.values()}
+    most = NOTICED * _size(project)
+    return [
+        f'no clip leads from "{names[x.start]}" to "{names[x.end]}": blended in {x.seconds:.1f} s over '
+        f"{100 * x.metres:.0f} cm" + (", which shows; a clip would look better" if x.metres > most else "")
+        for x in bridges
+    ]
+
+
+def _parted(graph: MetaGraph, start: str, poses: Collection[str], there: bool) -> tuple[list[str], list[str]]:
+    """Return the stances that the start leads to, or that lead to it, and those of which that is not so."""
+    if there:
+        home = reachable(graph, start)
+    else:
+        home = frozenset(s for s in poses if start in reachable(graph, s))
+    return [s for s in poses if s in home], [s for s in poses if s not in home]
+
+
+def _nearest(
+    project: Project, poses: Mapping[str, Array], home: Iterable[str], lost: Collection[str], there: bool
+) -> tuple[Project, Bridge | None]:
+    """Bridge the shortest way between stances at home and lost ones: there, or back; None where none can."""
+    moving = {s for s in poses if _length(project, s) >= STILL}
+    ways = [(_metres(poses[a], poses[b]), a, b) for a in home for b in lost if a in moving or b in moving]
+    if not ways:
+        return project, None
+    metres, one, other = min(ways)
+    return _bridge(project, *((one, other) if there else (other, one)), metres)
+
+
+def _length(project: Project, stance: str) -> float:
+    found = project.stance(stance)
+    loop = _loop(project, project.graphs[found.layer], stance) if found is not None else None
+    return project.clips[loop.clip].duration if loop is not None else 0.0
+
+
+def _loop(project: Project, graph: MetaGraph, stance: str) -> Action | None:
+    """Return the first loop of a stance whose motion is there."""
+    return next((a for a in graph.of(stance, "stance") if motion_of(project, a) is not None), None)
+
+
+def _poses(project: Project, graph: MetaGraph) -> dict[str, Array]:
+    """Return stance -> where the joints are `[J, 3]` as its loop begins, metres from the first of them; of
+    those that have a loop that is there.
+    """
+    out = {}
+    for stance in graph.stances:
+        loop = _loop(project, graph, stance)
+        motion = motion_of(project, loop)
+        if loop is not None and motion is not None:
+            _, places = motion.skeleton.globals(motion.pose_at(project.span(loop)[0]))
+            out[stance] = places - places[:1]
+    return out
+
+
+def _metres(one: Array, other: Array) -> float:
+    return float(np.linalg.norm(one - other, axis=-1).max())
+
+
+def _size(project: Project) -> float:
+    return max(project.skeleton.height / TALL, 1e-6) if project.skeleton is not None else 1.0
+
+
+def _bridge(project: Project, start: str, end: str, metres: float) -> tuple[Project, Bridge]:
+    stance = project.stance(end)
+    assert stance is not None
+    graph = project.graphs[stance.layer]
+    leaving = _length(project, end) < STILL
+    loop = _loop(project, graph, start if leaving else end)
+    assert loop is not None
+    entry = project.clips[loop.clip]
+    seconds, fade = float(np.clip(metres / (SPEED * _size(project)), SHORTEST, LONGEST)), FADE
+    begins, ends = project.span(loop)
+    if ends - begins < min(seconds, entry.duration):  # the moment itself is where neither blend is
+        seconds, fade = max(seconds * (1 - FADE) / 0.5, CAREFUL), 0.5
+        begins = max(0.0, (begins + ends - seconds) / 2)
+    first = max(0.0, min(begins, entry.duration - seconds))
+    last = min(first + seconds, entry.duration)
+    project = edits.place(project, [entry.id], stance.layer, "transition", start, end)
+    made = list(project.graphs[stance.layer].actions)[-1]
+    long, short = round((last - first) * (1 - fade), 3), round((last - first) * fade, 3)
+    timing = {
+        "start": round(first, 3),
+        "end": round(last, 3),
+        "blend_in": short if leaving else long,
+        "blend_out": long if leaving else short,
+    }
+    project = edits.update_actions(project, [made], timing=timing, name=f"to {stance.name}, blended")
+    return project, Bridge(made, start, end, metres, last - first)

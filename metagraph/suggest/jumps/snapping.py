@@ -1,0 +1,154 @@
+"""Where a handle of an action's timing comes to rest while it is dragged, and why there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.common.wording import told
+from metagraph.graph.checks import end_gaps
+from metagraph.graph.model import Action, Project
+from metagraph.playback.timing.handles import EDGES, times_of
+from metagraph.playback.timing.phases import phases
+from metagraph.suggest.jumps.seen_jumps import Seen
+
+Array = NDArray[Any]
+
+CLEAR = 0.15  # of the greatest speed: how far a peak or a slowing stands out to be worth stopping at
+SLACK = 0.005  # seconds a blend is longer than it must be, so that it covers as much once it is rounded
+
+
+@dataclass(frozen=True, slots=True)
+class Snap:
+    """at: seconds of the clip. why: what is there, in words."""
+
+    at: float
+    why: str
+
+
+def snaps_of(
+    project: Project,
+    action: Action,
+    handle: str,
+    seen: Seen | None = None,
+    speeds: Sequence[float] | Array = (),
+    stresses: Iterable[float] = (),
+    playhead: float | None = None,
+) -> tuple[Snap, ...]:
+    """Return where a handle (one of `timing.HANDLES`) may come to rest, what tells most first.
+
+    seen: what is known of its jumps. speeds `[F]`: of what it moves, a frame of the clip each, metres
+    a second. stresses: moments a spoken line stresses, playhead: where it stands, seconds of the clip.
+    """
+    entry = project.clips[action.clip]
+    if handle in ("start", "end"):
+        found = list(_edge(seen, handle))
+        found.append(
+            Snap(0.0, told("the clip's first frame")) if handle == "start" else _last(entry.duration)
+        )
+    elif handle in ("in", "out"):
+        found = list(_blend(project, action, handle))
+    else:
+        found = list(_moment(project, action, handle, np.asarray(speeds, float), entry.fps))
+    found += [Snap(at, told("the line is stressed here")) for at in stresses]
+    if playhead is not None:
+        found.append(Snap(playhead, told("the playhead")))
+    return tuple(s for s in found if -1e-6 <= s.at <= entry.duration + 1e-6)
+
+
+def nearest(snaps: Iterable[Snap], seconds: float, within: float) -> Snap | None:
+    """Return the nearest place to rest within some seconds, of equally near ones the first; None where there
+    is none.
+    """
+    best = min(snaps, key=lambda s: round(abs(s.at - seconds), 4), default=None)
+    return best if best is not None and abs(best.at - seconds) <= within else None
+
+
+def _last(duration: float) -> Snap:
+    return Snap(duration, told("the clip's last frame"))
+
+
+def _edge(seen: Seen | None, handle: str) -> Iterator[Snap]:
+    if seen is None:
+        return
+    if seen.loops:
+        proposed = told("proposed: it repeats without a jump")
+    elif handle == "start":
+        proposed = told("proposed: it begins without a jump")
+    else:
+        proposed = told("proposed: it ends without a jump")
+    other = (
+        told("latest moment without a jump") if handle == "start" else told("earliest moment without a jump")
+    )
+    for n, at in enumerate(seen.snaps(handle)):
+        yield Snap(at, proposed if n == 0 else other)
+
+
+def _blend(project: Project, action: Action, handle: str) -> Iterator[Snap]:
+    """The shortest blend that covers the way from or to the stance, and the phases it may reach to."""
+    start, end = project.span(action)
+    graph, motion = project.graphs[action.layer], end_gaps.motion_of(project, action)
+    edge = "begins" if handle == "in" else "ends"
+    for gap in end_gaps.gaps(project, graph, action):
+        if gap.edge != edge or motion is None or gap.metres <= end_gaps.hidden(motion.skeleton.height, 0.0):
+            continue
+        needed = end_gaps.blend_for(motion.skeleton.height, gap.metres) + SLACK
+        if needed <= end - start:
+            at = start + needed if handle == "in" else end - needed
+            yield Snap(at, told("long enough for {length:.0f} cm to the stance", length=gap.metres * 100))
+    now = times_of(project, action)
+    ready, relax = now["ready"], now["relax"]
+    if handle == "in" and ready is not None:
+        yield Snap(ready, told("its preparation ends"))
+    if handle == "out" and relax is not None:
+        yield Snap(relax, told("its retraction begins"))
+
+
+def _moment(project: Project, action: Action, handle: str, speeds: Array, fps: float) -> Iterator[Snap]:
+    """What the motion says of a moment within the action: phases as found, its fastest and slowest."""
+    start, end = project.span(action)
+    if action.kind == "gesture" and (handle in EDGES or handle == "stroke"):
+        bare = replace(action.timing, ready=None, stroke_end=None, relax=None, stroke=None)
+        found = phases(project, replace(action, timing=bare))
+        by = {"ready": found.ready, "hold": found.stroke_end, "relax": found.relax, "stroke": found.stroke}
+        yield Snap(round(by[handle], 3), told("as found from the motion"))
+    if handle == "exit":
+        relax = times_of(project, action)["relax"]
+        if relax is not None:
+            yield Snap(relax, told("its hold ends"))
+    for frame in turning(speeds, most=handle == "stroke"):
+        at = frame / fps
+        if start <= at <= end:
+            words = (
+                told("fastest here, {speed:.1f} m/s", speed=float(speeds[frame]))
+                if handle == "stroke"
+                else told("slowest here")
+            )
+            yield Snap(round(at, 3), words)
+
+
+def turning(speeds: Array, most: bool) -> list[int]:
+    """Return the frames at which speeds `[F]` are greater (else smaller) than all about them, and that stand
+    out.
+    """
+    values = np.asarray(speeds, float) if most else -np.asarray(speeds, float)
+    if len(values) < 3 or np.ptp(values) <= 1e-6:
+        return []
+    out, clear = [], CLEAR * float(np.abs(speeds).max())
+    for frame in np.flatnonzero((values[1:-1] >= values[:-2]) & (values[1:-1] > values[2:])) + 1:
+        left = _fall(values[frame::-1])
+        right = _fall(values[frame:])
+        if min(left, right) >= clear:
+            out.append(int(frame))
+    return out
+
+
+def _fall(values: Array) -> float:
+    """Return how far values `[N]` fall below their first before they rise above it."""
+    above = np.flatnonzero(values > values[0])
+    part = values[: int(above[0])] if len(above) else values
+    return float(values[0] - part.min())

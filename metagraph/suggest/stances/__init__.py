@@ -1,0 +1,1 @@
+"""Stances: which there are, what they are called, how far clips are from them."""

@@ -1,0 +1,198 @@
+"""The stances there may be: which words and which poses mean the same one.
+
+Names and motion are one inference. A pose is called by the words most of the clips have that begin or end in
+it, a word means the pose most of its clips are in; how well both agree says how far a name can be believed
+where a clip's own pose disagrees. Two words may call one pose where nothing tells the poses of their clips
+apart, and one pose is parted where words and poses part alike.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from numpy.typing import NDArray
+
+from metagraph.common.wording import requoted
+from metagraph.graph.model import LAYERS, Layer, Project
+from metagraph.suggest.estimate import Belief
+from metagraph.suggest.motion_guess import Likely, MotionGuess
+from metagraph.suggest.proposal import Place, plain
+from metagraph.suggest.stances.known import Shape
+from metagraph.suggest.stances.pose_words import pose_words
+from metagraph.suggest.traits import LayerTraits, Traits
+from metagraph.suggest.vote_fusion import Agreed, combine
+from metagraph.suggest.whole_body import CARRIER, SCALE
+from metagraph.suggest.words.names import NameGuess
+
+Array = NDArray[Any]
+
+LOOP_VOTE = (
+    1.5  # how much the name of a clip that rests in a stance counts to name it, beside one that begins there
+)
+LEAST_VOTES = 0.5  # clips, below which a word says nothing about a pose
+MEANS = 0.6  # of a word's clips that lie in another's pose, from which on it means the same stance
+NEVER = 0.3  # of how sure a source is at least, so that its vote counts
+
+
+@dataclass
+class Heard:
+    """What the sources say of a clip. motion: what it seems to be; beside: the same when it is of the layer
+    that all agree on. posture: its poses as stances are told.
+    """
+
+    clip: str
+    name: str
+    said: NameGuess
+    traits: Traits | None
+    posture: LayerTraits | None = None
+    motion: MotionGuess | None = None
+    beside: MotionGuess | None = None
+    layer: Layer = "arms"
+    learned: dict[str, Belief[str]] = field(default_factory=dict)
+
+    def votes(self, what: str) -> list[Belief[Any]]:
+        """Return what is believed of a field, source by source."""
+        motion = self.motion if what == "layer" else self.beside
+        found = [getattr(self.said, what, None), getattr(motion, what, None), self.learned.get(what)]
+        return [b for b in found if b is not None and b.confidence >= NEVER]
+
+    @property
+    def begins(self) -> Likely:
+        return self.beside.begins if self.beside is not None else ()
+
+    @property
+    def ends(self) -> Likely:
+        return self.beside.ends if self.beside is not None else ()
+
+    def called(self) -> list[tuple[str, Likely, float]]:
+        """Return the stances its name speaks of: (words, what its pose there may be, how much it counts)."""
+        out: list[tuple[str, Likely, float]] = []
+        kind = self.said.kind.value if self.said.kind is not None else None
+        if self.said.stance is not None:
+            out.append((self.said.stance.value, self.begins, LOOP_VOTE if kind == "stance" else 1.0))
+            if kind in ("gesture", "fidget"):
+                out.append((self.said.stance.value, self.ends, 0.5))
+        if self.said.end_stance is not None:
+            out.append((self.said.end_stance.value, self.ends, 1.0))
+        return out
+
+    def agreed(self, what: str, count: int) -> Agreed[Any] | None:
+        return combine(self.votes(what), count)
+
+
+class Places:
+    """by_key: the stances; which word and which shape is which, and how far words can be believed."""
+
+    def __init__(
+        self, project: Project, heard: Sequence[Heard], shapes: Mapping[Layer, Sequence[Shape]]
+    ) -> None:
+        self.by_key: dict[str, Place] = {}
+        self._of_shape: dict[int, str] = {}
+        self._of_word: dict[tuple[Layer, str], str] = {}
+        self._trusted: dict[tuple[Layer, str], float] = {}
+        for layer in LAYERS:
+            for stance in project.graphs[layer].stances.values():
+                self.by_key[stance.id] = Place(stance.id, layer, stance.name, True)
+                self._of_word[(layer, plain(stance.name))] = stance.id
+        for layer in LAYERS:
+            self._joined(layer, shapes.get(layer, ()), [each for each in heard if each.layer == layer])
+        for each in heard:
+            for word, *_ in each.called():
+                if (each.layer, plain(word)) not in self._of_word:
+                    key = f"new {each.layer} {plain(word)}"
+                    self.by_key.setdefault(key, Place(key, each.layer, word))
+                    self._of_word[(each.layer, plain(word))] = key
+
+    def _joined(self, layer: Layer, shapes: Sequence[Shape], heard: Sequence[Heard]) -> None:
+        """Join the words and the shapes of a layer."""
+        votes, spoken = _votes(heard)
+        free = dict(enumerate(shapes))
+        for n, shape in enumerate(shapes):  # the project's own are called as they are
+            if shape.id:
+                old = self.by_key[shape.id]
+                self.by_key[shape.id] = replace(old, shape=shape)
+                self._of_shape[id(shape)] = shape.id
+                del free[n]
+        pairs = sorted(
+            (
+                (-count * count / spoken[word], word, n)
+                for word, mine in votes.items()
+                for n, shape in enumerate(shapes)
+                if (count := mine.get(id(shape), 0.0)) >= LEAST_VOTES
+            ),
+        )
+        taken: dict[str, str] = {}
+        for _, word, n in pairs:
+            told = (layer, plain(word))
+            if n in free and word not in taken and not self._placed(told):
+                key = self._of_word.get(told, f"new {layer} {n + 1}")
+                name, there = (self.by_key[key].name, True) if key in self.by_key else (word, False)
+                self.by_key[key] = Place(key, layer, name, there, free[n])
+                self._of_shape[id(free.pop(n))] = key
+                self._of_word.setdefault(told, key)
+                taken[word] = key
+        for n, shape in free.items():
+            key = f"new {layer} {n + 1}"
+            self.by_key[key] = Place(key, layer, self._named(layer, shape, shapes), False, shape)
+            self._of_shape[id(shape)] = key
+        for word, mine in votes.items():
+            told, best = (layer, plain(word)), max(mine, key=lambda s: mine[s], default=None)
+            if told not in self._of_word and best is not None and mine[best] >= MEANS * spoken[word]:
+                self._of_word[told] = self._of_shape[best]
+            if told in self._of_word:
+                own = sum(c for s, c in mine.items() if self._of_shape.get(s) == self._of_word[told])
+                self._trusted[told] = (own + 1) / (spoken[word] + 1.1)
+
+    def _named(self, layer: Layer, shape: Shape, shapes: Sequence[Shape]) -> str:
+        """Return what a stance is called that no name speaks of: as its pose looks."""
+        whole = SCALE if layer == CARRIER and "hips" in shape.names else None
+        words = pose_words(shape, shapes[0] if shapes and shapes[0] is not shape else None, whole)
+        there = {place.name for place in self.by_key.values() if place.layer == layer}
+        n, name = 1, words
+        while name in there:
+            n += 1
+            name = f"{words} {n}"
+        return name
+
+    def vote(self, each: Heard, what: str, layer: Layer) -> list[Belief[str]]:
+        """Return beliefs about a stance as keys."""
+        out: list[Belief[str]] = []
+        said: Belief[str] | None = getattr(each.said, what)
+        told = (layer, plain(said.value)) if said is not None else None
+        if said is not None and told is not None and (key := self._of_word.get(told)) is not None:
+            out.append(Belief(key, said.confidence * self._trusted.get(told, 1.0), said.reason))
+        seen: Belief[Shape] | None = getattr(each.beside, what, None)
+        if (
+            seen is not None
+            and seen.value.layer == layer
+            and (key := self._of_shape.get(id(seen.value))) is not None
+        ):
+            own, known = seen.value.name, self.by_key[key].name
+            words = requoted(seen.reason, lambda name: known if name == own else name, '"')
+            out.append(Belief(key, seen.confidence, words))
+        return out
+
+    def _placed(self, told: tuple[Layer, str]) -> bool:
+        """Whether a word's stance has a pose already."""
+        return told in self._of_word and self.by_key[self._of_word[told]].shape is not None
+
+    def count(self, layer: Layer) -> int:
+        return max(2, sum(1 for p in self.by_key.values() if p.layer == layer))
+
+
+def _votes(heard: Sequence[Heard]) -> tuple[dict[str, dict[int, float]], dict[str, float]]:
+    """Return word -> shape -> how many ends that the word names are of it; and word -> how many it names,
+    those that are of no shape among them.
+    """
+    out: dict[str, dict[int, float]] = defaultdict(lambda: defaultdict(float))
+    spoken: dict[str, float] = defaultdict(float)
+    for each in heard:
+        for word, likely, weight in each.called():
+            if likely:
+                spoken[word] += weight
+            for chance, shape in likely:
+                out[word][id(shape)] += weight * chance
+    return {word: dict(mine) for word, mine in out.items()}, dict(spoken)

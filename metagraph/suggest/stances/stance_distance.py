@@ -1,0 +1,90 @@
+"""How far an action's clip is, moment by moment, from the stance it leaves and the one it enters, and where
+that shows: what is drawn in a strip, by the measures that the problems go by.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.graph.checks import end_gaps
+from metagraph.graph.expand import ends_in
+from metagraph.graph.model import Action, Project
+from metagraph.suggest.jumps.seen_jumps import Seen
+
+Array = NDArray[Any]
+
+RATE = 30.0  # moments a second
+
+
+@dataclass(frozen=True, eq=False)
+class StanceDistance:
+    """times, metres, shows `[F]`: seconds of the clip, how far the farthest joint is, whether beginning or
+    ending there would show; infinite metres where nothing can be measured. pivot: from which moment on it is
+    the stance it enters that is measured to. limits: metres that its blends hide, at its beginning and its
+    end. names: of both stances.
+    """
+
+    times: Array
+    metres: Array
+    shows: Array
+    pivot: int
+    limits: tuple[float, float]
+    names: tuple[str, str]
+
+    def words(self, seconds: float) -> str:
+        """Say what a moment is like: "12 cm from 'hands at sides', shows"."""
+        if not len(self.times):
+            return ""
+        at = int(np.argmin(np.abs(self.times - seconds)))
+        name = self.names[0 if at < self.pivot else 1]
+        if not np.isfinite(self.metres[at]):
+            return ""
+        return (
+            f"{self.metres[at] * 100:.0f} cm from '{name}', {'shows' if self.shows[at] else 'does not show'}"
+        )
+
+
+def distance_of(
+    project: Project, action: Action, seen: Seen | None, both: tuple[Array, Array, Array] | None = None
+) -> StanceDistance:
+    """Return an action's distances. seen: what is known of its jumps, which decides what shows. both: what
+    `measured` returned for the same action, where that is known.
+    """
+    times, into, left = measured(project, action) if both is None else both
+    motion = end_gaps.motion_of(project, action)
+    height = motion.skeleton.height if motion is not None else end_gaps.TALL
+    t = action.timing
+    limits = (end_gaps.hidden(height, t.blend_in), end_gaps.hidden(height, t.blend_out))
+    pivot = _pivot(action, times, into, left, seen)
+    first = np.arange(len(times)) < pivot
+    metres = np.where(first, into, left)
+    shows = np.isfinite(metres) & (metres > np.where(first, *limits))
+    if seen is not None and len(seen.times):
+        nearest = np.clip(np.searchsorted(seen.times, times - 1e-6), 0, len(seen.times) - 1)
+        shows = seen.curve()[nearest] > 1
+    stances = (project.stance(action.stance), project.stance(ends_in(action)))
+    names = tuple(s.name if s is not None else "?" for s in stances)
+    return StanceDistance(times, metres, shows, pivot, limits, (names[0], names[1]))
+
+
+def measured(project: Project, action: Action) -> tuple[Array, Array, Array]:
+    """Return moments of an action's clip `[F]` and how far it is at each from both stances, metres."""
+    motion = end_gaps.motion_of(project, action)
+    if motion is None:
+        return np.zeros(0), np.zeros(0), np.zeros(0)
+    times = np.linspace(0, motion.duration, max(2, round(motion.duration * RATE) + 1))
+    return (times, *end_gaps.distances(project, action, times))
+
+
+def _pivot(action: Action, times: Array, into: Array, left: Array, seen: Seen | None) -> int:
+    if seen is not None and len(seen.times):
+        return int(np.searchsorted(times, seen.times[min(seen.pivot, len(seen.times) - 1)] - 1e-6))
+    if action.kind == "stance" or not len(times):
+        return 0
+    if action.kind == "transition":
+        return int(np.argmax(left <= into)) or len(times) // 2
+    return int(np.argmax(into))

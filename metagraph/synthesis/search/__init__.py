@@ -1,0 +1,1 @@
+"""Searches for a path through a motion graph that goes with speech."""

@@ -1,0 +1,287 @@
+"""Motion for speech that no path goes with exactly: constraints are given up one by one, and what is then
+missed is told with its time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.graph.conversation.model import SOUNDS, Segment, Sound
+from metagraph.suggest.tracks import RATE
+from metagraph.synthesis.constraints import EDGE, STRESS, TOLERANCE, HeardStates, WantedSegment, wanted
+from metagraph.synthesis.graph import MotionGraph
+from metagraph.synthesis.iconic_words import only_words
+from metagraph.synthesis.retiming import FARTHER, NEARER, Retiming, keeps_to, timing_cost
+from metagraph.synthesis.search.frame_costs import together
+from metagraph.synthesis.search.path import Path
+from metagraph.synthesis.search.ruled_search import FREE, JUMP_RULES, JumpRules, Search, find_path
+from metagraph.synthesis.soft_constraints import NOTHING, SoftConstraints
+from metagraph.synthesis.states import SynthesisError
+
+Array = NDArray[Any]
+
+WIDER = 2.0  # times the tolerance: what is tried first
+PARTS = (1.0, 0.5, 0.25)  # of the speed that may be changed: less is tried where more would lose something
+FAR = 1.0  # seconds: an event farther off than that is none
+
+
+@dataclass(frozen=True)
+class Constraints:
+    """What motion has to keep to: as `constraints.wanted` and `ruled_search.find_path` take it. words:
+    whether words that want motion have to be met.
+    """
+
+    tolerance: float = TOLERANCE
+    use: tuple[Sound, ...] = SOUNDS
+    peaks: bool = True
+    edges: bool = True
+    rules: JumpRules = JUMP_RULES
+    words: bool = False
+
+    def wanted(self, segments: Sequence[Segment], seconds: float, soft: SoftConstraints) -> WantedSegment:
+        """Return what is wanted frame by frame by that."""
+        want = wanted(segments, seconds, self.tolerance, self.use, self.peaks, self.edges)
+        return replace(want, only=only_words(soft.places)) if self.words else want
+
+
+@dataclass(frozen=True)
+class Miss:
+    """Something of speech that the motion was not made with. what: "start", "end" or "stress" of a kind of
+    segment. at: when, seconds. off: how far the nearest such event of the motion is, seconds; None where
+    there is none within FAR.
+    """
+
+    what: str
+    kind: Sound
+    at: float
+    off: float | None
+
+    def words(self) -> str:
+        """Return it in words."""
+        off = f"{self.off:.2f} s off" if self.off is not None else "nowhere near"
+        return f"{self.what} of the {self.kind} at {self.at:.1f} s: {off}"
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """path: what was found. kept: the constraints it keeps to. given_up: the others, in words. misses: what
+    is off by more than the tolerance that was asked for. retiming: how it is played faster and slower, None
+    where it is not.
+    """
+
+    path: Path
+    kept: Constraints
+    given_up: tuple[str, ...] = ()
+    misses: tuple[Miss, ...] = ()
+    retiming: Retiming | None = None
+
+    def words(self) -> str:
+        """Return what was given up and missed, "" where nothing was."""
+        if not self.given_up:
+            return ""
+        missed = ", ".join(m.words() for m in self.misses[:3]) or "no start, end or stress is missed"
+        more = f" and {len(self.misses) - 3} more" if len(self.misses) > 3 else ""
+        return f"given up: {', '.join(self.given_up)}; {missed}{more}"
+
+
+def steps(asked: Constraints) -> Iterator[Constraints]:
+    """Yield the constraints that are tried one after another, those asked for first: what is seen least is
+    given up first. The last constrain nothing.
+    """
+    now = asked
+    yield now
+    spoken = tuple(k for k in asked.use if k in ("clause", "response"))
+    changes: tuple[dict[str, Any], ...] = (
+        {"tolerance": WIDER * asked.tolerance},
+        {"edges": False},
+        {"rules": FREE},
+        {"peaks": False},
+        {"use": spoken},
+        {"use": tuple(k for k in spoken if k == "clause")},
+        {"words": False},
+        {"use": ()},
+    )
+    for change in changes:
+        changed = replace(now, **change)
+        if changed != now:
+            now = changed
+            yield now
+
+
+def _taken_back(kept: Constraints, asked: Constraints) -> Iterator[Constraints]:
+    """Yield constraints with one more of those that were asked for."""
+    for kind in asked.use:
+        if kind not in kept.use:
+            yield replace(kept, use=tuple(k for k in asked.use if k in kept.use or k == kind))
+    for field in ("words", "peaks", "rules", "edges", "tolerance"):
+        changed = replace(kept, **{field: getattr(asked, field)})
+        if changed != kept:
+            yield changed
+
+
+def given_up(asked: Constraints, kept: Constraints) -> tuple[str, ...]:
+    """Return which constraints were not kept, in words."""
+    out = [f"{kind}s" for kind in asked.use if kind not in kept.use and kind != "idle"]
+    out += ["silence"] if "idle" in asked.use and "idle" not in kept.use else []
+    if asked.peaks and not kept.peaks:
+        out.append("stresses")
+    if asked.edges and not kept.edges:
+        out.append("where segments begin and end")
+    if asked.tolerance != kept.tolerance:
+        out.append(f"exactness, {kept.tolerance:g} s instead")
+    if asked.rules != kept.rules:
+        out.append("how often it jumps")
+    if asked.words and not kept.words:
+        out.append("that all words are met")
+    return tuple(out)
+
+
+def answer(
+    graph: MotionGraph,
+    heard: HeardStates,
+    segments: Sequence[Segment],
+    seconds: float,
+    asked: Constraints | None = None,
+    search: Search = "exact",
+    seed: int = 1,
+    cancelled: Callable[[], bool] | None = None,
+    soft: SoftConstraints = NOTHING,
+    strict: bool = False,
+) -> Answer:
+    """Return motion for speech, with as many of the constraints as there is any for: they are given up until
+    there is some, and then taken back one by one. soft: what it should have beside them. strict: nothing is
+    given up. Raises SynthesisError where the takes cannot even go on so long, or with nothing given up, or
+    when it was cancelled.
+
+    What may be retimed is looked for with WIDER the tolerance too where there is nothing within it: where
+    speed brings all of it within the tolerance that was asked for, nothing was given up.
+    """
+    asked = Constraints() if asked is None else asked
+    asked = replace(asked, words=soft.hard and bool(soft.places))
+
+    def tried(kept: Constraints) -> Path:
+        want = kept.wanted(segments, seconds, soft)
+        charged = soft.charged
+        if soft.free is not None:
+            kinds = charged.kinds if charged is not None else ()
+            price = NEARER if kept.tolerance <= asked.tolerance else FARTHER
+            charged = together([*kinds, timing_cost(heard, want, graph.threshold.limit, price)])
+        return find_path(graph, heard, want, search, kept.rules, seed, cancelled, charged)
+
+    def tried_or_none(kept: Constraints) -> Path | None:
+        try:
+            return tried(kept)
+        except SynthesisError:
+            if cancelled is not None and cancelled():
+                raise
+            return None
+
+    if strict:
+        return _strictly(asked, tried, heard, segments, seconds, soft)
+    for kept in steps(asked):
+        path = tried_or_none(kept)
+        if path is not None:
+            break
+    else:
+        raise SynthesisError(
+            f"these takes cannot go on for {seconds:g} s without a jump: choose more takes, raise k or the "
+            "level, or ask for less"
+        )
+    failed: set[Constraints] = set()
+    while more := next((c for c in _taken_back(kept, asked) if c not in failed), None):
+        found = tried_or_none(more)
+        if found is None:
+            failed.add(more)
+        else:
+            kept, path = more, found
+    retiming, kept = _retimed(path, kept, asked, heard, segments, seconds, soft)
+    words = given_up(asked, kept)
+    return Answer(
+        path, kept, words, misses(heard, path, segments, asked, retiming) if words else (), retiming
+    )
+
+
+def _strictly(
+    asked: Constraints,
+    tried: Callable[[Constraints], Path],
+    heard: HeardStates,
+    segments: Sequence[Segment],
+    seconds: float,
+    soft: SoftConstraints,
+) -> Answer:
+    """Return motion that keeps to all that is asked, retimed where that helps. Raises SynthesisError."""
+    try:
+        path, kept = tried(asked), asked
+    except SynthesisError:
+        wider = replace(asked, tolerance=WIDER * asked.tolerance)
+        if soft.free is None or wider == asked:
+            raise
+        with suppress(SynthesisError):
+            path = tried(wider)
+            retiming, kept = _retimed(path, wider, asked, heard, segments, seconds, soft)
+            if kept == asked:
+                return Answer(path, kept, retiming=retiming)
+        raise
+    return Answer(path, kept, retiming=_retimed(path, kept, asked, heard, segments, seconds, soft)[0])
+
+
+def _retimed(
+    path: Path,
+    kept: Constraints,
+    asked: Constraints,
+    heard: HeardStates,
+    segments: Sequence[Segment],
+    seconds: float,
+    soft: SoftConstraints,
+) -> tuple[Retiming | None, Constraints]:
+    """Return how a path is retimed, and the constraints it then keeps to: the tolerance that was asked for,
+    where it does. What it kept to before it does not lose: else it is not retimed.
+    """
+    reach = float(round(kept.tolerance * RATE))
+    held = kept.wanted(segments, seconds, soft)
+    exactly = replace(kept, tolerance=asked.tolerance)
+    nearer = exactly.wanted(segments, seconds, soft)
+    for part in PARTS:
+        retiming = soft.retimed(path, heard, held, reach, part)
+        if retiming is None:
+            break
+        if keeps_to(path.states, retiming.moments, heard, nearer):
+            return retiming, exactly
+        if keeps_to(path.states, retiming.moments, heard, held):
+            return retiming, kept
+    return None, kept
+
+
+def misses(
+    heard: HeardStates,
+    path: Path,
+    segments: Collection[Segment],
+    asked: Constraints,
+    retiming: Retiming | None = None,
+) -> tuple[Miss, ...]:
+    """Return what of speech the motion was not made with, as it is retimed, in the order of time."""
+    frames, out = len(path.states), []
+    shown = np.arange(frames) if retiming is None else retiming.shown
+    stresses = shown[heard.happens(STRESS)[path.states]]
+    edges = shown[heard.happens(EDGE)[path.states]]
+    for s in sorted(segments, key=lambda s: s.start):
+        if s.kind not in asked.use:
+            continue
+        events: list[tuple[str, float | None, Array]] = []
+        if asked.edges:
+            events += [("start", s.start, edges), ("end", s.end, edges)]
+        if asked.peaks and s.kind == "clause":
+            events.append(("stress", s.peak, stresses))
+        for what, at, near in events:
+            if at is None or not 0 < round(at * RATE) < frames:
+                continue
+            off = float(np.abs(near - round(at * RATE)).min(initial=10**6)) / RATE
+            if off > asked.tolerance + 0.5 / RATE:
+                out.append(Miss(what, s.kind, at, off if off <= FAR else None))
+    return tuple(sorted(out, key=lambda m: m.at))

@@ -1,0 +1,51 @@
+"""Text for XML: whatever is in it, a parser reads what we write."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from xml.etree import ElementTree
+
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from metagraph.common import svg
+from metagraph.common.xml_text import INSTEAD, escape, quoted, replaced_note, xml_text
+from metagraph.research.study.reports.figure_files import standalone
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@given(st.text())
+@example("\x00\x07\x1b\ufffe\uffff<&>\"'\r\n\t")
+@example("\ud800 half a pair")
+def test_any_text_stands_in_an_element_and_an_attribute(text: str) -> None:
+    found = ElementTree.fromstring(f"<x a={quoted(text)} b='{escape(text)}'>{escape(text)}</x>")
+    assert found.attrib["a"] == xml_text(text)
+    same_lines = xml_text(text).replace("\r\n", "\n").replace("\r", "\n")
+    assert (found.text or "") == same_lines
+
+
+@given(st.text(st.characters(exclude_categories=("Cs",))))
+def test_what_xml_can_hold_stays_as_it_is(text: str) -> None:
+    if replaced_note([text]) is None:
+        assert xml_text(text) == text
+    else:
+        assert INSTEAD in xml_text(text)
+
+
+def test_what_is_replaced_is_counted_and_told() -> None:
+    assert replaced_note(["plain", {"a": ["b", 3, None]}]) is None
+    assert str(replaced_note(["a\x00", {"k\x01": ["b\x02", "c"]}])).startswith("3 texts hold")
+
+
+def test_a_figure_with_control_characters_in_its_words_is_read() -> None:
+    drawing = svg.svg(20, [svg.text(0, 0, "a\x01<b>", "dim", "start")], "ti\x1btle'\"")
+    ElementTree.fromstring(drawing)
+    ElementTree.fromstring(standalone(drawing).encode())
+
+
+def test_nothing_that_writes_files_escapes_by_other_means() -> None:
+    own = re.compile(r"from html import escape|saxutils|quoteattr")
+    written = [*(ROOT / "metagraph").rglob("*.py"), *(ROOT / "app" / "cli").rglob("*.py")]
+    assert not [p for p in written if own.search(p.read_text(encoding="utf-8"))]

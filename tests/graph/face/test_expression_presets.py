@@ -1,0 +1,39 @@
+"""VRM's presets of faces that name their targets otherwise."""
+
+from __future__ import annotations
+
+from metagraph.graph.face.expression_presets import PRESETS, presets_of
+from sample_clips.make.face_targets import TARGETS
+
+EYES = ("eyeBlinkLeft", "eyeBlinkRight", "eyeWideLeft", "eyeLookUpLeft", "eyeLookUpRight", "eyeLookInLeft")
+
+
+def test_a_face_without_targets_has_no_presets() -> None:
+    assert presets_of([]) == {} and presets_of(["muscle_07"]) == {}
+
+
+def test_our_characters_make_every_preset() -> None:
+    made = presets_of(TARGETS)
+    assert made.keys() == PRESETS.keys()
+    assert all(0 < weight <= 1 and name in TARGETS for mix in made.values() for name, weight in mix.items())
+    assert made["happy"]["mouthSmileLeft"] > made["relaxed"]["mouthSmileLeft"] > 0
+    assert made["aa"]["jawOpen"] > made["ih"]["jawOpen"]
+
+
+def test_arkits_eyes_make_the_presets_of_the_eyes() -> None:
+    made = presets_of(EYES)
+    assert made["blink"] == {"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0}
+    assert made["blinkLeft"] == {"eyeBlinkLeft": 1.0}
+    assert made["lookUp"] == {"eyeLookUpLeft": 1.0, "eyeLookUpRight": 1.0}
+    assert made["lookRight"] == {"eyeLookInLeft": 1.0}
+
+
+def test_what_is_called_like_a_preset_is_it() -> None:
+    made = presets_of(["Fcl.Happy", "blink_L", "Blink", "A", "I", "U", "E", "O", "Angry"])
+    assert made["happy"] == {"Fcl.Happy": 1.0} and made["angry"] == {"Angry": 1.0}
+    assert made["blink"] == {"Blink": 1.0} and made["aa"] == {"A": 1.0}
+    assert "sad" not in made
+
+
+def test_what_the_user_bound_counts() -> None:
+    assert presets_of(["mouth_wide_open", "x"], {"viseme_aa": "x"})["aa"] == {"x": 1.0}

@@ -1,0 +1,142 @@
+"""Hands in contact and out of the body, in whole performances of the sample."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from metagraph.formats.store import open_project
+from metagraph.graph.model import Project
+from metagraph.motion import rotation
+from metagraph.motion.contact_solve import ContactPose, apart, capsule_ends, solve_contacts, spread
+from metagraph.motion.skeleton import Pose
+from metagraph.playback.plan import Plan
+from metagraph.playback.planner import make_plan
+from metagraph.playback.posing.contacts import depths, goals_at, inside, nearest, pairs
+from tests.posing import contact_rig, pose_at
+
+SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "sample.metagraph.yaml"
+TIMES = np.arange(0.0, 240.0, 0.41)
+
+
+@lru_cache(maxsize=1)
+def sample() -> Project:
+    return open_project(SAMPLE).project
+
+
+@lru_cache(maxsize=1)
+def plan() -> Plan:
+    return make_plan(sample(), 240.0, seed=4)
+
+
+def switched(**changes: bool) -> Project:
+    return replace(sample(), touch=msgspec.structs.replace(sample().touch, **changes))
+
+
+def plain() -> Pose:
+    return pose_at(plan(), switched(contacts=False, guard=False), TIMES)
+
+
+def test_hands_that_are_held_are_where_contacts_say() -> None:
+    project = switched(guard=False)
+    rig = contact_rig(project)
+    assert rig is not None and project.skeleton is not None
+    pose = pose_at(plan(), project, TIMES)
+    turned, at = project.skeleton.globals(pose)
+    joints, found = list(rig.joints), 0
+    for n, time in enumerate(TIMES.tolist()):
+        for goal in goals_at(plan(), project, rig, time):
+            if goal.weight < 0.9999:
+                continue
+            to, hand = joints[goal.to], joints[rig.arms[goal.arm].hand]
+            wanted = at[n, to] + rotation.rotate(turned[n, to], np.array(goal.at))
+            found += 1
+            assert np.linalg.norm(at[n, hand] - wanted) < 0.003
+    assert found > 30
+
+
+def test_the_guard_brings_hands_out_of_the_body() -> None:
+    rig = contact_rig(sample())
+    assert rig is not None
+    before, after = depths(rig, plain()).max(-1), depths(rig, pose_at(plan(), sample(), TIMES)).max(-1)
+    assert (after > 0.005).mean() < 0.35 * (before > 0.005).mean()
+    assert np.percentile(after, 95) < 0.006 < np.percentile(before, 95)
+
+
+def test_nothing_but_arms_moves_and_only_in_their_upper_lower_and_hand_joints() -> None:
+    rig = contact_rig(sample())
+    assert rig is not None
+    arms = {rig.joints[p] for arm in rig.arms for p in (arm.upper, arm.lower, arm.hand)}
+    after, before = pose_at(plan(), sample(), TIMES), plain()
+    others = [j for j in range(after.rotations.shape[1]) if j not in arms]
+    assert_array_equal(after.rotations[:, others], before.rotations[:, others])
+    assert_array_equal(after.translations, before.translations)
+
+
+def test_off_by_its_switches_poses_are_those_of_a_project_without_contacts_to_the_bit() -> None:
+    graph = sample().graphs["arms"]
+    bare = graph.with_actions({a.id: replace(a, contacts=()) for a in graph.actions.values()})
+    without = replace(sample().with_graph(bare), touch=msgspec.structs.replace(sample().touch, guard=False))
+    assert_array_equal(pose_at(plan(), without, TIMES).rotations, plain().rotations)
+
+
+def test_poses_are_the_same_one_by_one_and_all_at_once() -> None:
+    some = TIMES[::40]
+    many = pose_at(plan(), sample(), some)
+    for n, time in enumerate(some.tolist()):
+        assert_allclose(pose_at(plan(), sample(), time).rotations, many.rotations[n], atol=1e-6)
+
+
+def test_arrays_are_told_to_be_inside_exactly_where_one_pose_after_the_other_would_be_moved() -> None:
+    rig = contact_rig(sample())
+    assert rig is not None
+    pose = plain()
+    told = inside(rig, pose)
+    first, second, _ = pairs(rig)
+    for n in range(0, len(TIMES), 7):
+        one = _one(rig, pose, n)
+        assert solve_contacts(rig, one, []) == told[n] or depths(rig, pose)[n].max() < 1e-6
+        ends = capsule_ends(rig, _one(rig, pose, n))
+        a, b, c, d = (np.array([ends[2 * i + k] for i in some]) for some in (first, second) for k in (0, 1))
+        way, share = nearest(a, b, c, d)
+        ours = [apart(ends, 2 * i, 2 * k) for i, k in zip(first, second, strict=True)]
+        assert_allclose(np.linalg.norm(way, axis=-1), [o[4] for o in ours], atol=1e-6)
+        assert_allclose(way, [o[:3] for o in ours], atol=1e-6)
+        assert_allclose(share, [o[3] for o in ours], atol=1e-6)
+
+
+def test_a_skeleton_without_arms_is_left_alone() -> None:
+    project = replace(sample(), roles={"left_hand": "nothing", "right_hand": "nothing"})
+    assert contact_rig(project) is None
+    life = msgspec.structs.replace(sample().life, follow_through=0, shoulder_lift=0)  # nor does a body answer
+    stiff = replace(switched(contacts=False, guard=False), life=life)
+    expected = pose_at(plan(), stiff, TIMES[:9]).rotations
+    assert_array_equal(pose_at(plan(), project, TIMES[:9]).rotations, expected)
+
+
+@pytest.mark.parametrize("joint", ["Hips", "LeftUpperArm"])
+def test_contacts_with_a_joint_that_is_gone_are_passed_over(joint: str) -> None:
+    graph = sample().graphs["arms"]
+    lost = {
+        a.id: replace(a, contacts=tuple(replace(s, to="gone" if s.to == joint else s.to) for s in a.contacts))
+        for a in graph.actions.values()
+    }
+    project = sample().with_graph(graph.with_actions(lost))
+    assert np.isfinite(pose_at(plan(), project, TIMES[::20]).rotations).all()
+
+
+def _one(rig: Any, pose: Pose, n: int) -> ContactPose:
+    joints = list(rig.joints)
+    out = ContactPose(
+        [tuple(q) for q in pose.rotations[n, joints].tolist()],
+        [tuple(v) for v in pose.translations[n, joints].tolist()],
+    )
+    spread(rig, out)
+    return out

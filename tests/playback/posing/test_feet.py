@@ -1,0 +1,129 @@
+"""Feet that stand stay where they are while poses blend, and step where those have them elsewhere."""
+
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import msgspec
+import numpy as np
+import pytest
+
+from metagraph.graph import anatomy, edits
+from metagraph.graph.model import Project
+from metagraph.playback.plan import MetaRequest, Plan
+from metagraph.playback.planner import make_plan
+from metagraph.playback.posing.weight import foot_rows_of
+from sample_clips.make.conformance_projects import stepping
+from tests.posing import pose_at, weight_of
+
+FPS = 60
+LEGS = [[f"{side}_{part}" for part in ("upper_leg", "lower_leg", "foot")] for side in ("left", "right")]
+Array = Any
+
+
+@cache
+def project(planted: float = 1.0) -> Project:
+    made = stepping()
+    sway = next(a.id for a in made.graphs["body"].actions.values() if a.name == "sway")
+    made = edits.update_actions(made, [sway], likelihood=1e-9)  # its own feet move
+    return replace(made, life=msgspec.structs.replace(made.life, planted_feet=planted))
+
+
+def named(name: str, of: Project | None = None) -> str:
+    actions = (of or project()).graphs["body"].actions.values()
+    return next(a.id for a in actions if a.name == name)
+
+
+@cache
+def asked(name: str) -> Plan:
+    wish = MetaRequest("r", "body", "gesture", 2.0, action=named(name))
+    return make_plan(project(), 8.0, [wish], idle=False)
+
+
+def joints(plan: Plan, of: Project, times: Array) -> Array:
+    """Return hips, knees and ankles `[N, 2, 3, 3]`."""
+    assert of.skeleton is not None
+    at = of.skeleton.globals(pose_at(plan, of, times))[1].astype(float)
+    roles = anatomy.roles(of)
+    return at[:, [[roles[r] for r in leg] for leg in LEGS]]
+
+
+def cue_times(plan: Plan) -> Array:
+    (cue,) = plan.layers["body"].cues
+    return np.arange(cue.start - 0.1, cue.end + 0.1, 1 / FPS)
+
+
+@pytest.mark.parametrize("name", ["near", "far"])
+def test_feet_on_the_ground_do_not_slide_and_one_steps_at_a_time(name: str) -> None:
+    plan = asked(name)
+    times = cue_times(plan)
+    off, on = (joints(plan, project(planted), times)[:, :, 2] for planted in (0.0, 1.0))
+    speeds = [np.linalg.norm(np.diff(at, axis=0), axis=-1) * FPS for at in (off, on)]
+    ways = np.linalg.norm(off[len(off) // 2] - off[0], axis=-1)
+    assert speeds[0].max() > 4 * ways.max()  # it glides without
+    steps = speeds[1] > 0.02  # a foot may be off by `NEAR`, which in a frame is 6 mm/s
+    assert not steps.all(axis=1).any()
+    assert steps.any(axis=0).all()
+    window = 15
+    held = np.cumsum(steps, axis=0)
+    stands = held[window:] == held[:-window]
+    slide = np.linalg.norm(on[window + 1 :] - on[1:-window], axis=-1)[stands] * FPS / window
+    assert slide.max() < 0.002
+    assert (on[..., 1].max(axis=0) > np.maximum(off[0, :, 1], off[len(off) // 2, :, 1])).all()  # lifted
+
+
+def test_legs_are_not_stretched_farther_than_they_were() -> None:
+    plan = asked("far")
+    times = cue_times(plan)
+    bent = []
+    for planted in (0.0, 1.0):
+        at = joints(plan, project(planted), times)
+        bones = np.linalg.norm(np.diff(at, axis=2), axis=-1).sum(2)
+        bent.append(np.linalg.norm(at[:, :, 2] - at[:, :, 0], axis=-1) / bones)
+    assert (bent[1] <= np.maximum(bent[0], 0.9951) + 1e-4).all()
+    assert bent[1].max() > 0.9
+
+
+def test_where_nothing_blends_the_pose_is_the_same_to_the_bit() -> None:
+    plan = asked("far")
+    (cue,) = plan.layers["body"].cues
+    times = np.concatenate([np.arange(0.6, cue.start, 0.1), np.arange(cue.start + 0.51, cue.end - 0.51, 0.1)])
+    off, on = (pose_at(plan, project(planted), times) for planted in (0.0, 1.0))
+    assert (off.rotations == on.rotations).all()
+    assert (off.translations == on.translations).all()
+
+
+def test_what_is_too_far_is_left_alone() -> None:
+    plan = asked("too far")
+    times = cue_times(plan)
+    off, on = (joints(plan, project(planted), times) for planted in (0.0, 1.0))
+    np.testing.assert_array_equal(off, on)
+
+
+def test_nothing_pops() -> None:
+    for name in ("near", "far", "of its own"):
+        plan = asked(name)
+        times = np.arange(1.5, 6.0, 1 / 240)
+        off, on = (joints(plan, project(planted), times) for planted in (0.0, 1.0))
+        jump = np.abs(np.diff(on - off, axis=0)).max()
+        assert jump < 0.025, name  # of a step of 20 cm in a quarter of a second
+
+
+def test_a_pose_depends_on_plan_and_time_alone() -> None:
+    plan, times = asked("far"), np.array([2.1, 2.3, 2.05, 4.2, 2.1])
+    at_once = pose_at(plan, project(), times)
+    for n in (3, 0, 2, 1, 4):
+        one = pose_at(plan, project(), float(times[n]))
+        np.testing.assert_allclose(one.rotations, at_once.rotations[n], atol=1e-6)
+    assert (at_once.rotations[0] == at_once.rotations[4]).all()
+
+
+def test_still_feet_need_one_row_and_feet_that_others_move_none() -> None:
+    clips = {a.name: a.clip for a in project().graphs["body"].actions.values()}
+    assert len(foot_rows_of(weight_of(project()), project(), clips["far"])) == 1
+    own = foot_rows_of(weight_of(project()), project(), clips["of its own"])
+    assert len(own) > 20
+    assert 0.0 in {row[0] for row in own}
+    moved = edits.set_weight(project(), "arms", "legs", 0.2)
+    assert weight_of(moved).rig is not None
+    assert foot_rows_of(weight_of(moved), moved, clips["far"]) == ()

@@ -1,0 +1,64 @@
+"""The report: everything in it, nothing from outside it, the same bytes for the same answers."""
+
+from __future__ import annotations
+
+import csv
+from html.parser import HTMLParser
+from pathlib import Path
+from xml.etree import ElementTree
+
+from metagraph.research.study.perceive.answers import keep
+from metagraph.research.study.perceive.perceive_analysis import analyse
+from metagraph.research.study.perceive.perceive_data import collect
+from metagraph.research.study.perceive.perceive_plan import from_text
+from metagraph.research.study.perceive.perceive_report import page, summary, write_report
+from metagraph.research.study.perceive.simulated import Raters, write_simulated
+from tests.research.study.perceive.perceive_makers import CHOICE, RATING, sheet, study, text
+
+HOSTILE = "{all: {title: '<b>&\"', clip: x}, deaf: {title: </script>, clip: y}}"
+
+
+def test_a_page_tables_and_figures_are_written_and_are_the_same_again(tmp_path: Path) -> None:
+    words = text(people=12, items=5, asked=CHOICE + RATING, more="checks: {told: 2, same: 1}\n")
+    made = write_simulated(
+        tmp_path / "s", from_text(words), words.encode(), "x", Raters({"all": 1.0}, careless=0.1)
+    )
+    results = analyse(collect(made))
+    written = write_report(results, tmp_path / "r")
+    before = {p: p.read_bytes() for p in written}
+    write_report(analyse(collect(made)), tmp_path / "r")
+    assert before == {p: p.read_bytes() for p in written}
+    assert {p.suffix for p in written} == {".html", ".csv", ".svg"}
+    for path in written:
+        if path.suffix == ".svg":
+            ElementTree.fromstring(path.read_text())
+    rows = list(csv.DictReader((tmp_path / "r" / "choices.csv").read_text().splitlines()))
+    assert len(rows) == len(results.answers.choices) and {r["first_was"] for r in rows} == {"left", "right"}
+    (pair,) = csv.DictReader((tmp_path / "r" / "pairs.csv").read_text().splitlines())
+    assert pair["first"] == "all" and float(pair["p_holm"]) >= float(pair["p"])
+    told = page(results)
+    for part in ("What can be claimed", "What cannot", "Mixed model", "missed checks", "Sides", "simulated"):
+        assert part in told
+    assert "https:" not in told and "<script" not in told
+
+
+def test_titles_cannot_break_out_of_the_pages(tmp_path: Path) -> None:
+    made = study(tmp_path / "s", text(conditions=HOSTILE, more="consent: '</script><b>x'\n"))
+    keep(made, sheet(made))
+    told = page(analyse(collect(made)))
+    assert '<b>&"' not in told and "</script>" not in told
+    shown = (made.show / "index.html").read_text()
+    assert shown.count("</script>") == 2 and "<b>x" not in shown
+
+    tags: list[str] = []
+    reader = HTMLParser()
+    reader.handle_starttag = lambda tag, attrs: tags.append(tag)  # type: ignore[method-assign]
+    reader.feed(told)
+    assert "table" in tags and "script" not in tags
+
+
+def test_without_answers_the_report_says_so(tmp_path: Path) -> None:
+    made = study(tmp_path / "s", text())
+    results = analyse(collect(made))
+    assert summary(results) == ["all and deaf: no answers count."]
+    assert write_report(results, tmp_path / "r")[0].is_file()

@@ -1,0 +1,260 @@
+"""How right a machine is: every mistake is found, once, and told in words."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+
+from metagraph.graph import edits
+from metagraph.graph.manual import edits as manual_edits
+from metagraph.graph.model import Project
+from metagraph.research.study.machines.normal_machine import normal
+from metagraph.research.study.scores.machines import Score, aligned, equivalent, score
+from metagraph.research.study.simulation.work import drawn
+from tests.projects import projects
+from tests.research.study.makers import LAYER, small
+
+
+def action(project: Project, name: str) -> str:
+    return next(a.id for a in project.actions() if a.name == name)
+
+
+def stance(project: Project, name: str) -> str:
+    return next(s.id for s in project.graphs[LAYER].stances.values() if s.name == name)
+
+
+def scored(project: Project, reference: Project | None = None, tolerance: float = 0.1) -> Score:
+    return score(normal(project), normal(reference or small()), tolerance)
+
+
+def words(found: Score) -> list[str]:
+    return [m.words for m in found.mistakes]
+
+
+def linked(project: Project, source: str, target: str) -> str:
+    machine = project.manual[LAYER]
+    names = {i: s.name for i, s in machine.states.items()}
+    return next(
+        x.id for x in machine.links.values() if (names[x.source], names[x.target]) == (source, target)
+    )
+
+
+def test_nothing_beside_nothing_is_neither_right_nor_wrong() -> None:
+    found = score({}, {})
+    assert (found.precision, found.recall, found.f1, found.mistakes) == (None, None, None, ())
+
+
+def test_nothing_made_lacks_everything() -> None:
+    found = scored(Project())
+    assert (found.right, found.missing, found.extra) == (0, 28, 0)
+    assert (found.precision, found.recall, found.f1) == (None, 0.0, 0.0)
+    assert (found.states, found.placed, found.count("absent"), found.count("missing")) == (8, 0, 8, 28)
+    assert words(found)[0] == "hips_idle.glb is not placed on arms."
+
+
+def test_what_is_not_wanted_is_extra() -> None:
+    found = score(normal(small()), {})
+    assert (found.right, found.extra, found.precision, found.recall, found.f1) == (0, 28, 0.0, None, 0.0)
+    assert found.count("unwanted") == 8
+
+
+def test_the_same_is_right_in_both_conditions() -> None:
+    for project in (small(), drawn(small())):
+        found = scored(project)
+        assert (found.precision, found.recall, found.f1) == (1.0, 1.0, 1.0)
+        assert (found.placed, found.states, words(found)) == (8, 8, [])
+        assert found.essential == found.essential_right == 12, (
+            "six actions, each entered from rest and left to it"
+        )
+
+
+def test_names_of_stances_and_the_order_of_placing_do_not_matter() -> None:
+    project = small()
+    sides = stance(project, "sides")
+    project = edits.rename_stance(edits.rename_stance(project, stance(project, "hips"), "?"), sides, "hips")
+    wave = action(project, "sides_wave")
+    project = edits.remove_actions(project, [wave])
+    clip = next(i for i, e in project.clips.items() if e.name == "sides_wave")
+    assert equivalent(normal(edits.place(project, [clip], LAYER, "gesture", sides)), normal(small()))
+
+
+def test_a_forgotten_link_is_one_mistake() -> None:
+    project = drawn(small())
+    found = scored(manual_edits.remove(project, links=[linked(project, "sides_idle", "sides_wave")]))
+    assert (found.missing, found.extra, found.recall, found.precision) == (1, 0, 27 / 28, 1.0)
+    assert words(found) == ["sides_idle.glb does not lead to sides_wave.glb."]
+    assert (found.essential_right, found.essential) == (11, 12)
+
+
+def test_a_link_to_the_wrong_state_is_missing_extra_and_wrong() -> None:
+    project = drawn(small())
+    machine = project.manual[LAYER]
+    ident = linked(project, "sides_wave", "sides_idle")
+    hips = next(i for i, s in machine.states.items() if s.name == "hips_idle")
+    found = scored(
+        project.with_manual(
+            replace(machine, links={**machine.links, ident: replace(machine.links[ident], target=hips)})
+        )
+    )
+    assert (found.missing, found.extra, found.wrong) == (1, 1, 1)
+    assert "sides_wave.glb should not lead to hips_idle.glb." in words(found)
+    assert words(found)[0] == "sides_wave.glb is a transition rather than a gesture.", (
+        "it is now on its way to the other stance"
+    )
+
+
+def test_a_clip_on_the_wrong_stance_is_named_with_both() -> None:
+    project = small()
+    found = scored(
+        edits.move_actions(project, [action(project, "sides_wave")], "gesture", stance(project, "hips"))
+    )
+    assert words(found)[0] == "sides_wave.glb is of hips rather than of sides."
+    # To and from its stance's loop, two more actions and its transitions in and out: 4 + 4 are lost, 3 + 3
+    # too many.
+    assert (found.count("stance"), found.missing, found.extra) == (1, 8, 6)
+    assert found.placed == 7
+
+
+def test_a_transition_to_the_wrong_stance_is_named_with_its_ends() -> None:
+    project = small()
+    found = scored(
+        edits.move_actions(
+            project,
+            [action(project, "sides_to_hips")],
+            "transition",
+            stance(project, "hips"),
+            stance(project, "sides"),
+        )
+    )
+    assert words(found)[0] == "sides_to_hips.glb is of hips to sides rather than of sides to hips."
+
+
+def test_a_wrong_kind_layer_and_limb_are_named() -> None:
+    project = small()
+    wave = action(project, "sides_wave")
+    assert words(scored(edits.move_actions(project, [wave], "fidget", stance(project, "sides")))) == [
+        "sides_wave.glb is a fidget rather than a gesture."
+    ]
+    assert words(scored(edits.update_actions(project, [wave], limb="left"))) == [
+        "sides_wave.glb moves the left arm rather than everything."
+    ]
+    assert words(scored(edits.update_actions(project, [wave], limb="left", joints=("Head", "LeftArm")))) == [
+        "sides_wave.glb moves 2 joints of the left arm rather than everything."
+    ]
+    clip = next(i for i, e in project.clips.items() if e.name == "sides_wave")
+    elsewhere = edits.place(edits.remove_actions(project, [wave]), [clip], "head", "stance", None)
+    found = scored(elsewhere)
+    assert words(found)[:2] == [
+        "sides_wave.glb is placed on head, where it is not wanted.",
+        "sides_wave.glb is on head rather than on arms.",
+    ]
+    assert found.count("layer") == 1
+
+
+def test_how_far_joints_move_is_compared_to_a_notch_of_the_wheel() -> None:
+    project = small()
+    wave = action(project, "sides_wave")
+
+    def weighed(weight: float) -> Project:
+        return edits.update_actions(project, [wave], joint_weights=(("Head", weight), ("LeftArm", 0.5)))
+
+    assert words(scored(weighed(0.5), weighed(0.55))) == []
+    found = scored(weighed(0.3), weighed(0.6))
+    assert words(found) == [
+        "sides_wave.glb moves everything, 2 joints of it by 30 to 50 % rather than everything, 2 joints of it by "
+        "50 to 60 %."
+    ]
+    assert found.placed == found.states - 1
+    assert words(scored(project, weighed(0.5))) == [
+        "sides_wave.glb moves everything rather than everything, 2 joints of it by 50 %."
+    ]
+    assert scored(drawn(weighed(0.3)), weighed(0.6)).count("mask") == 1
+
+
+def test_a_requested_link_makes_a_gesture_of_a_fidget() -> None:
+    project = drawn(small())
+    fidgets = [
+        x.id for x in project.manual[LAYER].links.values() if project.state(x.target).name == "sides_scratch"
+    ]
+    found = scored(manual_edits.update_links(project, fidgets, condition={"when": "request"}))
+    assert words(found) == ["sides_scratch.glb is a gesture rather than a fidget."]
+
+
+def test_times_count_beyond_the_tolerance_only() -> None:
+    project = small()
+    wave = action(project, "sides_wave")
+    near = edits.update_actions(
+        project, [wave], timing={"start": 0.1, "end": 1.9, "blend_in": 0.3, "blend_out": 0.15}
+    )
+    assert words(scored(near)) == []
+    assert len(words(scored(near, tolerance=0.05))) == 5, "start, end, when it may be left, and both blends"
+    far = edits.update_actions(project, [wave], timing={"start": 0.5, "earliest_exit": 1.0, "blend_out": 0.5})
+    assert words(scored(far)) == [
+        "sides_wave.glb blends out in 0.50 s rather than in 0.25 s.",
+        "sides_wave.glb may be left at 1.00 s rather than at 2.00 s, on 4 connections.",
+        "sides_wave.glb starts at 0.50 s rather than at 0.00 s.",
+    ]
+
+
+def test_a_link_that_is_taken_at_once_is_told() -> None:
+    project = drawn(small())
+    ident = linked(project, "sides_wave", "sides_to_hips")
+    found = scored(manual_edits.update_links(project, [ident], exit_time=None))
+    assert words(found) == ["sides_wave.glb may be left at any time rather than at 2.00 s."]
+
+
+def test_several_uses_of_one_clip_are_matched_by_what_they_are() -> None:
+    project = small()
+    clip = next(i for i, e in project.clips.items() if e.name == "sides_wave")
+    twice = edits.place(project, [clip], LAYER, "gesture", stance(project, "hips"))
+    other = edits.remove_actions(twice, [action(twice, "sides_wave")])
+    first = next(a.id for a in other.actions() if a.clip == clip)
+    other = edits.place(
+        other, [clip], LAYER, "gesture", stance(project, "sides")
+    )  # now that on the hips came first
+    assert next(a.id for a in other.actions() if a.clip == clip) == first
+    assert equivalent(normal(other), normal(twice))
+    assert words(scored(twice))[0] == "sides_wave.glb#2 is placed on arms, where it is not wanted."
+    assert scored(small(), twice).count("absent") == 1
+
+
+def test_many_uses_of_one_clip_are_matched_one_by_one() -> None:
+    project = small()
+    clip = next(i for i, e in project.clips.items() if e.name == "sides_wave")
+    many = edits.place(project, [clip] * 9, LAYER, "fidget", stance(project, "hips"))
+    assert (
+        aligned(normal(many)[LAYER], normal(many)[LAYER]).states.keys() == normal(many)[LAYER].states.keys()
+    )
+    assert equivalent(normal(many), normal(many))
+
+
+def test_long_lists_are_cut() -> None:
+    project = drawn(small())
+    wave = next(s.id for s in project.manual[LAYER].states.values() if s.name == "sides_idle")
+    found = scored(
+        manual_edits.remove(
+            project, links=[x.id for x in project.manual[LAYER].links.values() if x.source == wave]
+        )
+    )
+    assert [m.words for m in found.mistakes if m.what == "missing"] == [
+        "sides_idle.glb does not lead to sides_scratch.glb, sides_shrug.glb, sides_to_hips.glb and "
+        "sides_wave.glb."
+    ]
+    assert (
+        "hips_to_sides.glb does not lead to sides_idle.glb, sides_scratch.glb, sides_shrug.glb and 2 more."
+        in words(scored(Project()))
+    )
+
+
+def test_shares_by_hand() -> None:
+    found = Score(right=6, missing=2, extra=4)
+    assert (found.precision, found.recall, found.f1) == (0.6, 0.75, pytest.approx(2 / 3))
+
+
+@given(projects())
+def test_whatever_is_made_is_right_beside_itself(project: Project) -> None:
+    found = normal(project, manual=False)
+    assert equivalent(found, found)
+    assert score(found, found).placed == sum(len(m.states) for m in found.values())

@@ -1,0 +1,234 @@
+"""Bridges: every stance is led to and led back from, and what was made is told as what it is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from metagraph.graph import edits
+from metagraph.graph.check import check
+from metagraph.graph.expand import reachable
+from metagraph.graph.model import LAYERS, Project
+from metagraph.suggest.accept import accept
+from metagraph.suggest.jumps.bridges import CAREFUL, LONGEST, SHORTEST, bridged, bridged_at, missing, told
+from metagraph.suggest.propose import propose
+from tests.conftest import Toy
+from tests.label_zoo.catalogue import named
+from tests.label_zoo.motions import scaled
+from tests.projects import projects
+
+TOY = Toy()
+ANGLES = (0.0, 0.4, 0.8, 1.2, -0.3)
+
+
+def stances(
+    count: int, ways: Sequence[tuple[int, int]] = (), seconds: float = 2.0, size: float = 1.0
+) -> Project:
+    """Stances with a loop each, s0 the start, and transitions between some."""
+    clips = [TOY.clip(f"s{n} loop", seconds, ANGLES[n], swing=0.02) for n in range(count)]
+    clips += [TOY.clip(f"{a} to {b}", 0.8, ANGLES[a], ANGLES[b], swing=0.0) for a, b in ways]
+    clips = [scaled(c, size) if size != 1.0 else c for c in clips]
+    project = edits.add_clips(Project("p"), [(f"{c.name}.glb", 0, "", c) for c in clips])
+    for n in range(count):
+        project = edits.add_stance(project, "arms", f"s{n}", [TOY.id(project, f"s{n} loop")])
+    ids = list(project.graphs["arms"].stances)
+    for a, b in ways:
+        clip = next(i for i, e in project.clips.items() if e.name == f"{a} to {b}")
+        project = edits.place(project, [clip], "arms", "transition", ids[a], ids[b])
+    return project
+
+
+def trouble(project: Project) -> set[str]:
+    """What is said of stances that are not joined, and of the ends of actions."""
+    codes = {"unreachable", "dead-end", "far-start", "far-end", "trim", "empty", "blend", "open-loop"}
+    return {p.code for p in check(project)} & codes
+
+
+graphs = st.integers(0, len(ANGLES)).flatmap(
+    lambda n: st.tuples(
+        st.just(n),
+        st.lists(
+            st.tuples(st.integers(0, n - 1), st.integers(0, n - 1)).filter(lambda w: w[0] != w[1]),
+            unique=True,
+            max_size=8,
+        )
+        if n > 1
+        else st.just([]),
+    )
+)
+
+
+@given(graphs)
+def test_every_stance_is_led_to_and_led_back_from_and_bridging_again_adds_nothing(
+    drawn: tuple[int, list[tuple[int, int]]],
+) -> None:
+    project = stances(*drawn)
+    after, made = bridged(project)
+    graph = after.graphs["arms"]
+    for stance in graph.stances:
+        assert stance in reachable(graph, str(graph.start)) and graph.start in reachable(graph, stance)
+    assert missing(after) == [] and bridged(after) == (after, ())
+    assert bool(missing(project)) == bool(made)
+    before = project.graphs["arms"].actions
+    assert set(graph.actions) - set(before) == {x.action for x in made}
+    assert all(graph.actions[i] is before[i] for i in before)
+    assert not trouble(after)
+
+
+@given(projects())
+def test_whatever_somebody_made_is_bridged_without_an_error_and_only_added_to(project: Project) -> None:
+    after, made = bridged(project)
+    kept = {a.id: a for a in after.actions() if a.id not in {x.action for x in made}}
+    assert kept == {a.id: a for a in project.actions()}
+    for layer in LAYERS:
+        assert after.graphs[layer].stances == project.graphs[layer].stances
+        for stance in project.graphs[layer].stances:
+            bridged_at(project, stance)
+
+
+def test_without_stances_or_with_one_there_is_nothing_to_bridge() -> None:
+    assert bridged(Project()) == (Project(), ()) and missing(Project()) == []
+    one = stances(1)
+    assert bridged(one) == (one, ()) and bridged_at(one, next(iter(one.graphs["arms"].stances))) == (one, ())
+
+
+def test_a_stance_that_is_not_there_gets_no_bridge() -> None:
+    project = stances(2)
+    assert bridged_at(project, "s99") == (project, ())
+
+
+def test_stances_without_a_loop_are_left_as_they_are() -> None:
+    project = stances(3)
+    second = list(project.graphs["arms"].stances)[1]
+    bare = edits.remove_actions(project, [a.id for a in project.graphs["arms"].of(second, "stance")])
+    made = bridged(bare)[1]
+    assert {s for x in made for s in (x.start, x.end)} == set(project.graphs["arms"].stances) - {second}
+    assert bridged_at(bare, second) == (bare, ())
+    none = edits.remove_actions(project, [a.id for a in project.actions()])
+    assert bridged(none) == (none, ())
+
+
+def test_a_start_without_a_loop_leaves_the_layer_as_it_is() -> None:
+    project = stances(3)
+    graph = project.graphs["arms"]
+    bare = edits.remove_actions(project, [a.id for a in graph.of(str(graph.start), "stance")])
+    assert bridged(bare) == (bare, ()) and missing(bare) == []
+
+
+def test_a_loop_of_another_skeleton_or_whose_file_is_gone_gives_way_to_the_next(toy: Any) -> None:
+    project = stances(2)
+    first, second = project.graphs["arms"].stances
+    clip = toy.clip("second loop", 1.5, ANGLES[1], swing=0.02)
+    project = edits.add_clips(project, [("second.glb", 0, "", clip)])
+    project = edits.place(project, [TOY.id(project, "second loop")], "arms", "stance", second)
+    lost = project.graphs["arms"].of(second, "stance")[0].clip
+    gone = replace(project, clips={**project.clips, lost: replace(project.clips[lost], motion=None)})
+    after, made = bridged(gone)
+    assert {(x.start, x.end) for x in made} == {(first, second), (second, first)}
+    assert after.clips[after.action(made[0].action).clip].name == "second loop"  # type: ignore[union-attr]
+    other = replace(
+        project.clips[lost], motion=scaled(TOY.clip("other", 2.0), 3.0)
+    )  # as reading a changed file again may bring
+    assert len(bridged(replace(project, clips={**project.clips, lost: other}))[1]) == 2
+
+
+def test_the_nearest_stance_is_bridged_to_and_from() -> None:
+    after, made = bridged(stances(3))  # 0.0, 0.4, 0.8: in a row
+    first, middle, last = after.graphs["arms"].stances
+    assert {(x.start, x.end) for x in made} == {
+        (first, middle),
+        (middle, last),
+        (middle, first),
+        (last, middle),
+    }
+
+
+@pytest.mark.parametrize("size", [0.01, 1.0, 100.0])
+def test_a_bridge_takes_as_long_whatever_the_units_and_nothing_is_said_to_pop(size: float) -> None:
+    after, made = bridged(stances(4, size=size))
+    plain, usual = bridged(stances(4))
+    assert [x.seconds for x in made] == pytest.approx([x.seconds for x in usual])
+    assert [x.metres for x in made] == pytest.approx([x.metres * size for x in usual], rel=1e-4)
+    assert all(SHORTEST - 1e-9 <= x.seconds <= LONGEST + 1e-9 for x in made) and not trouble(after)
+    lines = told(after, made)
+    assert [("a clip would look better" in x) for x in lines] == [
+        ("a clip would look better" in x) for x in told(plain, usual)
+    ]
+
+
+def test_a_single_pose_is_blended_into_out_of_the_loop_before_it() -> None:
+    project = stances(2)
+    still = TOY.clip("still").trimmed(0, 1)
+    project = edits.add_clips(project, [("still.glb", 0, "", still)])
+    project = edits.add_stance(project, "arms", "still", [TOY.id(project, "still")])
+    after, made = bridged(project)
+    ends = list(after.graphs["arms"].stances)[2]
+    (into,) = [after.action(x.action) for x in made if x.end == ends]
+    assert into is not None and after.clips[into.clip].duration > 1
+    assert into.timing.blend_out > into.timing.blend_in > 0 and not trouble(after)
+    assert all(x.seconds >= SHORTEST - 1e-9 for x in made)
+
+
+def test_between_single_poses_there_is_nothing_to_blend() -> None:
+    clips = [TOY.clip(name, 1.0, angle).trimmed(0, 1) for name, angle in (("a", 0.0), ("b", 0.8))]
+    project = edits.add_clips(Project("p"), [(f"{c.name}.glb", 0, "", c) for c in clips])
+    for name in ("a", "b"):
+        project = edits.add_stance(project, "arms", name, [TOY.id(project, name)])
+    assert bridged(project) == (project, ()) and missing(project) == []
+    assert bridged_at(project, next(iter(project.graphs["arms"].stances))) == (project, ())
+
+
+@pytest.mark.parametrize(("start", "end"), [(0.0, 0.3), (0.1, 0.4), (1.9, 2.2), (3.6, 4.0)])
+def test_a_bridge_by_a_moment_of_a_longer_clip_shows_that_moment_where_it_blends_least(
+    start: float, end: float
+) -> None:
+    project = stances(1)
+    wave = TOY.clip("wave", 4.0, ANGLES[2], swing=1.5)
+    project = edits.add_clips(project, [("wave.glb", 0, "", wave)])
+    project = edits.add_stance(project, "arms", "held", [TOY.id(project, "wave")])
+    held = list(project.graphs["arms"].actions)[-1]
+    project = edits.update_actions(project, [held], timing={"start": start, "end": end, "loop": True})
+    after, made = bridged(project)
+    into = after.action(made[0].action)
+    assert into is not None and into.timing.end is not None
+    assert into.timing.end - into.timing.start >= CAREFUL - 2e-3
+    middle = (into.timing.start + into.timing.end) / 2
+    assert start <= middle <= end or into.timing.start == 0 or into.timing.end == 4.0
+    assert into.timing.blend_in == pytest.approx(into.timing.blend_out, abs=2e-3)
+
+
+@given(graphs, st.data())
+def test_one_stance_is_joined_and_the_others_keep_their_troubles(
+    drawn: tuple[int, list[tuple[int, int]]], data: st.DataObject
+) -> None:
+    project = stances(*drawn)
+    ids = list(project.graphs["arms"].stances)
+    if len(ids) < 2:
+        return
+    chosen = data.draw(st.sampled_from(ids))
+    after, made = bridged_at(project, chosen)
+    about = [p for p in check(after) if p.stance == chosen and p.code in ("unreachable", "dead-end")]
+    assert not about and all(chosen in (x.start, x.end) for x in made)
+    before = {(p.code, p.stance) for p in check(project) if p.code in ("unreachable", "dead-end")}
+    assert bool(made) >= any(stance == chosen for _, stance in before)
+    assert {(p.code, p.stance) for p in check(after) if p.code in ("unreachable", "dead-end")} <= before
+    assert bridged_at(after, chosen) == (after, ())
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("name", ["standing talker", "sitting without legs", "numbers of unseen stances"])
+def test_labelled_takes_that_lack_transitions_become_whole(name: str) -> None:
+    made = named(name)
+    project = accept(made.project, propose(made.project)).project
+    after, bridges = bridged(project)
+    assert missing(project) and bridges and not missing(after)
+    mine = {x.action for x in bridges}
+    assert not [p for p in check(after) if p.action in mine or p.code in ("unreachable", "dead-end")]
+    assert len(told(after, bridges)) == len(bridges)
+    assert np.isfinite([x.metres for x in bridges]).all()
