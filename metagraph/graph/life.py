@@ -50,7 +50,7 @@ class Life(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
     on: whether they play at all. stillness: multiplies every amount by 1 - stillness and stretches the time
     between events; at 1 nothing moves of itself, only lips and what is asked for. modes: changes to
     `MANNERS`, by mode. valence, arousal, intensity: the mood where no request tells another
-    (`playback.mood`).
+    (`playback.planning.mood`).
     """
 
     on: bool = True

@@ -73,7 +73,7 @@ class Timing:
     from and to the stance, within start..end (for a looping stance, blend_in is the overlap at the loop's
     seam). loop: repeats. earliest_exit: from here on the action may be left, or None to play it through.
     stroke: its most telling moment. ready, stroke_end, relax: where a gesture's preparation, stroke and hold
-    end (its retraction ends with it); None as found from the motion (`playback.phases`).
+    end (its retraction ends with it); None as found from the motion (`playback.timing.phases`).
     """
 
     start: float = 0.0
@@ -299,7 +299,7 @@ class ClipEntry:
     from, "" where the file has the project's own. made_by, made_seed: the learned model that made it, and
     with what chance; "" for clips that were not generated. retime: how it is played faster, slower and held.
     motion: the loaded clip as it plays, None while the file is missing. source: as it was read, where that is
-    another (see `graph.retiming`).
+    another (see `graph.editing.retiming`).
     """
 
     id: str

@@ -29,5 +29,5 @@ Feeling = Literal[
     "sad",
     "bored",
     "tired",
-]  # moods that have names; where they lie says `playback.mood`
+]  # moods that have names; where they lie says `playback.planning.mood`
 FEELINGS: tuple[Feeling, ...] = get_args(Feeling)

@@ -94,7 +94,7 @@ def answer_arms(
 ) -> bool:
     """Change a pose of the rig's joints by what its arms do; return whether it did.
 
-    drive: as `playback.follow_through.driven`. follow, lift: the dials. Joints' places need not be known.
+    drive: as `posing.follow_through.driven`. follow, lift: the dials. Joints' places need not be known.
     """
     follow = follow * rig.strength
     lift = lift * rig.strength

@@ -146,7 +146,7 @@ def masked(project: Project, p: Proposal, traits: Traits | None) -> Proposal:
 
 
 def stroked(project: Project, p: Proposal, motion: MotionGuess | None) -> Proposal:
-    """Return a gesture's proposal with its stroke, as `playback.phases` finds it within the proposed
+    """Return a gesture's proposal with its stroke, as `playback.timing.phases` finds it within the proposed
     timing.
     """
     if p.kind.value != "gesture" or motion is None or project.clips[p.clip].motion is None:

@@ -33,7 +33,7 @@ PROGRAMS = (
 HELPERS = """
 import queue, sys, time
 from pathlib import Path
-from metagraph import programs
+from metagraph.common import programs
 from metagraph.common.child_channel import Child
 from metagraph.live.relay import Relay
 from metagraph.live.server import Options

@@ -22,7 +22,7 @@ Array = NDArray[Any]
 LONGEST = 300.0  # seconds that are drawn
 SYSTEMS = 5  # that have a colour of their own
 _KIND = ("wrist", "elbow", "head nose", "sternum shoulder")  # landmarks of one colour
-# What a page colours these drawings with, beside `study.report_style`.
+# What a page colours these drawings with, beside `research.study.reports.style`.
 STYLE = """
 .box polygon { stroke: var(--text); stroke-width: .5; }
 .box .median { stroke: var(--inside); stroke-width: 1.5; }

@@ -125,7 +125,7 @@ def test_what_cannot_be_saved_leaves_the_versions_as_they_were(path: Path) -> No
 KILLED = """
 import os, sys
 from pathlib import Path
-from metagraph.formats import versions
+from metagraph.formats.project import versions
 left = int(sys.argv[2])
 def dying(call):
     def wrapped(*arguments, **more):

@@ -31,7 +31,7 @@ def test_a_language_is_added_by_a_file(tmp_path: Path) -> None:
     shutil.copytree(FOLDER, folder)
     (folder / "esperanto.json").write_text(json.dumps(ESPERANTO))
     code = (
-        "import sys; from pathlib import Path; from metagraph.suggest import words_files\n"
+        "import sys; from pathlib import Path; from metagraph.suggest.words import files as words_files\n"
         "words_files.FOLDER = Path(sys.argv[1])\n"
         "from metagraph.suggest.words.names import read_names\n"
         "for name, guess in read_names(['Sidi_ripozo', 'Sidi_kapjesi', 'Sidanta_al_staranta']).items():\n"

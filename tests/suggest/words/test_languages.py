@@ -316,8 +316,8 @@ def test_names_are_cut_where_writings_change() -> None:
 
 def test_words_are_read_from_their_files_when_names_are_first_read() -> None:
     code = (
-        "import sys; import metagraph.suggest.words.names; from metagraph.suggest import words_files; "
-        "sys.exit(words_files.sources.cache_info().currsize or words_files.english.cache_info().currsize)"
+        "import sys; import metagraph.suggest.words.names; from metagraph.suggest.words import files; "
+        "sys.exit(files.sources.cache_info().currsize or files.english.cache_info().currsize)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False, timeout=300).returncode == 0
 

@@ -1,4 +1,4 @@
-"""Drawings of a perceptual study's report, as SVG text with the classes of `study.plots`."""
+"""Drawings of a perceptual study's report, as SVG text with the classes of `research.study.reports.plots`."""
 
 from __future__ import annotations
 

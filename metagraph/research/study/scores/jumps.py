@@ -1,7 +1,7 @@
 """Connections of a machine that jump visibly: beyond what the clips themselves show between frames, once the
 blend is taken off.
 
-The measure is that of `suggest.compatibility` (Yang et al., section 6), its statistics those of the
+The measure is that of `suggest.jumps.compatibility` (Yang et al., section 6), its statistics those of the
 reference's clips, so that all attempts are judged alike.
 """
 
