@@ -49,8 +49,7 @@ class Life(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
 
     on: whether they play at all. stillness: multiplies every amount by 1 - stillness and stretches the time
     between events; at 1 nothing moves of itself, only lips and what is asked for. modes: changes to
-    `MANNERS`, by mode. valence, arousal, intensity: the mood where no request tells another
-    (`playback.planning.mood`).
+    `MANNERS`, by mode. valence, arousal, intensity: the mood where no request tells another.
     """
 
     on: bool = True
@@ -361,7 +360,7 @@ class FacePose(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unk
 
 
 class Face(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
-    """Corrections of what was found in the face (`graph.face.rig`). channels: channel -> name of the
+    """Corrections of what was found in the face. channels: channel -> name of the
     joint or morph target that moves it, "" for nothing. poses: channel -> the frame of a clip that shows it.
     morphs: names of the character's morph targets, as last read from its file. names: what blend shapes of
     imported clips are called there -> what they are: a target, one of ARKit's shapes, another name that is

@@ -142,7 +142,7 @@ inline bool moves_body(const List<double>& drive) {
 
 /// Change a pose of the rig's joints by what its arms do; return whether it did.
 ///
-/// drive: as `playback.follow_through.driven`. follow, lift: the dials. Joints' places need not be known.
+/// drive: as `posing.follow_through.driven`. follow, lift: the dials. Joints' places need not be known.
 inline bool answer_arms(
     const Ref<WeightRig>& rig,
     const Ref<ContactPose>& pose,

@@ -14,7 +14,7 @@
  * stance, within start..end (for a looping stance, blend_in is the overlap at the loop's seam). loop: repeats.
  * earliest_exit: from here on the action may be left, or None to play it through. stroke: its most telling moment. ready,
  * stroke_end, relax: where a gesture's preparation, stroke and hold end (its retraction ends with it); None as found from
- * the motion (`playback.phases`).
+ * the motion (`playback.timing.phases`).
  *
  * start: number; end: ?number; blendIn: number; blendOut: number; loop: boolean; earliestExit: ?number; stroke: ?number;
  * ready: ?number; strokeEnd: ?number; relax: ?number.

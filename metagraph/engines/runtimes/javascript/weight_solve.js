@@ -91,7 +91,7 @@ export function movesBody(drive) {
 /**
  * Change a pose of the rig's joints by what its arms do; return whether it did.
  *
- * drive: as `playback.follow_through.driven`. follow, lift: the dials. Joints' places need not be known.
+ * drive: as `posing.follow_through.driven`. follow, lift: the dials. Joints' places need not be known.
  * @param {WeightRig} rig
  * @param {ContactPose} pose
  * @param {number[]} drive

@@ -115,7 +115,7 @@ namespace Metagraph
         /// <summary>
         /// Change a pose of the rig's joints by what its arms do; return whether it did.
         ///
-        /// drive: as `playback.follow_through.driven`. follow, lift: the dials. Joints' places need not be known.
+        /// drive: as `posing.follow_through.driven`. follow, lift: the dials. Joints' places need not be known.
         /// </summary>
         public static bool AnswerArms(WeightRig rig, ContactPose pose, List<double> drive, double follow, double lift)
         {

@@ -11,7 +11,7 @@
 # start, end: the part that plays; `end` None is the clip's end. blend_in, blend_out: seconds of blending from and to the stance,
 # within start..end (for a looping stance, blend_in is the overlap at the loop's seam). loop: repeats. earliest_exit: from here on
 # the action may be left, or None to play it through. stroke: its most telling moment. ready, stroke_end, relax: where a gesture's
-# preparation, stroke and hold end (its retraction ends with it); None as found from the motion (`playback.phases`).
+# preparation, stroke and hold end (its retraction ends with it); None as found from the motion (`playback.timing.phases`).
 class Timing:
 	var start
 	var end

@@ -92,7 +92,7 @@ static func moves_body(drive):
 
 # Change a pose of the rig's joints by what its arms do; return whether it did.
 #
-# drive: as `playback.follow_through.driven`. follow, lift: the dials. Joints' places need not be known.
+# drive: as `posing.follow_through.driven`. follow, lift: the dials. Joints' places need not be known.
 static func answer_arms(rig, pose, drive, follow, lift):
 	follow = follow * rig.strength
 	lift = lift * rig.strength
