@@ -12,13 +12,14 @@ from typing import Literal
 
 from metagraph.common.wording import joined, told
 from metagraph.formats.imports import Imported, Strangers
-from metagraph.formats.takes import BIND_POSE, NAME, ONE_FRAME, UNIT, UP
+from metagraph.formats.takes import BIND_POSE, LONE_FRAME, NAME, ONE_FRAME, UNIT, UP
 
 _RIGHT = {
     BIND_POSE: told("bind poses on first frames"),
     UNIT: told("units of length"),
     UP: told("Z up"),
     ONE_FRAME: told("takes of one frame"),
+    LONE_FRAME: told("single stray frames"),
     NAME: told("names"),
 }
 _VARIES = re.compile(r"'[^']*'|\d+(?:\.\d+)?")

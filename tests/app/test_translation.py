@@ -49,7 +49,7 @@ def templates() -> Iterator[tuple[str, str, set[str]]]:
         p for folder in (DOMAIN, DOMAIN.parent / "preview", APP) for p in folder.rglob("*.py")
     ):
         source = path.read_text(encoding="utf-8")
-        if not re.search(r"^from metagraph\.wording import .*\btold\b", source, re.MULTILINE):
+        if not re.search(r"^from metagraph\.common\.wording import .*\btold\b", source, re.MULTILINE):
             continue
         for node in ast.walk(ast.parse(source)):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "told":

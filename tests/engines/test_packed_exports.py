@@ -133,7 +133,7 @@ def test_views_are_unpacked_as_the_extensions_own_library_does(packed: Path) -> 
     """Which three.js comes with: packed by it and packed by us. Turns may differ in the last digit."""
     if not (MODULES / "three").is_dir():
         pytest.skip("needs three.js (python3 run.py test fetches it where npm is)")
-    reference = ROOT / "tests" / "formats" / "meshopt_reference.json"
+    reference = ROOT / "tests" / "formats" / "gltf" / "meshopt_reference.json"
     script = DECODE % (JAVASCRIPT.as_uri(), MODULES.resolve().as_uri())
     done = subprocess.run(
         ["node", "--input-type=module", "-e", script, reference, packed / "sample.glb"],

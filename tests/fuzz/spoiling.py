@@ -6,6 +6,7 @@ import copy
 import json
 import math
 import random
+import re
 import struct
 from collections.abc import Iterator
 from typing import Any
@@ -94,7 +95,7 @@ def spoilt_words(chance: random.Random, data: bytes) -> bytes:
                 del lines[n : n + chance.choice((1, 3))]
                 lines = lines or [b""]
             case _:
-                words = lines[n].split(b" ")
-                words[chance.randrange(len(words))] = chance.choice(NUMBERS)
-                lines[n] = b" ".join(words)
+                words = re.split(rb"([ ,;\t])", lines[n])  # every other one is what parts them
+                words[2 * chance.randrange(len(words) // 2 + 1)] = chance.choice(NUMBERS)
+                lines[n] = b"".join(words)
     return b"\n".join(lines)

@@ -12,7 +12,7 @@ from PySide6.QtTest import QTest
 
 def _tiny_text(folder: Path) -> str:
     spec = importlib.util.spec_from_file_location(
-        "tiny_study", Path(__file__).resolve().parents[3] / "study" / "conftest.py"
+        "tiny_study", Path(__file__).resolve().parents[3] / "research" / "study" / "conftest.py"
     )
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
