@@ -352,7 +352,8 @@ def spread(arguments):
         return []
     # Whole files, since many make something dear once; in the order that tests/conftest.py gives them, the
     # longest first.
-    return ["-n", str(cores + 1), "--dist", "loadfile", "--no-loadscope-reorder"]
+    # A process that crashes ends the run at once: the others would wait for its tests for ever.
+    return ["-n", str(cores + 1), "--dist", "loadfile", "--no-loadscope-reorder", "--max-worker-restart", "0"]
 
 
 if __name__ == "__main__":
