@@ -107,13 +107,6 @@ class Hand:
             gesture.click(event)
         return True
 
-    def let_go(self, at: QPointF) -> Gesture | None:
-        """Finish the gesture; return it."""
-        gesture, self.gesture = self.gesture, None
-        if gesture is not None:
-            gesture.finish(at)
-        return gesture
-
     def drop(self, reason: Reason) -> bool:
         """Break the gesture off; return whether there was one."""
         gesture, self.gesture = self.gesture, None
