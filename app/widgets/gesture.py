@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Literal, Protocol
 
-from PySide6.QtCore import QPointF
+from PySide6.QtCore import QPointF, Qt
+from PySide6.QtGui import QMouseEvent
 from PySide6.QtWidgets import QApplication
 
 Reason = Literal["escape", "replaced", "taken over", "lost"]
@@ -13,20 +14,31 @@ Reason = Literal["escape", "replaced", "taken over", "lost"]
 class Gesture(Protocol):
     """One drag. Points are the widget's, in pixels. Only `finish` changes the project for good, in one step.
 
-    begun: the mouse has moved far enough for it to be a drag and no click. free: nothing is to snap, or the
-    key for another way is held. reason, of being broken off: "escape" was pressed, another gesture "replaced"
-    it, a drag of the system has "taken over", or what it was about was "lost".
+    begun: the mouse has moved far enough for it to be a drag and no click. sticky: it goes on when the button
+    is let go, until one is pressed. free: nothing is to snap, or the key for another way is held. reason, of
+    being broken off: "escape" was pressed, another gesture "replaced" it, a drag of the system has "taken
+    over", or what it was about was "lost".
     """
 
     begun: bool
+    sticky: bool = False
+
+    @property
+    def cursor(self) -> Qt.CursorShape | None:
+        """The mouse's shape while it lasts; None where it has none of its own."""
+        return None
 
     def begin(self, at: QPointF) -> None: ...
     def update(self, at: QPointF, free: bool = False) -> None: ...
     def finish(self, at: QPointF) -> None: ...
     def cancel(self, reason: Reason) -> None: ...
 
+    def click(self, event: QMouseEvent) -> None:
+        """Do what a click does: the button was let go before it had begun."""
+        return
 
-class PressDrag:
+
+class PressDrag(Gesture):
     """What drags share that begin once the mouse has moved far enough. catch: pixels; None for the system's
     own distance.
     """
@@ -56,6 +68,11 @@ class Hand:
     def __init__(self) -> None:
         self.gesture: Gesture | None = None
 
+    @property
+    def cursor(self) -> Qt.CursorShape | None:
+        """The mouse's shape that the gesture wants; None where there is none, or it wants none."""
+        return self.gesture.cursor if self.gesture is not None else None
+
     def take(self, gesture: Gesture, at: QPointF) -> None:
         """Begin a gesture; one that still goes on is broken off."""
         self.drop("replaced")
@@ -68,12 +85,27 @@ class Hand:
             self.gesture.update(at, free)
         return self.gesture is not None
 
-    def let_go(self, at: QPointF) -> Gesture | None:
-        """Finish the gesture; return it."""
+    def press(self, event: QMouseEvent) -> bool:
+        """Finish a sticky gesture, or break it off by another button than the left; return whether there was
+        one.
+        """
+        if self.gesture is None or not self.gesture.sticky:
+            return False
+        if event.button() != Qt.MouseButton.LeftButton:
+            return self.drop("replaced")
         gesture, self.gesture = self.gesture, None
-        if gesture is not None:
-            gesture.finish(at)
-        return gesture
+        gesture.finish(event.position())
+        return True
+
+    def release(self, event: QMouseEvent) -> bool:
+        """Finish the gesture, unless it is sticky; return whether it was."""
+        if self.gesture is None or self.gesture.sticky:
+            return False
+        gesture, self.gesture = self.gesture, None
+        gesture.finish(event.position())
+        if not gesture.begun:
+            gesture.click(event)
+        return True
 
     def drop(self, reason: Reason) -> bool:
         """Break the gesture off; return whether there was one."""

@@ -23,8 +23,10 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QMenu, QToolTip, QWidget
 
 from app.features.conversation.addressees import addressee_words, offer_addressees
+from app.features.conversation.drags.choice import gesture_for
+from app.features.conversation.drags.pan import SegmentPan
+from app.features.conversation.drags.segment import SegmentDrag
 from app.features.conversation.segment_editing import Editing
-from app.features.conversation.segment_gestures import SegmentDrag, SegmentPan, gesture_for
 from app.features.conversation.segment_hits import NOTHING, SegmentHit, hit_at, on_arrow
 from app.features.conversation.segment_keys import DEEDS, deed_of
 from app.features.conversation.segment_lanes import (
@@ -277,15 +279,10 @@ class SegmentView(QWidget):
             self.update()
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        gesture = self.hand.let_go(event.position())
-        if gesture is None:
-            return
-        moved = not isinstance(gesture, SegmentDrag) or gesture.begun
-        if not moved and isinstance(gesture, SegmentDrag) and not event.modifiers() and gesture.hit.at >= 0:
-            self.editing.select({(gesture.hit.side, gesture.hit.at)})
-        self.over = self._hit(event.position())
-        self._show_cursor(self.over)
-        self.update()
+        if self.hand.release(event):
+            self.over = self._hit(event.position())
+            self._show_cursor(self.over)
+            self.update()
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
         hit = self._hit(event.position())
@@ -309,10 +306,7 @@ class SegmentView(QWidget):
         shape = Qt.CursorShape
         by_part = dict.fromkeys(("start", "end", "peak"), shape.SizeHorCursor)
         by_part |= {"gap": shape.CrossCursor, "title": shape.PointingHandCursor}
-        held = isinstance(self.hand.gesture, SegmentPan) or (
-            hit.part == "body" and self.hand.gesture is not None
-        )
-        self.setCursor(shape.ClosedHandCursor if held else by_part.get(hit.part, shape.ArrowCursor))
+        self.setCursor(self.hand.cursor or by_part.get(hit.part, shape.ArrowCursor))
 
     def _stop_dragging(self) -> bool:
         """Cancel what is being dragged; return whether something was."""

@@ -25,9 +25,11 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QToolTip, QWidget
 
+from app.features.graph.drags.head import HeadDrag
+from app.features.graph.drags.likelihood import LikelihoodDrag
+from app.features.graph.drags.row import RowDrag
 from app.features.graph.graph_acts import GraphActs
 from app.features.graph.graph_drops import Drop
-from app.features.graph.graph_gestures import HeadDrag, LikelihoodDrag, RowDrag
 from app.features.graph.graph_hover import Hover
 from app.features.graph.graph_layout import (
     HOLES,
@@ -287,16 +289,7 @@ class Canvas(QWidget):
         self.hover.move(hit)
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        gesture = self.hand.let_go(event.position())
-        if gesture is not None:
-            hit = self.layout_now().hit(event.position())
-            keys = Qt.KeyboardModifier
-            plain = not event.modifiers() & (keys.ControlModifier | keys.ShiftModifier)
-            row = gesture if isinstance(gesture, RowDrag | HeadDrag) and not gesture.begun else None
-            if row is not None and plain and hit.ident == row.action:
-                self.hover.stay()
-                self.session.selection.select_actions((row.action,))
-                self.session.show_context(row.action)
+        self.hand.release(event)
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
         hit = self.layout_now().hit(event.position())

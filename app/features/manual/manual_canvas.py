@@ -26,7 +26,10 @@ from PySide6.QtWidgets import QMenu, QToolTip, QWidget
 from app.features.manual import manual_commands as commands
 from app.features.manual import manual_many
 from app.features.manual import manual_painter as painter
-from app.features.manual.manual_gestures import Band, DrawLink, ManualPan, Move
+from app.features.manual.drags.band import Band
+from app.features.manual.drags.link import DrawLink
+from app.features.manual.drags.move import Move
+from app.features.manual.drags.pan import ManualPan
 from app.features.manual.manual_overlay import Marks, paint_over, plays
 from app.features.manual.manual_pictures import Pictures
 from app.features.manual.manual_scene import NODE, NOTHING, ManualScene, ManualView, fitted
@@ -296,11 +299,7 @@ class ManualCanvas(QWidget):
         self.setFocus(Qt.FocusReason.MouseFocusReason)
         at, button, keys = event.position(), event.button(), event.modifiers()
         self.at = at
-        if isinstance(self.hand.gesture, DrawLink) and self.hand.gesture.sticky:
-            if button == Qt.MouseButton.LeftButton:
-                self.hand.let_go(at)
-            else:
-                self.hand.drop("replaced")
+        if self.hand.press(event):
             return
         self.hand.drop("replaced")
         if (
@@ -347,27 +346,7 @@ class ManualCanvas(QWidget):
             self.update()
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        if isinstance(self.hand.gesture, DrawLink) and self.hand.gesture.sticky:
-            return
-        gesture = self.hand.let_go(event.position())
-        if gesture is None:
-            return
-        if (
-            isinstance(gesture, ManualPan)
-            and not gesture.begun
-            and event.button() == Qt.MouseButton.RightButton
-        ):
-            self._menu(event.position())
-        hit = self.scene().hit(self.view.back(event.position()), self.view.scale)
-        plain = not event.modifiers() and event.button() == Qt.MouseButton.LeftButton
-        if (
-            plain
-            and isinstance(gesture, Move | DrawLink)
-            and not gesture.begun
-            and hit.ident == (gesture.node if isinstance(gesture, Move) else gesture.source)
-            and hit.ident != ANY
-        ):
-            self.session.selection.select_states((hit.ident,))
+        self.hand.release(event)
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
         if event.button() != Qt.MouseButton.LeftButton:
@@ -394,10 +373,11 @@ class ManualCanvas(QWidget):
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
         if event.reason() == QContextMenuEvent.Reason.Keyboard:
-            self._menu(self.at)
+            self.open_menu(self.at)
         event.accept()  # the mouse's comes when the button is let go, since dragging with it moves the view
 
-    def _menu(self, at: QPointF) -> None:
+    def open_menu(self, at: QPointF) -> None:
+        """Offer what can be done with what is there."""
         self.at = at
         menu = QMenu(self)
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)

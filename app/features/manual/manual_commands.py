@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QMenu
 
 from app.features.manual import manual_many
 from app.features.manual.arranging import arranged
-from app.features.manual.manual_host import ManualHost
+from app.features.manual.drags.host import ManualHost
 from app.features.manual.manual_painter import facts, words_of
 from app.features.manual.manual_scene import ManualHit
 from app.look.plural import many

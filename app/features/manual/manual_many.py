@@ -6,7 +6,7 @@ from pathlib import Path
 
 from PySide6.QtWidgets import QApplication, QFileDialog, QWidget
 
-from app.features.manual.manual_host import ManualHost
+from app.features.manual.drags.host import ManualHost
 from app.look.plural import many
 from app.translation import tr, tr_error
 from metagraph.errors import FileError

@@ -9,9 +9,9 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 from PySide6.QtWidgets import QMenu
 
+from app.features.timeline.drags.cut import CutDrag
 from app.look.theme import Theme
 from app.translation import tr
-from app.widgets.gesture import PressDrag
 from app.widgets.lane_geometry import LEFT, elided, lanes
 from metagraph.graph.conversation.model import Conversation, side_name
 from metagraph.graph.timeline import Cut, Shot
@@ -44,30 +44,6 @@ def short_words(cut: Cut, talk: Conversation) -> str:
         return words_of(cut, talk)
     name = side_name(talk, cut.side)
     return tr("Over: {name}", name=name) if cut.shot == "over" else tr("Close: {name}", name=name)
-
-
-class CutDrag(PressDrag):
-    """A cut moved in time, between its neighbours. at: seconds where it will be."""
-
-    catch = 2.0
-
-    def __init__(self, lane: CameraLane, number: int) -> None:
-        super().__init__()
-        self.lane, self.number = lane, number
-        self.cuts = lane.cuts
-        self.at = self.cuts[number].at
-
-    def update(self, at: QPointF, free: bool = False) -> None:
-        if self.caught(QPointF(at.x(), self.origin.y())):
-            view, was = self.lane.view, self.cuts[self.number].at
-            wanted = view.magnet.snap(max(0.0, was + (at.x() - self.origin.x()) / view.each), view.each)
-            low = self.cuts[self.number - 1].at + 0.1 if self.number else 0.0
-            high = self.cuts[self.number + 1].at - 0.1 if self.number + 1 < len(self.cuts) else wanted
-            self.at = min(max(wanted, low), high)
-
-    def finish(self, at: QPointF) -> None:
-        if self.begun and self.at != self.cuts[self.number].at:
-            self.lane.view.performance.timeline.move_cut(self.number, self.at)
 
 
 class CameraLane:
@@ -114,7 +90,7 @@ class CameraLane:
         if number is None:
             return False
         self.view.magnet.begin(self.view.snap_lines(()))
-        self.view.hand.take(CutDrag(self, number), at)
+        self.view.hand.take(CutDrag(self.view, number), at)
         return True
 
     def key(self, number: int) -> bool:

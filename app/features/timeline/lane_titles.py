@@ -13,10 +13,10 @@ from PySide6.QtCore import QPointF, QRectF, QSettings, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 from PySide6.QtWidgets import QMenu
 
+from app.features.timeline.drags.border import BorderDrag
 from app.look.theme import Theme
 from app.stage.performance import Performance
 from app.translation import tr, tr_noop
-from app.widgets.gesture import PressDrag, Reason
 from app.widgets.lane_geometry import LEFT, NAMES, RULER, TITLES, Sizes, lanes
 from metagraph.graph.model import LAYERS, Layer
 from metagraph.graph.timeline import Lane
@@ -38,27 +38,6 @@ def kept_heights() -> tuple[tuple[str, float], ...]:
     except (ValueError, AttributeError, TypeError):
         return ()
     return held.tall
-
-
-class BorderDrag(PressDrag):
-    """The border below a lane being dragged."""
-
-    catch = 2.0
-
-    def __init__(self, titles: LaneTitles, lane: str) -> None:
-        super().__init__()
-        self.titles, self.lane, self._was = titles, lane, titles.view.sizes
-
-    def update(self, at: QPointF, free: bool = False) -> None:
-        if self.caught(QPointF(self.origin.x(), at.y())):
-            self.titles.view.set_sizes(self._was.resized(self.lane, at.y(), self.titles.view.height()))
-
-    def finish(self, at: QPointF) -> None:
-        if self.begun:
-            self.titles.keep()
-
-    def cancel(self, reason: Reason) -> None:
-        self.titles.view.set_sizes(self._was)
 
 
 class LaneTitles:
@@ -97,7 +76,7 @@ class LaneTitles:
     def press(self, place: QPointF, alone: bool) -> None:
         border, locked = self.border_at(place), self.lock_at(place)
         if border is not None:
-            self.view.hand.take(BorderDrag(self, border), place)
+            self.view.hand.take(BorderDrag(self.view, border, self.keep), place)
         elif locked is not None:
             self.performance.timeline.lock(locked, locked not in self.performance.timeline.now.locked)
         elif (layer := self.at(place)) is not None:

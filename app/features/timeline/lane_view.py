@@ -22,13 +22,13 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QToolTip, QWidget
 
 from app.features.timeline.camera_lane import CameraLane
+from app.features.timeline.drags.request import RequestDrag
 from app.features.timeline.lane_keys import LaneKeys
 from app.features.timeline.lane_menu import request_marks_menu
 from app.features.timeline.lane_picture import paint_lanes
 from app.features.timeline.lane_span import LaneSpan
 from app.features.timeline.lane_tips import tip_at
-from app.features.timeline.lane_titles import BorderDrag, LaneTitles, kept_heights
-from app.features.timeline.request_drag import RequestDrag
+from app.features.timeline.lane_titles import LaneTitles, kept_heights
 from app.features.timeline.ruler import Ruler
 from app.features.timeline.snapping import Magnet, SnapLine, snap_lines
 from app.features.timeline.voices import Voices
@@ -55,7 +55,6 @@ from app.widgets.memo import Once
 from app.widgets.request_menu import STAGE, request_menu
 from metagraph.graph.model import LAYERS
 
-CATCH = 3  # pixels the mouse must move for a press to become a drag
 LEAST, LEAST_BESIDE = 38, 32  # pixels of a layer in which its two rows are read; just so, beside other seeds'
 COPIES = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier
 TEXT = tr(
@@ -267,7 +266,7 @@ class Lanes(LaneSpan):
         x = event.position().x()
         self._hold_off(event.modifiers())
         if self.hand.move(event.position(), bool(event.modifiers() & COPIES)):
-            self.setCursor(self._held_cursor())
+            self.setCursor(self.hand.cursor or Qt.CursorShape.SizeHorCursor)
             self.update()
         elif event.buttons() & Qt.MouseButton.LeftButton:
             self.scrub(x)
@@ -286,13 +285,6 @@ class Lanes(LaneSpan):
             self.setCursor(shape)
         self._grip = x
 
-    def _held_cursor(self) -> Qt.CursorShape:
-        """Return the mouse's shape while something is dragged."""
-        if isinstance(self.hand.gesture, BorderDrag):
-            return Qt.CursorShape.SizeVerCursor
-        copying = self.drag is not None and self.drag.copy
-        return Qt.CursorShape.DragCopyCursor if copying else Qt.CursorShape.SizeHorCursor
-
     _grip = 0.0
 
     @property
@@ -302,7 +294,7 @@ class Lanes(LaneSpan):
         return gesture if isinstance(gesture, RequestDrag) and gesture.begun else None
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        self.hand.let_go(event.position())
+        self.hand.release(event)
         self.magnet.end()
         self.magnet.held_off = False
         self.update()

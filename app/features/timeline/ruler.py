@@ -10,7 +10,8 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QPainter, QPen, QPolygonF
 from PySide6.QtWidgets import QInputDialog, QMenu
 
-from app.features.timeline.ruler_drags import Grip, MarkerDrag, RangeDrag
+from app.features.timeline.drags.marker import MarkerDrag
+from app.features.timeline.drags.range import Grip, RangeDrag
 from app.look.theme import Theme
 from app.translation import tr
 from app.widgets.lane_geometry import LEFT, NUMBERS, RULER, advance, elided

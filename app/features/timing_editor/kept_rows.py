@@ -3,25 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter
 
 from app.features.timing_editor.axis import Axis
-from app.features.timing_editor.drags import SNAP, Host
+from app.features.timing_editor.drags.host import Host
 from app.features.timing_editor.hits import Hit
 from app.features.timing_editor.paint import MIDDLE, Look
 from app.features.timing_editor.rows import TrackRows
 from app.features.timing_editor.track import Facts, Kept
 from app.translation import tr
-from app.widgets.gesture import PressDrag, Reason
-from app.widgets.vocabulary import word
 from metagraph.graph.clip_source import course_of
 from metagraph.graph.editing.retiming import set_kept
-from metagraph.playback.timing.handles import WORDS
-from metagraph.suggest.jumps.snapping import Snap, nearest
 
 REACH = 5.0  # pixels from an end at which it is taken
 GRIP = 4.0  # pixels of an end
@@ -138,56 +134,6 @@ def tip(facts: Facts, hit: Hit) -> str:
     )
 
 
-class KeptDrag(PressDrag):
-    """A hand is kept from earlier or until later, or at another time, once it is let go: the clip is made
-    anew then. The character shows the moment meanwhile.
-    """
-
-    catch = 2.0
-
-    def __init__(self, host: Host, facts: Facts, name: str, playhead: float | None) -> None:
-        super().__init__()
-        part = Part.of(name)
-        assert part is not None
-        self.host, self.facts, self.part = host, facts, part
-        self.kept = self.now = next(k for k in facts.kept if k.place == part.place)
-        self.snaps = tuple(_snaps(facts, playhead)) if part.end else ()
-
-    def update(self, at: QPointF, free: bool = False) -> None:
-        if not self.caught(at):
-            return
-        host, last = self.host, self.facts.entry.duration
-        by = (at.x() - self.origin.x()) / host.axis.each
-        if self.part.end:
-            was = float(getattr(self.kept, self.part.end))
-            snap = None if free else nearest(self.snaps, was + by, SNAP / host.axis.each)
-            moment = min(max(0.0, snap.at if snap is not None else was + by), last)
-            self.now = self.kept.with_end(self.part.end, moment)
-        else:
-            snap = None
-            by = min(max(by, -self.kept.first), last - self.kept.last)
-            self.now = replace(self.kept, first=self.kept.first + by, last=self.kept.last + by)
-            moment = self.now.first
-        kept = tr("kept {first:.2f} to {last:.2f} s", first=self.now.first, last=self.now.last)
-        host.held = f"{self.kept.hand} {kept if self.now.last > self.now.first else tr('let go')}"
-        host.snapped, host.snaps, host.stretched = snap, self.snaps, (self.facts.action.id, self.now)
-        host.transport.scrub(self.facts.action.clip, moment)
-        host.update()
-
-    def finish(self, at: QPointF) -> None:
-        if self.begun and self.now != self.kept:
-            change(self.host, self.facts, self.now)
-        self._over()
-
-    def cancel(self, reason: Reason) -> None:
-        self._over()
-
-    def _over(self) -> None:
-        host = self.host
-        host.held, host.snapped, host.snaps, host.stretched = "", None, (), None
-        host.update()
-
-
 def change(host: Host, facts: Facts, kept: Kept) -> None:
     """Keep a hand from and until other seconds of the clip as it plays, in one step. Raises EditError."""
     course = course_of(facts.entry)
@@ -208,14 +154,3 @@ def set_number(host: Host, facts: Facts, name: str, seconds: float) -> None:
     kept = next((k for k in facts.kept if part is not None and k.place == part.place), None)
     if kept is not None and part is not None and part.end:
         change(host, facts, kept.with_end(part.end, min(max(0.0, seconds), facts.entry.duration)))
-
-
-def _snaps(facts: Facts, playhead: float | None) -> Iterator[Snap]:
-    for handle in facts.handles:
-        if handle.name not in ("in", "out"):
-            yield Snap(handle.at, tr("the action's {handle}", handle=word(WORDS[handle.name])))
-    for stay in facts.stays:
-        yield Snap(stay.first, tr("the clip is held from here on"))
-        yield Snap(stay.last, tr("the clip goes on here"))
-    if playhead is not None:
-        yield Snap(playhead, tr("the playhead"))

@@ -18,10 +18,16 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QToolTip, QWidget
 
-from app.features.timing_editor import drags, filmstrip, overlay, paint
+from app.features.timing_editor import filmstrip, overlay, paint
 from app.features.timing_editor.axis import Axis
+from app.features.timing_editor.drags.kept import KeptDrag
+from app.features.timing_editor.drags.loop import LoopDrag
+from app.features.timing_editor.drags.pan import Panning
+from app.features.timing_editor.drags.scrub import Scrubbing
+from app.features.timing_editor.drags.stay import StayDrag
+from app.features.timing_editor.drags.timing import TimingDrag, block_change, handle_change
 from app.features.timing_editor.hits import Hit, hit_at
-from app.features.timing_editor.kept_rows import KeptDrag, hit_kept, paint_kept
+from app.features.timing_editor.kept_rows import hit_kept, paint_kept
 from app.features.timing_editor.rows import (
     GUTTER,
     RIGHT,
@@ -230,7 +236,7 @@ class TimingView(QWidget):
     def mousePressEvent(self, event: QMouseEvent) -> None:
         at, button = event.position(), event.button()
         if button == Qt.MouseButton.MiddleButton:
-            self.hand.take(drags.Panning(self), at)
+            self.hand.take(Panning(self), at)
             return
         hit = self.hit(at) if button == Qt.MouseButton.LeftButton else None
         if hit is None:
@@ -242,17 +248,17 @@ class TimingView(QWidget):
             self.hand.take(self._handle_drag(facts, hit.name), at)
         elif hit.what == "stay":
             stay = next(s for s in facts.stays if f"{s.hold.at}" == hit.name)
-            self.hand.take(drags.StayDrag(self, facts, stay), at)
+            self.hand.take(StayDrag(self, facts, stay), at)
         elif hit.what == "kept":
             self.hand.take(KeptDrag(self, facts, hit.name, self.subject.playhead()), at)
         elif hit.what == "block":
             self.hand.take(self._block_drag(facts, "" if shift or not facts.blocks else hit.name), at)
         elif hit.what == "ruler" and shift:
-            self.hand.take(drags.LoopDrag(self, facts), at)
+            self.hand.take(LoopDrag(self, facts), at)
         else:
-            self.hand.take(drags.Scrubbing(self, facts), at)
+            self.hand.take(Scrubbing(self, facts), at)
 
-    def _handle_drag(self, facts: Facts, name: str) -> drags.TimingDrag:
+    def _handle_drag(self, facts: Facts, name: str) -> TimingDrag:
         grip = next(h.at for h in facts.handles if h.name == name)
         project, now = self.document.project, self.subject.playhead()
         snaps = snaps_of(
@@ -264,9 +270,9 @@ class TimingView(QWidget):
             handle = shown.handle(name)
             return f"{handle_words(handle)} s" if handle is not None else name
 
-        return drags.TimingDrag(self, facts, grip, snaps, drags.handle_change(self.idents(), name), words)
+        return TimingDrag(self, facts, grip, snaps, handle_change(self.idents(), name), words)
 
-    def _block_drag(self, facts: Facts, name: str) -> drags.TimingDrag:
+    def _block_drag(self, facts: Facts, name: str) -> TimingDrag:
         first = next((b.first for b in facts.blocks if b.name == name), facts.span[0])
 
         def words(_: float) -> str:
@@ -280,7 +286,7 @@ class TimingView(QWidget):
             )
 
         snaps = snaps_of(self.document.project, facts.action, "ready", None, facts.speeds) if name else ()
-        return drags.TimingDrag(self, facts, first, snaps, drags.block_change(self.idents(), name), words)
+        return TimingDrag(self, facts, first, snaps, block_change(self.idents(), name), words)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         free = bool(event.modifiers() & Qt.KeyboardModifier.AltModifier)
@@ -291,7 +297,7 @@ class TimingView(QWidget):
             self.setCursor(shapes.get(hit.what if hit else "", Qt.CursorShape.ArrowCursor))
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        self.hand.let_go(event.position())
+        self.hand.release(event)
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
         hit = self.hit(event.position())

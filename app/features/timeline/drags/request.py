@@ -1,33 +1,19 @@
-"""Requests being moved, or copied, in time: silently until the button is released, then one edit."""
+"""The drag of requests, moved or copied in time: silently until the button is released, then one edit."""
 
 from __future__ import annotations
 
-from typing import Protocol
+from PySide6.QtCore import QPointF, Qt
+from PySide6.QtGui import QMouseEvent
 
-from PySide6.QtCore import QPointF
-
-from app.features.timeline.snapping import Magnet
-from app.stage.performance import Performance
-from app.stage.session import Session
-from app.widgets.gesture import PressDrag
+from app.features.timeline.drags.host import LanesHost
+from app.features.timeline.drags.lane import LaneDrag
 from app.widgets.lane_geometry import time_of
 
 
-class LanesHost(Protocol):
-    """The timeline as its drags see it. each: pixels a second."""
-
-    session: Session
-    performance: Performance
-    magnet: Magnet
-    each: float
-
-
-class RequestDrag(PressDrag):
+class RequestDrag(LaneDrag):
     """chosen: what is moved; following: with what goes along; ident: the one that is held. by: seconds. copy:
     copies of what is chosen go there. lone: let go without being moved, the held one is selected no longer.
     """
-
-    catch = 3.0
 
     def __init__(
         self,
@@ -37,11 +23,15 @@ class RequestDrag(PressDrag):
         lone: bool,
         following: tuple[str, ...] = (),
     ) -> None:
-        super().__init__()
-        self.host, self.chosen, self.ident, self.lone = host, chosen, ident, lone
+        super().__init__(host)
+        self.chosen, self.ident, self.lone = chosen, ident, lone
         self.following = following or chosen
         self.by = 0.0
         self.copy = False
+
+    @property
+    def cursor(self) -> Qt.CursorShape:
+        return Qt.CursorShape.DragCopyCursor if self.copy else super().cursor
 
     @property
     def idents(self) -> tuple[str, ...]:
@@ -50,7 +40,7 @@ class RequestDrag(PressDrag):
 
     def update(self, at: QPointF, free: bool = False) -> None:
         """free: they are copied."""
-        if self.caught(QPointF(at.x(), self.origin.y())):
+        if self.caught(at):
             self.copy = free
             by = round((at.x() - self.origin.x()) / self.host.each, 2)
             held = self._times().get(self.ident, 0.0)
@@ -67,10 +57,13 @@ class RequestDrag(PressDrag):
         return {x.id: time_of(x, answers.get(x.id)) for x in performance.asks if x.id in self.idents}
 
     def finish(self, at: QPointF) -> None:
-        requests, onstage = self.host.performance.requests, self.host.session.onstage
+        requests = self.host.performance.requests
         if self.begun and self.by and self.copy:
             requests.copy(self.chosen, self.by)
         elif self.begun and self.by:
             requests.move(self.chosen, self.by)
-        elif self.lone and not self.begun:
+
+    def click(self, event: QMouseEvent) -> None:
+        if self.lone:
+            onstage = self.host.session.onstage
             onstage.select_requests(tuple(i for i in onstage.requests if i != self.ident))

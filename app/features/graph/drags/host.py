@@ -9,6 +9,7 @@ from PySide6.QtCore import QPointF
 from PySide6.QtWidgets import QWidget
 
 from app.features.graph.graph_drops import Drop
+from app.features.graph.graph_hover import Hover
 from app.features.graph.graph_layout import GraphHit, Layout
 from app.project.document import Document
 from app.stage.session import Session
@@ -22,6 +23,7 @@ class GraphHost(Protocol):
     document: Document
     session: Session
     hand: Hand
+    hover: Hover
     thumbnails: Thumbnails
 
     @property

@@ -1,0 +1,1 @@
+"""Drags of the mouse on the lanes of a conversation, one in each module."""

@@ -1,0 +1,1 @@
+"""Drags of the mouse on the canvas of the meta-graph, one in each module."""

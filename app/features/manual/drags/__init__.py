@@ -1,0 +1,1 @@
+"""Drags of the mouse on the canvas of the manual editor, one in each module."""

@@ -1,0 +1,1 @@
+"""Drags of the mouse on the timeline, one in each module."""

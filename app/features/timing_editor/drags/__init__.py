@@ -1,0 +1,1 @@
+"""Drags of the mouse in the timing editor, one in each module."""
