@@ -151,11 +151,29 @@ class _Reader:
             shared = step[0]
         return shared
 
+    def pair(self, role: str) -> list[int]:
+        """Return the joints of a sided role, the left one first; fewer where it is not known of both."""
+        return [self.roles[r] for r in (f"left_{role}", f"right_{role}") if r in self.roles]
+
+    def plain_below(self, joint: int) -> list[int]:
+        """Return the children that are no helpers."""
+        return [c for c in self.skeleton.children[joint] if not self.helper[c]]
+
     def trunk(self) -> None:
         """Name hips, spine, chest, neck and head, given the limbs."""
         roles = self.roles
-        legs = [roles[r] for r in ("left_upper_leg", "right_upper_leg") if r in roles]
-        arms = [roles[r] for r in ("left_upper_arm", "right_upper_arm") if r in roles]
+        self._head_by_name()
+        if "head" not in roles:
+            self._head_over_arms()
+        if "neck" in roles and "head" in roles and roles["neck"] not in self.above(roles["head"]):
+            del roles["neck"]
+        self._hips()
+        if "hips" in roles and "head" in roles:
+            self._spine()
+
+    def _head_by_name(self) -> None:
+        """Name head and neck by what joints are called, the head by the rest pose where none is called so."""
+        roles = self.roles
         heads, necks = self.called("head") or self.called("skull", "cranium"), self.called("neck")
         shaped = roles_by_shape(self.skeleton).get("head") if not heads else None
         if heads:
@@ -164,37 +182,36 @@ class _Reader:
             roles["head"] = shaped  # the last joint called a neck need not be the last that turns
         if necks:
             roles["neck"] = self.biggest(necks)
-            if "head" not in roles:  # the end of the neck, where the face hangs
-                line = [roles["neck"]]
-                while True:
-                    below = [
-                        c
-                        for c in self.skeleton.children[line[-1]]
-                        if "neck" in self.words[c].words and not self.helper[c]
-                    ]
-                    if not below:
-                        break
-                    line.append(below[0])
-                roles["head"] = line[-1]
-                if len(line) == 1:
-                    del roles["neck"]
-        if "head" not in roles and len(arms) == 2 and (top := self.common(arms)) is not None:
-            line = [top]
-            while True:
-                below = [
-                    c
-                    for c in self.skeleton.children[line[-1]]
-                    if self.words[c].side == "centre" and not self.helper[c]
-                ]
-                if not below:
-                    break
-                line.append(self.biggest(below))
-            if len(line) > 1:
-                roles["head"] = line[-1]
-                if len(line) > 2:
-                    roles["neck"] = line[1]
-        if "neck" in roles and "head" in roles and roles["neck"] not in self.above(roles["head"]):
-            del roles["neck"]
+            if "head" not in roles:
+                self._head_ends_neck()
+
+    def _head_ends_neck(self) -> None:
+        """Name the last of the neck's joints the head: there the face hangs."""
+        line = [self.roles["neck"]]
+        while below := [c for c in self.plain_below(line[-1]) if "neck" in self.words[c].words]:
+            line.append(below[0])
+        self.roles["head"] = line[-1]
+        if len(line) == 1:
+            del self.roles["neck"]
+
+    def _head_over_arms(self) -> None:
+        """Name the end of the line in the middle that begins between the arms the head."""
+        arms = self.pair("upper_arm")
+        top = self.common(arms) if len(arms) == 2 else None
+        if top is None:
+            return
+        line = [top]
+        while below := [c for c in self.plain_below(line[-1]) if self.words[c].side == "centre"]:
+            line.append(self.biggest(below))
+        if len(line) > 1:
+            self.roles["head"] = line[-1]
+        if len(line) > 2:
+            self.roles["neck"] = line[1]
+
+    def _hips(self) -> None:
+        """Name the hips: the lowest joint called so that carries legs and head, else what carries them."""
+        roles = self.roles
+        legs = self.pair("upper_leg")
         ends = legs + ([roles["head"]] if "head" in roles else [])
         named = [
             j
@@ -210,8 +227,11 @@ class _Reader:
             roles["hips"] = shared
         elif named:
             roles["hips"] = named[0]
-        if "hips" not in roles or "head" not in roles:
-            return
+
+    def _spine(self) -> None:
+        """Name what lies between hips and neck, and the neck where no joint is called so."""
+        roles = self.roles
+        arms = self.pair("upper_arm")
         top = roles.get("neck", roles["head"])
         line = [j for j in reversed(self.above(top)) if roles["hips"] in self.above(j) and not self.helper[j]]
         if "neck" not in roles and len(arms) == 2:
@@ -221,7 +241,6 @@ class _Reader:
             if beyond:
                 roles["neck"] = beyond[0]
                 line = [j for j in line if j not in beyond]
-        chests = [j for j in line if {"chest", "thorax", "ribcage"} & set(self.words[j].words)]
         if line:
             roles["spine"] = line[0]
         rest = line[1:]
@@ -229,7 +248,7 @@ class _Reader:
             roles["chest"] = rest[0]
         elif rest:
             roles["upper_chest"] = rest[-1]
-            own = [j for j in chests if j in rest[:-1]]
+            own = [j for j in rest[:-1] if {"chest", "thorax", "ribcage"} & set(self.words[j].words)]
             roles["chest"] = own[0] if own else rest[(len(rest) - 1) // 2]
 
     def face(self) -> None:

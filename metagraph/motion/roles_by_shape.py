@@ -191,21 +191,10 @@ def roles_by_shape(skeleton: Skeleton) -> dict[str, int]:
     hanging = float(np.mean([shape.at[j, 1] for j in legs])) - tips(legs)
     if hanging < 0.6 * float(np.mean([shape.reach[j] for j in legs])):
         return {}  # bones along one axis: what goes down is not known
-    best: tuple[float, tuple[int, int], int] | None = None
-    below_legs = set(shape.above(ground))
-    for pair in pairs:
-        chest = shape.parents[pair[0]]
-        if pair == legs or shape.at[chest, 1] <= shape.at[ground, 1]:
-            continue
-        hips = next(j for j in shape.above(chest) if j in below_legs or j < 0)
-        if chest == hips:
-            continue
-        worth = float(np.mean([shape.reach[j] for j in pair]))
-        if best is None or worth > best[0]:
-            best = (worth, pair, chest)
-    if best is None:
+    found = _arms(shape, [pair for pair in pairs if pair != legs], ground)
+    if found is None:
         return {}
-    _, arms, chest = best
+    arms, chest = found
     hips = next(j for j in shape.above(chest) if j in shape.above(ground))
     trunk = shape.above(chest)[: shape.above(chest).index(hips)][::-1]
     head = _head(shape, chest, arms)
@@ -218,11 +207,35 @@ def roles_by_shape(skeleton: Skeleton) -> dict[str, int]:
     if above >= 0 and float(np.linalg.norm(shape.at[above] - shape.at[hips])) < 0.01 * shape.size():
         trunk.insert(0, hips)
         hips = above
-    roles = {"hips": hips, **_spine(trunk), **head}
+    return {"hips": hips, **_spine(trunk), **head, **_limb_roles(shape, legs, arms)}
+
+
+def _arms(shape: _Shape, pairs: Sequence[tuple[int, int]], ground: int) -> tuple[tuple[int, int], int] | None:
+    """Return the longest pair of limbs that hangs above the joint `ground` of the legs, not on it, and the
+    joint it hangs on; None where there is no such pair.
+    """
+    best: tuple[float, tuple[int, int], int] | None = None
+    below_legs = set(shape.above(ground))
+    for pair in pairs:
+        chest = shape.parents[pair[0]]
+        if shape.at[chest, 1] <= shape.at[ground, 1]:
+            continue
+        hips = next(j for j in shape.above(chest) if j in below_legs or j < 0)
+        if chest == hips:
+            continue
+        worth = float(np.mean([shape.reach[j] for j in pair]))
+        if best is None or worth > best[0]:
+            best = (worth, pair, chest)
+    return None if best is None else best[1:]
+
+
+def _limb_roles(shape: _Shape, legs: tuple[int, int], arms: tuple[int, int]) -> dict[str, int]:
+    """Return the roles of the joints of legs and arms, each limb's given by the joint it begins with."""
     limbs = {
         kind: [shape.limb(a, b, kind) for a, b in (pair, pair[::-1])]
         for kind, pair in (("leg", legs), ("arm", arms))
     }
+    roles: dict[str, int] = {}
     for kind, names in (
         ("leg", ("upper_leg", "lower_leg", "foot")),
         ("arm", ("upper_arm", "lower_arm", "hand")),
