@@ -63,59 +63,86 @@ def pairs_of(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> tupl
 
     By the roles, then by the names, then by where the rest pose puts what names leave over.
     """
-    roles = find_roles(skeleton) if roles is None else roles
-    sides = joint_sides(skeleton, roles)
-    twins = [-1] * len(skeleton)
+    pairing = _Pairing(skeleton, find_roles(skeleton) if roles is None else roles)
+    pairing.by_roles()
+    pairing.by_names()
+    pairing.by_places()
+    return tuple(pairing.twins)
 
-    def join(a: int, b: int) -> None:
-        if twins[a] < 0 and twins[b] < 0 and a != b:
-            twins[a], twins[b] = b, a
 
-    for role, joint in roles.items():
-        if role.startswith("left_") and (other := roles.get("right_" + role[5:])) is not None:
-            join(joint, other)
-    words = [take_apart(name) for name in skeleton.names]
-    apart: dict[tuple[tuple[str, ...], int, str], list[int]] = {}
-    for i, w in enumerate(words):
-        apart.setdefault((w.words, w.number, w.side), []).append(i)
-    for i, name in enumerate(skeleton.names):
-        if twins[i] >= 0:
-            continue
-        swapped = swap_sides(name)
-        if swapped != name and swapped in skeleton:
-            join(i, skeleton.index(swapped))
-        elif words[i].side != "centre":
-            beyond = "right" if words[i].side == "left" else "left"
-            found = apart.get((words[i].words, words[i].number, beyond), [])
-            if len(found) == 1 and len(apart[words[i].words, words[i].number, words[i].side]) == 1:
-                join(i, found[0])
-    _, positions = skeleton.globals(skeleton.rest)
-    lateral, middle = _plane(skeleton, twins)
-    mirrored = _reflect(positions, lateral, middle)
-    for i in range(len(skeleton)):
-        if twins[i] >= 0:
-            continue
-        above = int(skeleton.parents[i])
-        if (
-            words[i].side == "centre"
-            and abs(positions[i] @ lateral - middle) < ALIKE * skeleton.height
-            and sides[i] == "centre"
-        ):
-            twins[i] = i
-            continue
-        beside = twins[above] if above >= 0 else -1
-        near = [
+class _Pairing:
+    """The twins of a skeleton's joints found so far, -1 where none is known."""
+
+    def __init__(self, skeleton: Skeleton, roles: Mapping[str, int]) -> None:
+        self.skeleton = skeleton
+        self.roles = roles
+        self.words = [take_apart(name) for name in skeleton.names]
+        self.twins = [-1] * len(skeleton)
+
+    def _join(self, a: int, b: int) -> None:
+        if self.twins[a] < 0 and self.twins[b] < 0 and a != b:
+            self.twins[a], self.twins[b] = b, a
+
+    def by_roles(self) -> None:
+        """Pair what is on the left with what is on the right in the same role."""
+        for role, joint in self.roles.items():
+            if role.startswith("left_") and (other := self.roles.get("right_" + role[5:])) is not None:
+                self._join(joint, other)
+
+    def by_names(self) -> None:
+        """Pair joints whose names say the same of the two sides, where no third one's does."""
+        skeleton, words = self.skeleton, self.words
+        apart: dict[tuple[tuple[str, ...], int, str], list[int]] = {}
+        for i, w in enumerate(words):
+            apart.setdefault((w.words, w.number, w.side), []).append(i)
+        for i, name in enumerate(skeleton.names):
+            if self.twins[i] >= 0:
+                continue
+            swapped = swap_sides(name)
+            if swapped != name and swapped in skeleton:
+                self._join(i, skeleton.index(swapped))
+            elif words[i].side != "centre":
+                beyond = "right" if words[i].side == "left" else "left"
+                found = apart.get((words[i].words, words[i].number, beyond), [])
+                if len(found) == 1 and len(apart[words[i].words, words[i].number, words[i].side]) == 1:
+                    self._join(i, found[0])
+
+    def by_places(self) -> None:
+        """Pair joints that stand opposite each other at rest; those in the middle are their own twins."""
+        skeleton, words, twins = self.skeleton, self.words, self.twins
+        sides = joint_sides(skeleton, self.roles)
+        _, positions = skeleton.globals(skeleton.rest)
+        lateral, middle = _plane(skeleton, twins)
+        mirrored = _reflect(positions, lateral, middle)
+        for i in range(len(skeleton)):
+            if twins[i] >= 0:
+                continue
+            above = int(skeleton.parents[i])
+            unsided = words[i].side == "centre"
+            level = abs(positions[i] @ lateral - middle) < ALIKE * skeleton.height
+            if unsided and level and sides[i] == "centre":
+                twins[i] = i
+                continue
+            near = self._opposite(i, mirrored[i], positions)
+            if len(near) == 1:
+                self._join(i, near[0])
+            elif unsided and (above < 0 or twins[above] == above):
+                twins[i] = i
+
+    def _opposite(self, joint: int, place: Array, positions: Array) -> list[int]:
+        """Return the joints without a twin that stand where a joint's mirror image does, and hang on the
+        twin of what it hangs on.
+        """
+        skeleton, words = self.skeleton, self.words
+        above, side = int(skeleton.parents[joint]), words[joint].side
+        beside = self.twins[above] if above >= 0 else -1
+        return [
             j
             for j in range(len(skeleton))
-            if j != i and twins[j] < 0 and int(skeleton.parents[j]) == beside
-            and (words[j].side != words[i].side or words[i].side == "centre")
-            and np.linalg.norm(positions[j] - mirrored[i]) < ALIKE * skeleton.height
+            if j != joint and self.twins[j] < 0 and int(skeleton.parents[j]) == beside
+            and (words[j].side != side or side == "centre")
+            and np.linalg.norm(positions[j] - place) < ALIKE * skeleton.height
         ]  # fmt: skip
-        if len(near) == 1:
-            join(i, near[0])
-        elif words[i].side == "centre" and (above < 0 or twins[above] == above):
-            twins[i] = i
-    return tuple(twins)
 
 
 def mirror(clip: Clip, pairs: Sequence[int]) -> Clip:
