@@ -38,6 +38,7 @@ Array = NDArray[Any]
 
 _LONGEST_HEADER = 16 * MIB
 _DAMAGED = told("The file is damaged: export it again.")
+_TO_Y_UP = rotation.from_axis_angle([1, 0, 0], -np.pi / 2)
 
 
 @dataclass
@@ -102,6 +103,9 @@ class _Header:
         for number, line in enumerate(text.lstrip("\ufeff").splitlines(), 1):
             self.words += [(word, number) for word in line.replace("{", " { ").replace("}", " } ").split()]
         self.at = 0
+        self.found: list[_Joint] = []
+        self.stack: list[int] = []  # open braces; -1 for an End Site
+        self.opened: int | None = None  # whose brace comes next
 
     def fail(self, cause: str, line: int, remedy: str = _DAMAGED) -> NoReturn:
         raise FileError(self.path, cause, told("line {line}", line=line), remedy)
@@ -123,76 +127,81 @@ class _Header:
         return value
 
     def joints(self) -> list[_Joint]:
-        out: list[_Joint] = []
-        stack: list[int] = []  # open braces; -1 for an End Site
-        opened: int | None = None
+        """Return the joints, parents first, each with its offset and channels."""
         self.next()
         while self.at < len(self.words):
             word, line = self.next()
             kind = word.upper()
-            if opened is not None and kind != "{":
+            if self.opened is not None and kind != "{":
                 self.fail(told("expected '{{', found '{word}'", word=word[:40]), line)
-            if kind in ("ROOT", "JOINT", "END"):
-                if kind == "ROOT" and stack:
-                    self.fail(told("a ROOT stands inside another joint"), line)
-                if kind != "ROOT" and (not stack or stack[-1] < 0):
-                    self.fail(told("a {word} stands outside any joint", word=word[:10]), line)
-                name = []
-                while self.at < len(self.words) and self.words[self.at][0] != "{":
-                    name.append(self.next()[0])
-                    if len(name) > 64:
-                        self.fail(told("no '{{' follows {kind}", kind=kind), line)
-                if kind == "END":
-                    opened = -1
-                else:
-                    if len(out) >= JOINTS:
-                        self.fail(
-                            told("it has more than the {JOINTS} joints of any character", JOINTS=JOINTS), line
-                        )
-                    out.append(_Joint(" ".join(name), stack[-1] if stack else -1, line))
-                    opened = len(out) - 1
-            elif kind == "{":
-                if opened is None:
-                    self.fail(told("'{' without a joint"), line)
-                if len(stack) >= JOINTS_DEEP:
-                    self.fail(
-                        told("its joints hang on each other more than {most} deep", most=JOINTS_DEEP),
-                        line,
-                        told("Leave out ropes, hair and cloth, or export the character alone."),
-                    )
-                stack.append(opened)
-                opened = None
-            elif kind == "}":
-                if not stack:
-                    self.fail(told("'}' without a '{'"), line)
-                stack.pop()
-            elif kind == "OFFSET":
-                if not stack:
-                    self.fail(told("OFFSET outside any joint"), line)
-                offset = (self.number(), self.number(), self.number())
-                if stack[-1] >= 0:
-                    out[stack[-1]].offset = offset
-            elif kind == "CHANNELS":
-                self._channels(out, stack, line)
-            else:
-                self.fail(told("'{word}' is not expected here", word=word[:40]), line)
-        if stack:
-            self.fail(told("{count} '}}' are missing", count=len(stack)), self.words[-1][1])
-        if not out:
-            self.fail(told("there is no ROOT"), 1)
-        for joint in out:
-            if not joint.offset:
-                self.fail(told("joint '{name}' has no OFFSET", name=joint.name), joint.line)
-        return out
+            match kind:
+                case "ROOT" | "JOINT" | "END":
+                    self._begin(word, kind, line)
+                case "{":
+                    self._open(line)
+                case "}":
+                    self._close(line)
+                case "OFFSET":
+                    self._offset(line)
+                case "CHANNELS":
+                    self._channels(line)
+                case _:
+                    self.fail(told("'{word}' is not expected here", word=word[:40]), line)
+        self._whole()
+        return self.found
 
-    def _channels(self, out: list[_Joint], stack: list[int], line: int) -> None:
-        if not stack or stack[-1] < 0:
+    def _begin(self, word: str, kind: str, line: int) -> None:
+        """Read the name of a joint or an End Site."""
+        if kind == "ROOT" and self.stack:
+            self.fail(told("a ROOT stands inside another joint"), line)
+        if kind != "ROOT" and (not self.stack or self.stack[-1] < 0):
+            self.fail(told("a {word} stands outside any joint", word=word[:10]), line)
+        name = []
+        while self.at < len(self.words) and self.words[self.at][0] != "{":
+            name.append(self.next()[0])
+            if len(name) > 64:
+                self.fail(told("no '{{' follows {kind}", kind=kind), line)
+        if kind == "END":
+            self.opened = -1
+            return
+        if len(self.found) >= JOINTS:
+            self.fail(told("it has more than the {JOINTS} joints of any character", JOINTS=JOINTS), line)
+        self.found.append(_Joint(" ".join(name), self.stack[-1] if self.stack else -1, line))
+        self.opened = len(self.found) - 1
+
+    def _open(self, line: int) -> None:
+        if self.opened is None:
+            self.fail(told("'{' without a joint"), line)
+        if len(self.stack) >= JOINTS_DEEP:
+            self.fail(
+                told("its joints hang on each other more than {most} deep", most=JOINTS_DEEP),
+                line,
+                told("Leave out ropes, hair and cloth, or export the character alone."),
+            )
+        self.stack.append(self.opened)
+        self.opened = None
+
+    def _close(self, line: int) -> None:
+        if not self.stack:
+            self.fail(told("'}' without a '{'"), line)
+        self.stack.pop()
+
+    def _offset(self, line: int) -> None:
+        if not self.stack:
+            self.fail(told("OFFSET outside any joint"), line)
+        offset = (self.number(), self.number(), self.number())
+        if self.stack[-1] >= 0:
+            self.found[self.stack[-1]].offset = offset
+
+    def _channels(self, line: int) -> None:
+        if not self.stack or self.stack[-1] < 0:
             self.fail(told("CHANNELS outside any joint"), line)
+        joint = self.found[self.stack[-1]]
         word, _ = self.next()
         if not word.isdecimal() or len(word) > 9 or int(word) > 64:
             self.fail(told("'{word}' is not a number of channels", word=word[:40]), line)
-        if out[stack[-1]].channels:
-            self.fail(told("joint '{name}' has CHANNELS twice", name=out[stack[-1]].name), line)
+        if joint.channels:
+            self.fail(told("joint '{name}' has CHANNELS twice", name=joint.name), line)
         for _ in range(int(word)):
             channel, at = self.next()
             if not re.fullmatch(r"(?i)[xyz](position|rotation|scale)", channel):
@@ -201,9 +210,19 @@ class _Header:
                     at,
                     told("Make the number after CHANNELS fit the names that follow."),
                 )
-            if channel.lower() in out[stack[-1]].channels and channel[1].lower() == "p":
+            if channel.lower() in joint.channels and channel[1].lower() == "p":
                 self.fail(told("channel {channel} comes twice", channel=channel), at)
-            out[stack[-1]].channels.append(channel.lower())
+            joint.channels.append(channel.lower())
+
+    def _whole(self) -> None:
+        """Refuse a section that ends within a joint, has none, or leaves one without a place."""
+        if self.stack:
+            self.fail(told("{count} '}}' are missing", count=len(self.stack)), self.words[-1][1])
+        if not self.found:
+            self.fail(told("there is no ROOT"), 1)
+        for joint in self.found:
+            if not joint.offset:
+                self.fail(told("joint '{name}' has no OFFSET", name=joint.name), joint.line)
 
 
 def _motion(path: Path, data: bytes, at: int, channels: int, notes: list[str]) -> tuple[Array, float]:
@@ -375,31 +394,13 @@ def _clip(
         notes.append("scale channels were left out")
     parents = np.array([j.parent for j in joints])
     offsets = np.array([j.offset for j in joints])
-    columns, at = [], 0
-    for joint in joints:
-        columns.append(list(range(at, at + len(joint.channels))))
-        at += len(joint.channels)
-    placed = {}  # joints with position channels; an axis without one keeps its OFFSET
-    for i, joint in enumerate(joints):
-        axes = {name[0]: c for name, c in zip(joint.channels, columns[i], strict=True) if name[1] == "p"}
-        if axes or i == 0:
-            placed[i] = np.tile(offsets[i], (len(values), 1))
-            for axis, column in axes.items():
-                placed[i][:, "xyz".index(axis)] = values[:, column]
+    columns = _columns(joints)
+    placed = _placed(joints, columns, offsets, values)
     rotations = _rotations(values, joints, columns)
     skeleton = Skeleton(names, parents.copy(), rotation.identity((len(joints),)), offsets)
     roles = find_roles(skeleton)
 
-    repairs: list[Repair] = []
-    if scale is None:
-        scale, told = unit(skeleton, roles)
-        if scale == USUAL:
-            notes.append(told)
-        else:
-            repairs.append(Repair(UNIT, told, UNIT not in as_is))
-            scale = scale if repairs[-1].made else USUAL
-    elif not (scale > 0 and np.isfinite(scale)):
-        raise ValueError(f"a scale of {scale} metres per unit")
+    scale, repairs = _metres(skeleton, roles, scale, notes, as_is)
     offsets = offsets * scale
     placed = {i: p * scale for i, p in placed.items()}
     up, rest_too = z_up(skeleton, roles, rotations, placed, offsets)
@@ -407,15 +408,10 @@ def _clip(
     if up:
         repairs.append(Repair(UP, "its Z axis points up: turned to Y up", UP not in as_is))
     if up and UP not in as_is:
-        turn = rotation.from_axis_angle([1, 0, 0], -np.pi / 2)
         roots = np.flatnonzero(parents < 0)
-        rotations[:, roots] = rotation.multiply(turn, rotations[:, roots].astype(float))
-        offsets[roots] = rotation.rotate(turn, offsets[roots])
-        for i in roots.tolist():
-            if i in placed:
-                placed[i] = rotation.rotate(turn, placed[i])
+        _turn_up(roots, rotations, offsets, placed)
         if rest_too:
-            rest_rotations[roots] = turn
+            rest_rotations[roots] = _TO_Y_UP
     stand(
         offsets,
         parents,
@@ -429,6 +425,62 @@ def _clip(
     for repair in repairs:
         clip = repaired(clip, repair)
     return without_stray_poses([clip], as_is)[0]
+
+
+def _columns(joints: list[_Joint]) -> list[list[int]]:
+    """Return the columns of each joint's channels in the rows of numbers."""
+    columns, at = [], 0
+    for joint in joints:
+        columns.append(list(range(at, at + len(joint.channels))))
+        at += len(joint.channels)
+    return columns
+
+
+def _placed(
+    joints: list[_Joint], columns: list[list[int]], offsets: Array, values: Array
+) -> dict[int, Array]:
+    """Return the positions `[F, 3]` of the first joint and of those that have position channels. An axis
+    without one keeps its OFFSET.
+    """
+    placed = {}
+    for i, joint in enumerate(joints):
+        axes = {name[0]: c for name, c in zip(joint.channels, columns[i], strict=True) if name[1] == "p"}
+        if axes or i == 0:
+            placed[i] = np.tile(offsets[i], (len(values), 1))
+            for axis, column in axes.items():
+                placed[i][:, "xyz".index(axis)] = values[:, column]
+    return placed
+
+
+def _metres(
+    skeleton: Skeleton,
+    roles: dict[str, int],
+    scale: float | None,
+    notes: list[str],
+    as_is: Collection[str],
+) -> tuple[float, list[Repair]]:
+    """Return the metres per unit of a file, and the repair where they are not the usual ones. scale: those
+    that were asked for. Raises ValueError where these make no sense.
+    """
+    if scale is not None:
+        if not (scale > 0 and np.isfinite(scale)):
+            raise ValueError(f"a scale of {scale} metres per unit")
+        return scale, []
+    found, words = unit(skeleton, roles)
+    if found == USUAL:
+        notes.append(words)
+        return found, []
+    repair = Repair(UNIT, words, UNIT not in as_is)
+    return (found if repair.made else USUAL), [repair]
+
+
+def _turn_up(roots: Array, rotations: Array, offsets: Array, placed: dict[int, Array]) -> None:
+    """Turn the motion of a figure whose Z axis points up."""
+    rotations[:, roots] = rotation.multiply(_TO_Y_UP, rotations[:, roots].astype(float))
+    offsets[roots] = rotation.rotate(_TO_Y_UP, offsets[roots])
+    for i in roots.tolist():
+        if i in placed:
+            placed[i] = rotation.rotate(_TO_Y_UP, placed[i])
 
 
 def write_bvh(clip: Clip, path: str | Path) -> None:
