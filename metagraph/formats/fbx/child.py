@@ -13,6 +13,7 @@ import os
 import struct
 import sys
 from contextlib import suppress
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,8 @@ from metagraph.formats.gltf.binary import BinaryChunk, glb_bytes
 
 FPS = 30.0
 MISSING, REFUSED = 4, 3  # exit code; code of an answer
-_BONE, _CAMERAS = 5, (3, 4, 18, 19)  # ufbx element types: bone; light, camera, camera switcher, stereo camera
+_CAMERAS = (3, 4, 18, 19)  # ufbx element types: light, camera, camera switcher, stereo camera
+_PATHS = (("translation", slice(0, 3)), ("rotation", slice(3, 7)), ("scale", slice(7, 10)))
 
 
 _held: list[Any] = []  # every scene and list of one, to the end of the process
@@ -47,7 +49,7 @@ def main() -> int:
                 space_conversion=ufbx.SpaceConversion.MODIFY_GEOMETRY,
             )
             _held.append(scene)
-            answer = _convert(ufbx, scene)
+            answer = _convert(scene)
         except (ufbx.UfbxError, ValueError, ArithmeticError, np.linalg.LinAlgError, MemoryError) as error:
             said = str(error) or "there is not enough memory for it"
             code, answer = REFUSED, said[:500].encode("utf-8", "replace")
@@ -80,7 +82,38 @@ def _transform(t: Any) -> tuple[float, ...]:
     return (p.x, p.y, p.z, r.x, r.y, r.z, r.w, s.x, s.y, s.z)
 
 
-def _convert(ufbx: Any, scene: Any) -> bytes:
+@dataclass(frozen=True, eq=False)
+class _Scene:
+    """What of a scene is written. nodes, stacks, clusters: the library's. parents: of each node, -1 for none.
+    bones: which nodes are. still: `[N, 10]` where nodes stand without motion: place, turn, scale.
+    """
+
+    nodes: list[Any]
+    stacks: list[Any]
+    clusters: list[Any]
+    parents: list[int]
+    bones: list[int]
+    still: Any
+
+
+def _convert(scene: Any) -> bytes:
+    """Return a scene as binary glTF. Raises ValueError where it is too large."""
+    read = _read(scene)
+    document: dict[str, Any] = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}]}
+    document["nodes"] = _described(read)
+    body = BinaryChunk()
+    if read.bones:
+        bind = _bind_pose(read)
+        matrices = np.stack([np.linalg.pinv(bind[i]) for i in read.bones])
+        inverse = body.array(matrices.transpose(0, 2, 1).reshape(-1, 16), 5126)
+        document["skins"] = [{"joints": read.bones, "inverseBindMatrices": inverse}]
+    animations = _animations(read, body)
+    if animations:
+        document["animations"] = animations
+    return glb_bytes(document, body)
+
+
+def _read(scene: Any) -> _Scene:
     nodes = list(scene.nodes)
     stacks = list(scene.anim_stacks)
     clusters = list(scene.skin_clusters)
@@ -90,90 +123,106 @@ def _convert(ufbx: Any, scene: Any) -> bytes:
     bones = [i for i, node in enumerate(nodes) if node.bone is not None]
     parents = [node.parent.typed_id if node.parent is not None else -1 for node in nodes]
     still = np.array([_transform(node.local_transform) for node in nodes])
-    usable = [int(node.attrib_type) not in _CAMERAS for node in nodes]
+    return _Scene(nodes, stacks, clusters, parents, bones, still)
 
-    document: dict[str, Any] = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}]}
+
+def _described(scene: _Scene) -> list[dict[str, Any]]:
+    """Return the nodes as glTF has them."""
     described: list[dict[str, Any]] = []
     below: dict[int, list[int]] = {}
-    for i, parent in enumerate(parents):
+    for i, parent in enumerate(scene.parents):
         below.setdefault(parent, []).append(i)
-    for i, node in enumerate(nodes):
+    for i, node in enumerate(scene.nodes):
         value: dict[str, Any] = {
             "name": node.name,
-            "translation": still[i, :3].tolist(),
-            "rotation": still[i, 3:7].tolist(),
-            "scale": still[i, 7:].tolist(),
+            "translation": scene.still[i, :3].tolist(),
+            "rotation": scene.still[i, 3:7].tolist(),
+            "scale": scene.still[i, 7:].tolist(),
         }
         if i in below:
             value["children"] = below[i]
         described.append(value)
-    document["nodes"] = described
-    body = BinaryChunk()
+    return described
 
-    if bones:
-        bind: dict[int, Any] = {}
-        for cluster in clusters:
-            if cluster.bone_node is not None:
-                bind.setdefault(cluster.bone_node.typed_id, _matrix(cluster.bind_to_world))
-        for i in bones:
-            if (
-                i not in bind
-            ):  # a bone that moves no vertex stands as it does in the scene, on its parent's bind pose
-                own = _matrix(nodes[i].node_to_parent)
-                bind[i] = bind[parents[i]] @ own if parents[i] in bind else _matrix(nodes[i].node_to_world)
-        if not clusters:
-            # Nothing tells the bind pose; the root's own place is that of the first frame, so stand it over
-            # the origin.
-            away = bind[bones[0]][[0, 2], 3].copy()
-            for i in bones:
-                bind[i][[0, 2], 3] -= away
-        matrices = np.stack([np.linalg.pinv(bind[i]) for i in bones])
-        inverse = body.array(matrices.transpose(0, 2, 1).reshape(-1, 16), 5126)
-        document["skins"] = [{"joints": bones, "inverseBindMatrices": inverse}]
 
-    animations = []
-    carrying = set(
-        bones
-    )  # bones and what carries them; lights, targets and footprints beside them do not matter
+def _bind_pose(scene: _Scene) -> dict[int, Any]:
+    """Return where the bones stand in the pose that the skin is bound to, as matrices `[4, 4]` by node."""
+    nodes, parents, bones = scene.nodes, scene.parents, scene.bones
+    bind: dict[int, Any] = {}
+    for cluster in scene.clusters:
+        if cluster.bone_node is not None:
+            bind.setdefault(cluster.bone_node.typed_id, _matrix(cluster.bind_to_world))
     for i in bones:
+        if i not in bind:  # a bone that moves no vertex stands as in the scene, on its parent's bind pose
+            own = _matrix(nodes[i].node_to_parent)
+            bind[i] = bind[parents[i]] @ own if parents[i] in bind else _matrix(nodes[i].node_to_world)
+    if not scene.clusters:
+        # Nothing tells the bind pose; the root's own place is that of the first frame, so stand it over
+        # the origin.
+        away = bind[bones[0]][[0, 2], 3].copy()
+        for i in bones:
+            bind[i][[0, 2], 3] -= away
+    return bind
+
+
+def _moving(scene: _Scene) -> list[int]:
+    """Return the nodes whose motion is looked at: bones and what carries them; without bones all. Lights,
+    targets and footprints beside them do not matter.
+    """
+    nodes, parents = scene.nodes, scene.parents
+    carrying = set(scene.bones)
+    for i in scene.bones:
         while parents[i] >= 0 and parents[i] not in carrying:
             i = parents[i]
             carrying.add(i)
-    moving = [i for i in range(len(nodes)) if usable[i] and parents[i] >= 0 and (not bones or i in carrying)]
+    return [
+        i
+        for i, node in enumerate(nodes)
+        if int(node.attrib_type) not in _CAMERAS and parents[i] >= 0 and (not scene.bones or i in carrying)
+    ]
+
+
+def _animations(scene: _Scene, body: BinaryChunk) -> list[dict[str, Any]]:
+    """Return the takes that move anything. Raises ValueError where they are too long together."""
+    moving = _moving(scene)
+    animations = []
     asked = 0
-    for stack in stacks:
-        anim = stack.anim
+    for stack in scene.stacks:
         length = float(stack.time_end - stack.time_begin)
         frames = round(length * FPS) + 1 if 0 <= length < CLIP_SECONDS else 1
         asked += frames * len(moving)
         if asked > FBX_SAMPLES:
             raise ValueError(f"its takes, up to '{stack.name}' of {length:.0f} s, are too long")
-        times = stack.time_begin + np.arange(frames) / FPS
-        samplers: list[dict[str, Any]] = []
-        channels: list[dict[str, Any]] = []
-        for i in moving:
-            node = nodes[i]
-            values = np.array([_transform(node.evaluate_transform(anim, t)) for t in times])
-            for name, columns in (
-                ("translation", slice(0, 3)),
-                ("rotation", slice(3, 7)),
-                ("scale", slice(7, 10)),
-            ):
-                own = values[:, columns]
-                steady = np.abs(own - own[:1]).max() < 1e-7
-                if steady and np.abs(own[0] - still[i, columns]).max() < 1e-7 and i not in bones[:1]:
-                    continue
-                kept = 1 if steady and i not in bones[:1] else frames
-                source = body.array(times[:kept] - stack.time_begin, 5126)
-                samplers.append({"input": source, "output": body.array(own[:kept], 5126)})
-                channels.append({"sampler": len(samplers) - 1, "target": {"node": i, "path": name}})
-        if channels:
-            animations.append(
-                {"name": stack.name, "samplers": samplers, "channels": channels, "extras": {"fps": FPS}}
-            )
-    if animations:
-        document["animations"] = animations
-    return glb_bytes(document, body)
+        animation = _animation(scene, stack, frames, moving, body)
+        if animation["channels"]:
+            animations.append(animation)
+    return animations
+
+
+def _animation(
+    scene: _Scene, stack: Any, frames: int, moving: list[int], body: BinaryChunk
+) -> dict[str, Any]:
+    """Return a take with a channel for all that does not stand as its node. The first bone has all channels:
+    they keep the length of the take.
+    """
+    anim = stack.anim
+    times = stack.time_begin + np.arange(frames) / FPS
+    samplers: list[dict[str, Any]] = []
+    channels: list[dict[str, Any]] = []
+    for i in moving:
+        node = scene.nodes[i]
+        root = i in scene.bones[:1]
+        values = np.array([_transform(node.evaluate_transform(anim, t)) for t in times])
+        for name, columns in _PATHS:
+            own = values[:, columns]
+            steady = np.abs(own - own[:1]).max() < 1e-7
+            if steady and np.abs(own[0] - scene.still[i, columns]).max() < 1e-7 and not root:
+                continue
+            kept = 1 if steady and not root else frames
+            source = body.array(times[:kept] - stack.time_begin, 5126)
+            samplers.append({"input": source, "output": body.array(own[:kept], 5126)})
+            channels.append({"sampler": len(samplers) - 1, "target": {"node": i, "path": name}})
+    return {"name": stack.name, "samplers": samplers, "channels": channels, "extras": {"fps": FPS}}
 
 
 if __name__ == "__main__":
