@@ -20,7 +20,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.formats.gltf.writer import write_glb
+from metagraph.formats.gltf.writer import Keys, write_glb
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
@@ -364,7 +364,7 @@ def _write_glb(path: Path, clips: list[Clip], animal: Animal) -> None:
     """Write a GLB whose joints have the units and axes of the tool, under a node that makes metres with Y up
     of them.
     """
-    write_glb(path, clips, quantize=False)
+    write_glb(path, clips, keys=Keys(quantize=False))
     raw = path.read_bytes()
     (length,) = struct.unpack_from("<I", raw, 12)
     document, rest = json.loads(raw[20 : 20 + length]), raw[20 + length :]

@@ -221,7 +221,8 @@ def write_machine_glb(
     """Write the GLB engines' own state machines play: the joints' nodes stand in the base pose, against which
     additive layers are taken, and every state has an animation of its name. Raises FileError.
     """
-    from metagraph.formats.gltf.writer import write_glb
+    from metagraph.formats.gltf.writer import ForEngine, write_glb
 
     assert project.skeleton is not None
-    write_glb(path, animations(project, machines), character, stand=anatomy.base_pose(project))
+    engine = ForEngine(stand=anatomy.base_pose(project))
+    write_glb(path, animations(project, machines), character, engine=engine)

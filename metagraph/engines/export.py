@@ -196,7 +196,7 @@ def _write_glb(
     compress: bool,
 ) -> list[str]:
     """Write the GLB, without the meshes that are hidden; return what is not in it, in words."""
-    from metagraph.formats.gltf.writer import write_glb
+    from metagraph.formats.gltf.writer import ForEngine, write_glb
 
     skeleton = project.skeleton
     assert skeleton is not None
@@ -212,7 +212,7 @@ def _write_glb(
         ) from None
     shown, notes = mesh_on(skeleton, character, project.hidden)
     presets = presets_of(shown.morphs, project.face.channels) if shown is not None else {}
-    write_glb(path, clips, shown, expressions=presets, compress=compress)
+    write_glb(path, clips, shown, engine=ForEngine(expressions=presets), compress=compress)
     return notes
 
 

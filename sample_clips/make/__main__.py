@@ -11,7 +11,7 @@ import argparse
 import time
 from pathlib import Path
 
-from metagraph.formats.gltf.writer import write_glb
+from metagraph.formats.gltf.writer import Keys, write_glb
 from sample_clips.make.catalogue import RECIPES, SEATED
 from sample_clips.make.clip_sheet import sheet
 from sample_clips.make.recipe import animate
@@ -43,7 +43,7 @@ def main() -> None:
             clip = animate(recipe)
             path = folder / f"{recipe.name}.glb"
             tolerance = STANDING if recipe.layer == "body" else TOLERANCE
-            write_glb(path, [clip], quantize=True, tolerance=tolerance, pose_nodes=True)
+            write_glb(path, [clip], keys=Keys(tolerance=tolerance, pose_nodes=True))
             size, count = size + path.stat().st_size, count + 1
             if options.sheets:
                 sheet(clip, options.sheets / f"{recipe.name}.png")

@@ -28,6 +28,7 @@ sys.path.insert(0, str(ROOT))
 from metagraph.formats.bvh.file import read_bvh, write_bvh  # noqa: E402
 from metagraph.formats.clips import import_clips  # noqa: E402
 from metagraph.formats.gltf.reader import read_gltf_clips, write_glb  # noqa: E402
+from metagraph.formats.gltf.writer import Keys  # noqa: E402
 from metagraph.motion import rotation  # noqa: E402
 from metagraph.motion.clip import Clip  # noqa: E402
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton  # noqa: E402
@@ -190,7 +191,7 @@ def main() -> None:
         files = []
         for i in range(20):
             files.append(folder / f"clip{i}.glb")
-            write_glb(files[-1], [clip.renamed(f"clip{i}")], quantize=False, tolerance=0)
+            write_glb(files[-1], [clip.renamed(f"clip{i}")], keys=Keys(quantize=False, tolerance=0))
         print(
             f"\nGLB, 20 files of one clip, 96 frames, 61 joints each, {files[0].stat().st_size / 1e3:.0f} kB "
             "a file"

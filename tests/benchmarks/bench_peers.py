@@ -37,6 +37,7 @@ from bench_preview import crowd as standing  # noqa: E402
 from metagraph.engines.export_document import to_document  # noqa: E402
 from metagraph.formats.bvh.file import read_bvh  # noqa: E402
 from metagraph.formats.gltf.reader import read_character, read_gltf_clips, write_glb  # noqa: E402
+from metagraph.formats.gltf.writer import Keys  # noqa: E402
 
 Work = Callable[[], object]
 SAMPLE = ROOT / "sample_clips" / "sample.metagraph.yaml"
@@ -103,7 +104,7 @@ def files(folder: Path) -> Iterator[Row]:
     clip, some = bench_formats.invented(96), []
     for i in range(60):
         some.append(folder / f"clip{i}.glb")
-        write_glb(some[-1], [clip.renamed(f"clip{i}")], quantize=False, tolerance=0)
+        write_glb(some[-1], [clip.renamed(f"clip{i}")], keys=Keys(quantize=False, tolerance=0))
     limit, ours, *peers = bench_formats.glb_readers(some).items()
     for name, reader in [*peers, limit]:
         peer, _, holds = name.partition(" + ")

@@ -9,6 +9,7 @@ import pytest
 
 from metagraph.formats.bvh.file import read_bvh, write_bvh
 from metagraph.formats.gltf.reader import read_gltf_clips, write_glb
+from metagraph.formats.gltf.writer import Keys
 from metagraph.formats.store import open_project
 from metagraph.graph.model import Project
 from metagraph.playback.bake import bake
@@ -35,7 +36,7 @@ def test_a_baked_performance_read_back_has_its_joints_where_the_preview_has_them
         write_bvh(clip, path)
         again = read_bvh(path, scale=0.01)
     else:
-        write_glb(path, [clip], quantize=False)
+        write_glb(path, [clip], keys=Keys(quantize=False))
         again = read_gltf_clips(path)[0]
     times = np.arange(clip.frames) / clip.fps
     _, shown = project.skeleton.globals(pose_at(plan, project, times))

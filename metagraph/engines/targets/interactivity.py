@@ -219,7 +219,7 @@ class _Lane:
 
 def write(order: ExportOrder) -> Made:
     """Write the GLB."""
-    from metagraph.formats.gltf.writer import write_glb
+    from metagraph.formats.gltf.writer import ForEngine, write_glb
 
     project, glb = order.project, order.folder / f"{order.stem}.glb"
     assert project.skeleton is not None
@@ -235,9 +235,7 @@ def write(order: ExportOrder) -> Made:
         glb,
         clips,
         body,
-        stand=anatomy.base_pose(project),
-        moved=moved,
-        extensions={"KHR_interactivity": chart},
+        engine=ForEngine(anatomy.base_pose(project), moved, {"KHR_interactivity": chart}),
     )
     events = order.folder / f"{order.stem}.events.json"
     names = [f"{m.layer}.action.{s.name}" for m in built for s in m.states if not s.loop]

@@ -21,7 +21,7 @@ from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
 from metagraph.errors import FileError
-from metagraph.formats.gltf.writer import write_glb
+from metagraph.formats.gltf.writer import ForEngine, write_glb
 from metagraph.graph import anatomy
 from metagraph.graph.face.curves import worn
 from metagraph.graph.face.expression_presets import presets_of
@@ -195,8 +195,10 @@ def _write(order: ExportOrder) -> Made:
         path,
         [replace(c.renamed(n), skeleton=skeleton) for c, n in zip(clips, names, strict=True)],
         replace(body, skeleton=skeleton),
-        stand=_grounded(stand, skeleton, roles),
-        extensions={"VRMC_vrm": extension(project, bones, body.morphs, mesh, meta)},
+        engine=ForEngine(
+            stand=_grounded(stand, skeleton, roles),
+            extensions={"VRMC_vrm": extension(project, bones, body.morphs, mesh, meta)},
+        ),
     )
     order.tell(2, 2, "done")
     if not said:

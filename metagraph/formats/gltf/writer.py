@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -46,30 +47,58 @@ TOGETHER = 64  # clips whose keys are chosen together: of a large set not all ar
 SCENE = "Character"  # what the scene of a GLB that stands in a pose is called
 
 
+@dataclass(frozen=True)
+class Keys:
+    """How the keys of clips are stored.
+
+    quantize: rotations as normalised 16-bit integers (error below 0.003 degrees). tolerance: how far keys may
+    be thinned out: the largest change of a quaternion component or, in metres, of a translation; by default
+    5e-5 when quantizing, else 0. A rotation that stays the same keeps one key. pose_nodes: joints that stand
+    still, alike in every clip, are posed by their nodes and cost no key at all; the rest pose is then only in
+    the inverse bind matrices, as in many exporters' files.
+    """
+
+    quantize: bool = True
+    tolerance: float | None = None
+    pose_nodes: bool = False
+
+    @property
+    def off(self) -> float:
+        """How far thinned keys may be off."""
+        return (5e-5 if self.quantize else 0.0) if self.tolerance is None else self.tolerance
+
+
+@dataclass(frozen=True, eq=False)
+class ForEngine:
+    """What a file for an engine has beside clips and a character.
+
+    stand: the pose the joints' nodes have, the rest pose when None; the skin stays bound to the rest pose,
+    and the scene gets a name, with which some engines' paths begin. moved: clip name -> the joints it moves,
+    all where None. extensions: of the document, by name. expressions: name -> morph target -> weight, beside
+    the targets' names in the mesh's `extras`.
+    """
+
+    stand: Pose | None = None
+    moved: Mapping[str, Collection[int]] | None = None
+    extensions: Mapping[str, Any] | None = None
+    expressions: Mapping[str, Mapping[str, float]] | None = None
+
+
+SMALL_KEYS = Keys()
+PLAIN = ForEngine()
+
+
 def write_glb(
     path: str | Path,
     clips: Sequence[Clip],
     character: Character | None = None,
-    quantize: bool = True,
-    tolerance: float | None = None,
-    pose_nodes: bool = False,
-    stand: Pose | None = None,
-    moved: Mapping[str, Collection[int]] | None = None,
-    extensions: Mapping[str, Any] | None = None,
-    expressions: Mapping[str, Mapping[str, float]] | None = None,
+    keys: Keys = SMALL_KEYS,
+    engine: ForEngine = PLAIN,
     compress: bool = False,
 ) -> None:
     """Write one skeleton, its skin and every clip as an animation.
 
-    clips: all on the same skeleton, which is also the character's. quantize: store rotations as normalised
-    16-bit integers (error below 0.003 degrees). tolerance: how far keys may be thinned out: the largest
-    change of a quaternion component or, in metres, of a translation; by default 5e-5 when quantizing, else 0.
-    A rotation that stays the same keeps one key. pose_nodes: joints that stand still, alike in every clip,
-    are posed by their nodes and cost no key at all; the rest pose is then only in the inverse bind matrices,
-    as in many exporters' files. stand: the pose the joints' nodes have, the rest pose when None; the skin
-    stays bound to the rest pose, and the scene gets a name, with which some engines' paths begin. moved: clip
-    name -> the joints it moves, all where None. extensions: of the document, by name. expressions: name ->
-    morph target -> weight, beside the targets' names in the mesh's `extras`. compress: pack the file, by
+    clips: all on the same skeleton, which is also the character's. compress: pack the file, by
     EXT_meshopt_compression and KHR_mesh_quantization, which whoever reads it must know then; and leave out
     channels that keep a joint as its node is posed. Raises FileError when the file
     cannot be written, ValueError for mixed skeletons.
@@ -81,55 +110,86 @@ def write_glb(
     for clip in clips:
         if clip.skeleton is not skeleton and clip.skeleton != skeleton:
             raise ValueError(f"clip '{clip.name}' is on another skeleton; retarget it first")
-    tolerance = (5e-5 if quantize else 0.0) if tolerance is None else tolerance
-    body = BinaryChunk(compress)
-    document: dict[str, Any] = {"asset": {"version": "2.0", "generator": "Metagraph"}, "scene": 0}
-    document["nodes"] = nodes = _joint_nodes(skeleton, skeleton.rest if stand is None else stand)
-    roots = [i for i, p in enumerate(skeleton.parents) if p < 0]
-    # Two roots need a common node above them for the skin to be valid.
-    if len(roots) > 1:
-        nodes.append({"name": "Armature", "children": roots})
-        roots = [len(nodes) - 1]
+    file = _File(skeleton, keys, engine, compress)
+    shown = character if character is not None and len(character.triangles) else None
+    file.add_body(shown)
+    file.add_clips(clips)
+    file.add_extensions(packed_mesh=compress and shown is not None)
+    write_atomically(path, glb_bytes(file.document, file.body))
+
+
+class _File:
+    """A file being put together. mesh_node: what carries the mesh, None without. morphs: its targets."""
+
+    def __init__(self, skeleton: Skeleton, keys: Keys, engine: ForEngine, compress: bool) -> None:
+        self.skeleton, self.keys, self.engine = skeleton, keys, engine
+        self.body = BinaryChunk(compress)
+        self.document: dict[str, Any] = {"asset": {"version": "2.0", "generator": "Metagraph"}, "scene": 0}
+        self.nodes = _joint_nodes(skeleton, skeleton.rest if engine.stand is None else engine.stand)
+        self.document["nodes"] = self.nodes
+        self.morphs: tuple[str, ...] = ()
+        self.mesh_node: int | None = None
+
+    def add_body(self, character: Character | None) -> None:
+        """Add the skin, the mesh of a character, and the scene they stand in."""
+        roots = [i for i, p in enumerate(self.skeleton.parents) if p < 0]
+        # Two roots need a common node above them for the skin to be valid.
+        if len(roots) > 1:
+            self.nodes.append({"name": "Armature", "children": roots})
+            roots = [len(self.nodes) - 1]
+        self.document["skins"] = [_skin(self.body, self.skeleton, roots[0])]
+        if character is not None:
+            self.mesh_node = _add_character(self.document, self.body, character)
+            self.morphs = character.morphs
+            if self.engine.expressions and self.morphs:
+                extras = self.document["meshes"][0].setdefault("extras", {})
+                extras["expressions"] = self.engine.expressions
+            roots = [*roots, self.mesh_node]
+        named = {} if self.engine.stand is None else {"name": SCENE}
+        self.document["scenes"] = [{**named, "nodes": roots}]
+
+    def add_clips(self, clips: Sequence[Clip]) -> None:
+        """Add clips as animations, the keys of so many chosen together."""
+        if not clips:
+            return
+        off = self.keys.off
+        posed = _pose_still_nodes(self.nodes, clips, off) if self.keys.pose_nodes else frozenset()
+        animations = []
+        for first in range(0, len(clips), TOGETHER):
+            some = clips[first : first + TOGETHER]
+            turns = kept_frames([clip.rotations for clip in some], off, True)
+            moves = kept_frames([clip.translations for clip in some], off, False)
+            for clip, turned, placed in zip(some, turns, moves, strict=True):
+                animation = _Animation(self, clip)
+                animation.add_turns(turned, posed)
+                animation.add_moves(placed)
+                animation.add_weights()
+                animations.append(animation.described())
+        self.document["animations"] = animations
+
+    def add_extensions(self, packed_mesh: bool) -> None:
+        """Name the extensions the file has, and what a packed mesh needs."""
+        document, extensions = self.document, self.engine.extensions
+        if extensions:
+            document["extensionsUsed"] = sorted(extensions)
+            document["extensions"] = dict(extensions)
+        if packed_mesh:
+            for name in ("extensionsUsed", "extensionsRequired"):
+                document[name] = sorted({*document.get(name, ()), "KHR_mesh_quantization"})
+
+
+def _skin(body: BinaryChunk, skeleton: Skeleton, root: int) -> dict[str, Any]:
+    """Return the skin that is bound to the rest pose."""
     rest_r, rest_p = skeleton.globals(skeleton.rest)
     inverse = np.tile(np.eye(4), (len(skeleton), 1, 1))
     inverse[:, :3, :3] = rotation.to_matrix(rest_r).transpose(0, 2, 1)
     inverse[:, :3, 3] = -np.einsum("jab,jb->ja", inverse[:, :3, :3], rest_p)
-    document["skins"] = [
-        {
-            "name": "Skin",
-            "joints": list(range(len(skeleton))),
-            "inverseBindMatrices": body.array(inverse.transpose(0, 2, 1).reshape(-1, 16), FLOAT),
-            "skeleton": roots[0],
-        }
-    ]
-    morphs: tuple[str, ...] = ()
-    mesh_node = None
-    if character is not None and len(character.triangles):
-        mesh_node = _add_character(document, body, character)
-        morphs = character.morphs
-        if expressions and morphs:
-            document["meshes"][0].setdefault("extras", {})["expressions"] = expressions
-        roots = [*roots, mesh_node]
-    document["scenes"] = [{"nodes": roots} if stand is None else {"name": SCENE, "nodes": roots}]
-    posed = _pose_still_nodes(nodes, clips, tolerance) if pose_nodes and clips else frozenset()
-    animations = []
-    for first in range(0, len(clips), TOGETHER):
-        some = clips[first : first + TOGETHER]
-        turns = kept_frames([clip.rotations for clip in some], tolerance, True)
-        moves = kept_frames([clip.translations for clip in some], tolerance, False)
-        animations += [
-            _animation(body, nodes, clip, kept, quantize, tolerance, morphs, mesh_node, posed, moved)
-            for clip, *kept in zip(some, turns, moves, strict=True)
-        ]
-    if animations:
-        document["animations"] = animations
-    if extensions:
-        document["extensionsUsed"] = sorted(extensions)
-        document["extensions"] = dict(extensions)
-    if compress and character is not None and len(character.triangles):
-        for name in ("extensionsUsed", "extensionsRequired"):
-            document[name] = sorted({*document.get(name, ()), "KHR_mesh_quantization"})
-    write_atomically(path, glb_bytes(document, body))
+    return {
+        "name": "Skin",
+        "joints": list(range(len(skeleton))),
+        "inverseBindMatrices": body.array(inverse.transpose(0, 2, 1).reshape(-1, 16), FLOAT),
+        "skeleton": root,
+    }
 
 
 def _joint_nodes(skeleton: Skeleton, pose: Pose) -> list[dict[str, Any]]:
@@ -254,60 +314,75 @@ def _pose_still_nodes(nodes: list[dict[str, Any]], clips: Sequence[Clip], tolera
     return frozenset(still.tolist())
 
 
-def _animation(
-    body: BinaryChunk,
-    nodes: list[dict[str, Any]],
-    clip: Clip,
-    frames: Sequence[list[Array]],
-    quantize: bool,
-    tolerance: float,
-    morphs: tuple[str, ...],
-    mesh_node: int | None,
-    posed: frozenset[int],
-    moved: Mapping[str, Collection[int]] | None,
-) -> dict[str, Any]:
-    """Return a clip as an animation. frames: those to keep of each joint's turns, and of each translation."""
-    chosen = range(len(clip.skeleton)) if moved is None else moved[clip.name]
-    times = np.arange(clip.frames) / clip.fps
-    samplers: list[dict[str, Any]] = []
-    channels: list[dict[str, Any]] = []
-    places: dict[tuple[int, int], int] = {}
+class _Animation:
+    """A clip while it becomes an animation. chosen: the joints it moves."""
 
-    def add(node: int, path: str, kept: Array, values: Array, component: int) -> None:
+    def __init__(self, file: _File, clip: Clip) -> None:
+        moved = file.engine.moved
+        self.file, self.clip, self.partly = file, clip, moved is not None
+        self.chosen: Collection[int] = range(len(clip.skeleton)) if moved is None else moved[clip.name]
+        self.times = np.arange(clip.frames) / clip.fps
+        self.samplers: list[dict[str, Any]] = []
+        self.channels: list[dict[str, Any]] = []
+        self.places: dict[tuple[int, int], int] = {}
+
+    def described(self) -> dict[str, Any]:
+        """Return the animation as glTF has it."""
+        clip = self.clip
+        extras = {"fps": clip.fps}
+        return {"name": clip.name, "samplers": self.samplers, "channels": self.channels, "extras": extras}
+
+    def _add(self, node: int, path: str, kept: Array, values: Array, component: int) -> None:
+        """Add a channel with the values at the frames that are kept."""
+        body = self.file.body
         packing = TURNS if component == SHORT else AS_THEY_ARE if path == "rotation" else MOVES
-        source = body.array(times[kept], FLOAT, bounds=True, shared="times")
+        source = body.array(self.times[kept], FLOAT, bounds=True, shared="times")
         output = body.array(values, component, normalized=component == SHORT, packing=packing, shared=path)
-        place = places.setdefault((source, output), len(samplers))
-        if place == len(samplers):
-            samplers.append({"input": source, "output": output})
-        channels.append({"sampler": place, "target": {"node": node, "path": path}})
+        place = self.places.setdefault((source, output), len(self.samplers))
+        if place == len(self.samplers):
+            self.samplers.append({"input": source, "output": output})
+        self.channels.append({"sampler": place, "target": {"node": node, "path": path}})
 
-    rotations = clip.rotations.astype(np.float64)
-    written = np.round(rotation.normalize(rotations) * 32767) if quantize else rotations
-    for joint, kept in enumerate(frames[0]):
-        if joint in posed or joint not in chosen:
-            continue
-        if moved is not None and joint == min(chosen) and joint != 0 and clip.frames > 1 and len(kept) == 1:
-            kept = np.array([0, clip.frames - 1])  # keeps the clip's length, whatever else stands still
-        node = nodes[joint]
-        single = body.compress and len(kept) == 1 and joint > 0
-        if single and _as_posed(rotations[kept[0], joint], node["rotation"]):
-            continue
-        add(joint, "rotation", kept, written[kept, joint], SHORT if quantize else FLOAT)
-    translations = clip.translations.astype(np.float64)
-    for place, kept in zip(clip.translated, frames[1], strict=True):
-        if place not in chosen:
-            continue
-        if place == 0 and clip.frames > 1 and len(kept) == 1:
-            kept = np.array([0, clip.frames - 1])  # keeps the clip's length, whatever else stands still
-        add(place, "translation", kept, translations[kept, clip.translated.index(place)], FLOAT)
-    shared = [clip.morphs.index(name) if name in clip.morphs else -1 for name in morphs]
-    if mesh_node is not None and clip.weights is not None and any(i >= 0 for i in shared):
+    def add_turns(self, frames: Sequence[Array], posed: frozenset[int]) -> None:
+        """Add the joints' turns. frames: those to keep of each. posed: joints that need none."""
+        clip, compress = self.clip, self.file.body.compress
+        rotations = clip.rotations.astype(np.float64)
+        quantize = self.file.keys.quantize
+        written = np.round(rotation.normalize(rotations) * 32767) if quantize else rotations
+        for joint, kept in enumerate(frames):
+            if joint in posed or joint not in self.chosen:
+                continue
+            if self.partly and joint == min(self.chosen) and joint != 0 and len(kept) == 1:
+                kept = self._whole_length(kept)
+            single = compress and len(kept) == 1 and joint > 0
+            if single and _as_posed(rotations[kept[0], joint], self.file.nodes[joint]["rotation"]):
+                continue
+            self._add(joint, "rotation", kept, written[kept, joint], SHORT if quantize else FLOAT)
+
+    def add_moves(self, frames: Sequence[Array]) -> None:
+        """Add the joints' translations. frames: those to keep of each that has any."""
+        translations = self.clip.translations.astype(np.float64)
+        for column, (joint, kept) in enumerate(zip(self.clip.translated, frames, strict=True)):
+            if joint not in self.chosen:
+                continue
+            if joint == 0 and len(kept) == 1:
+                kept = self._whole_length(kept)
+            self._add(joint, "translation", kept, translations[kept, column], FLOAT)
+
+    def _whole_length(self, kept: Array) -> Array:
+        """Return a joint's frames with which the clip keeps its length, whatever else stands still."""
+        return np.array([0, self.clip.frames - 1]) if self.clip.frames > 1 else kept
+
+    def add_weights(self) -> None:
+        """Add the weights of the mesh's morph targets, where the clip has any of them."""
+        clip, node = self.clip, self.file.mesh_node
+        shared = [clip.morphs.index(name) if name in clip.morphs else -1 for name in self.file.morphs]
+        if node is None or clip.weights is None or not any(i >= 0 for i in shared):
+            return
         weights = np.stack([clip.weights[:, i] if i >= 0 else np.zeros(clip.frames) for i in shared], 1)
-        still = bool((np.abs(weights - weights[:1]) <= tolerance).all())
+        still = bool((np.abs(weights - weights[:1]) <= self.file.keys.off).all())
         kept = np.array([0]) if still else np.arange(clip.frames)
-        add(mesh_node, "weights", kept, weights[kept].reshape(-1), FLOAT)
-    return {"name": clip.name, "samplers": samplers, "channels": channels, "extras": {"fps": clip.fps}}
+        self._add(node, "weights", kept, weights[kept].reshape(-1), FLOAT)
 
 
 def _as_posed(turn: Array, node: list[float]) -> bool:

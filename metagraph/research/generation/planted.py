@@ -18,7 +18,7 @@ from msgspec import Struct
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.conversations.writers import write_json
-from metagraph.formats.gltf.writer import write_glb
+from metagraph.formats.gltf.writer import Keys, write_glb
 from metagraph.generation.features import RATE
 from metagraph.generation.networks import FPS
 from metagraph.generation.poses import PoseRig, poses_of
@@ -126,9 +126,8 @@ def _write(
     for side in (0, 1):
         clip = performed(project, spoken.conversation, side)
         path = folder / f"{name}_{side + 1}.glb"
-        write_glb(
-            path, [replace(clip, name=path.stem)], tolerance=0.0
-        )  # thinning would take most of the time
+        # Thinning would take most of the time.
+        write_glb(path, [replace(clip, name=path.stem)], keys=Keys(tolerance=0.0))
     import soundfile
 
     content = io.BytesIO()

@@ -18,6 +18,7 @@ import pytest
 from metagraph.errors import FileError
 from metagraph.formats.gltf.reader import read_character, read_gltf_clips, vrm_roles, write_glb
 from metagraph.formats.gltf.skeleton import compose
+from metagraph.formats.gltf.writer import Keys
 from metagraph.motion import rotation
 from metagraph.motion.character_mesh import Character, Material, Surface
 from metagraph.motion.clip import Clip
@@ -617,7 +618,7 @@ def assert_same(clip: Clip, back: Clip, tolerance: float) -> None:
 @pytest.mark.parametrize(("quantize", "tolerance"), [(True, 1e-4), (False, 1e-6)])
 def test_written_and_read_back_clips_are_equal(tmp_path: Path, quantize: bool, tolerance: float) -> None:
     clips = moving()
-    write_glb(tmp_path / "all.glb", clips, quantize=quantize)
+    write_glb(tmp_path / "all.glb", clips, keys=Keys(quantize))
     for clip, back in zip(clips, read_gltf_clips(tmp_path / "all.glb"), strict=True):
         assert_same(clip, back, tolerance)
 
@@ -650,8 +651,8 @@ def test_a_written_character_reads_back_with_its_skin_morphs_and_materials(tmp_p
 
 def test_thinning_out_keys_keeps_the_motion_within_tolerance_and_shrinks_the_file(tmp_path: Path) -> None:
     clips = moving(4000)
-    write_glb(tmp_path / "all.glb", clips, tolerance=0)
-    write_glb(tmp_path / "thin.glb", clips, tolerance=1e-3)
+    write_glb(tmp_path / "all.glb", clips, keys=Keys(tolerance=0))
+    write_glb(tmp_path / "thin.glb", clips, keys=Keys(tolerance=1e-3))
     assert_same(clips[0], read_gltf_clips(tmp_path / "thin.glb")[0], 1.1e-3)
     assert (tmp_path / "thin.glb").stat().st_size < 0.8 * (tmp_path / "all.glb").stat().st_size
 
@@ -679,7 +680,7 @@ def validator() -> tuple[str, str]:
 @pytest.mark.parametrize("quantize", [True, False])
 def test_written_files_pass_the_khronos_validator(tmp_path: Path, quantize: bool) -> None:
     node, folder = validator()
-    write_glb(tmp_path / "clips.glb", moving(), quantize=quantize)
+    write_glb(tmp_path / "clips.glb", moving(), keys=Keys(quantize))
     character = figure()
     image = base64.b64decode(
         "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=="
@@ -687,7 +688,10 @@ def test_written_files_pass_the_khronos_validator(tmp_path: Path, quantize: bool
     materials = (Material("skin", (1, 0.5, 0.25, 1), image), character.materials[1])
     fields = {f: getattr(character, f) for f in character.__dataclass_fields__}
     write_glb(
-        tmp_path / "figure.glb", moving(), Character(**{**fields, "materials": materials}), quantize=quantize
+        tmp_path / "figure.glb",
+        moving(),
+        Character(**{**fields, "materials": materials}),
+        keys=Keys(quantize),
     )
     program = (
         "const v=require('gltf-validator'),fs=require('fs');(async()=>{for(const f of process.argv.slice(1))"
