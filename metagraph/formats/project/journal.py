@@ -75,41 +75,48 @@ _latest: list[tuple[ref[Project], ref[Project], Data] | None] = [None]
 def _differing(before: Project, after: Project) -> Data:
     out: Data = {}
     for key in ("name", "character", "base", "settings", "roles", "parts"):
-        if getattr(before, key) is not getattr(after, key) and getattr(before, key) != getattr(after, key):
+        if _changed(before, after, key):
             out[key] = to_data(_bare(after))[key]
     if before.hidden != after.hidden:
         out["hidden"] = list(after.hidden)
     if before.language != after.language:
         out["language"] = after.language
     for key in STRUCTS:
-        if getattr(before, key) is not getattr(after, key) and getattr(before, key) != getattr(after, key):
+        if _changed(before, after, key):
             out[key] = struct_data(getattr(after, key))
-    if before.markov is not after.markov and before.markov != after.markov:
+    if _changed(before, after, "markov"):
         out["markov"] = {layer: markov_data(m) for layer, m in after.markov.items()}
     if before.skeleton is not after.skeleton:
         bones = [skeleton_data(x) if x is not None else [] for x in (before.skeleton, after.skeleton)]
         if bones[0] != bones[1]:  # to the last digit; it may have been read twice
             out["skeleton"] = bones[1]
     _keyed(out, "clips", before.clips, after.clips, clip_data)
-    layers: Data = {}
-    for layer in LAYERS:
-        old, new = before.graphs[layer], after.graphs[layer]
-        if old is new:
-            continue
-        part: Data = {}
-        if old.start != new.start:
-            part["start"] = new.start
-        if old.weights != new.weights:
-            part["weights"] = weights_data(new)
-        _keyed(part, "stances", old.stances, new.stances, stance_data)
-        _keyed(part, "actions", old.actions, new.actions, action_data)
-        if part:
-            layers[layer] = part
+    layers = {layer: part for layer in LAYERS if (part := _layer(before.graphs[layer], after.graphs[layer]))}
     if layers:
         out["layers"] = layers
-    if before.manual is not after.manual and before.manual != after.manual:
+    if _changed(before, after, "manual"):
         out["manual"] = _manual(before.manual, after.manual)
     return out
+
+
+def _changed(before: Project, after: Project, field: str) -> bool:
+    """Whether a field differs; one object is not looked at."""
+    old, new = getattr(before, field), getattr(after, field)
+    return old is not new and old != new
+
+
+def _layer(old: MetaGraph, new: MetaGraph) -> Data:
+    """Return what changed in a layer's graph."""
+    part: Data = {}
+    if old is new:
+        return part
+    if old.start != new.start:
+        part["start"] = new.start
+    if old.weights != new.weights:
+        part["weights"] = weights_data(new)
+    _keyed(part, "stances", old.stances, new.stances, stance_data)
+    _keyed(part, "actions", old.actions, new.actions, action_data)
+    return part
 
 
 def _manual(before: Mapping[Layer, Manual], after: Mapping[Layer, Manual]) -> Data:
