@@ -486,56 +486,86 @@ def _load(
     progress: Callable[[int, int], None] | None,
 ) -> Opened:
     """Load the clips without motion, from `found` those that are elsewhere."""
-    notes: list[str] = []
-    clips = dict(project.clips)
     by_path: dict[str, list[ClipEntry]] = {}
-    for entry in clips.values():
+    for entry in project.clips.values():
         if entry.motion is None:
             by_path.setdefault(entry.path, []).append(entry)
-    skeleton = project.skeleton
-    strangers: list[str] = []  # ids of clips that do not fit the skeleton
+    loading = _Loading(project, folder, found)
     for n, (name, entries) in enumerate(by_path.items()):
         if progress is not None:
             progress(n, len(by_path))
-        place = found.get(name) or clip_place(entries[0], folder)
-        path = name
-        if name in found or "\\" in name:
-            absolute_path = folder is None or Path(name).is_absolute()
-            path = place.resolve().as_posix() if absolute_path or folder is None else relative(place, folder)
-        if name in found:
-            notes.append(f"'{original(name)}' has moved to '{path}'")
-        if is_closed(name) and name not in found:
-            continue  # said once, for all of them
+        loading.load(name, entries)
+    return loading.opened()
+
+
+class _Loading:
+    """Clips while their files are read. found: files elsewhere than their path says. strangers: ids of clips
+    that do not fit the skeleton.
+    """
+
+    def __init__(self, project: Project, folder: Path | None, found: Mapping[str, Path]) -> None:
+        self.project, self.folder, self.found = project, folder, found
+        self.clips = dict(project.clips)
+        self.skeleton = project.skeleton
+        self.notes: list[str] = []
+        self.strangers: list[str] = []
+
+    def opened(self) -> Opened:
+        """Return the project with what was read, and what there is to say of it."""
+        project = replace(self.project, clips=self.clips, skeleton=self.skeleton)
+        if self.strangers:
+            project = _brought(project, self.strangers, self.notes)
+        return Opened(project, tuple(dict.fromkeys(self.notes)))
+
+    def load(self, name: str, entries: Sequence[ClipEntry]) -> None:
+        """Read the file of some clips. name: its path in the project."""
+        place = self.found.get(name) or clip_place(entries[0], self.folder)
+        path = self._path(name, place)
+        if name in self.found:
+            self.notes.append(f"'{original(name)}' has moved to '{path}'")
+        if is_closed(name) and name not in self.found:
+            return  # said once, for all of them
         if not is_file(place):
-            notes.append(f"'{shown(name)}' is missing")
-            continue
+            self.notes.append(f"'{shown(name)}' is missing")
+            return
         try:
             now = digest(place)
             read = {a: read_or_kept(place, now, a) for a in dict.fromkeys(e.as_is for e in entries)}
         except Exception as error:  # one bad file never spoils a project
-            notes.append(str(unforeseen(place, error)))
-            continue
+            self.notes.append(str(unforeseen(place, error)))
+            return
         if any(e.digest and now != e.digest for e in entries):
-            notes.append(f"'{path}' has changed since it was imported")
+            self.notes.append(f"'{path}' has changed since it was imported")
         for entry in entries:
             takes = read[entry.as_is]
-            if not 0 <= entry.take < len(takes):
-                notes.append(f"'{path}' no longer has take {entry.take + 1} ('{entry.name}')")
-                continue
-            motion = takes[entry.take].renamed(entry.name)
-            alone = is_face_take(motion)
-            if skeleton is None and not alone:
-                skeleton = motion.skeleton
-            try:
-                if skeleton is not None and not alone:
-                    motion = adopt(motion, skeleton)
-                elif alone:
-                    strangers.append(entry.id)
-            except SkeletonMismatchError:
-                strangers.append(entry.id)
-            clips[entry.id] = with_source(replace(entry, path=path, digest=now), motion)
-    project = replace(project, clips=clips, skeleton=skeleton)
-    return Opened(_brought(project, strangers, notes) if strangers else project, tuple(dict.fromkeys(notes)))
+            if 0 <= entry.take < len(takes):
+                motion = self._fitted(entry, takes[entry.take].renamed(entry.name))
+                self.clips[entry.id] = with_source(replace(entry, path=path, digest=now), motion)
+            else:
+                self.notes.append(f"'{path}' no longer has take {entry.take + 1} ('{entry.name}')")
+
+    def _path(self, name: str, place: Path) -> str:
+        """Return the path that a project with this file has from now on."""
+        if name not in self.found and "\\" not in name:
+            return name
+        if self.folder is None or Path(name).is_absolute():
+            return place.resolve().as_posix()
+        return relative(place, self.folder)
+
+    def _fitted(self, entry: ClipEntry, motion: Clip) -> Clip:
+        """Return motion on the project's skeleton, which the first with a body gives where there is none;
+        what does not fit as it is, and is a stranger.
+        """
+        if is_face_take(motion):
+            self.strangers.append(entry.id)
+            return motion
+        if self.skeleton is None:
+            self.skeleton = motion.skeleton
+        try:
+            return adopt(motion, self.skeleton)
+        except SkeletonMismatchError:
+            self.strangers.append(entry.id)
+            return motion
 
 
 def _brought(project: Project, strangers: Iterable[str], notes: list[str]) -> Project:
