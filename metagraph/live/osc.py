@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from metagraph.graph.words import LAYERS
@@ -28,32 +29,75 @@ def request(address: str, values: Sequence[Any]) -> Mapping[str, Any]:
     word = address.removeprefix(ROOT)
     if word == address:
         raise OscError(f"addresses begin with {ROOT}")
-    more = dict(_field(x) for x in values if isinstance(x, str) and "=" in x)
-    plain = [x for x in values if not (isinstance(x, str) and "=" in x)]
-    texts, numbers = (
-        [x for x in plain if isinstance(x, str)],
-        [float(x) for x in plain if isinstance(x, int | float)],
-    )
+    said = _Values.of(values)
+    found = _of_moving(word, said) or _of_speech(word, said) or _of_session(word, said)
+    if found is None:
+        raise OscError(f"there is no address {address[:80]}")
+    return found
+
+
+@dataclass(frozen=True)
+class _Values:
+    """What a message says. more: the fields it sets by name; plain: its other values, of which some are texts
+    and some numbers.
+    """
+
+    more: dict[str, Any]
+    plain: list[Any]
+    texts: list[str]
+    numbers: list[float]
+
+    @classmethod
+    def of(cls, values: Sequence[Any]) -> _Values:
+        more = dict(_field(x) for x in values if isinstance(x, str) and "=" in x)
+        plain = [x for x in values if not (isinstance(x, str) and "=" in x)]
+        texts = [x for x in plain if isinstance(x, str)]
+        return cls(more, plain, texts, [float(x) for x in plain if isinstance(x, int | float)])
+
+    def first(self, name: str) -> dict[str, str]:
+        """Return the first text as a field of this name, nothing where there is none."""
+        return {name: self.texts[0]} if self.texts else {}
+
+
+def _of_moving(word: str, said: _Values) -> Mapping[str, Any] | None:
+    """Return an ask for motion; None where the address is about something else."""
+    texts, more = said.texts, said.more
     match word:
         case "gesture" | "fidget":
             layer = {"layer": texts[0]} if texts and texts[0] in LAYERS else {}
             return {"do": word} | layer | {"tags": texts[len(layer) :]} | more
         case "change":
-            return {"do": word} | ({"layer": texts[0]} if texts else {}) | more
+            return {"do": word} | said.first("layer") | more
         case "nod" | "shake":
             return {"do": word, "tags": texts} | more
         case "action" | "stance":
             if not texts:
-                raise OscError(f"{address} needs a name")
+                raise OscError(f"{ROOT}{word} needs a name")
             return {"do": word, word: texts[0]} | ({"layer": texts[1]} if len(texts) > 1 else {}) | more
         case "look":
-            return {"do": word, "to": texts[0] if texts else numbers or "user"} | more
-        case "blink" | "status" | "describe":
+            return {"do": word, "to": texts[0] if texts else said.numbers or "user"} | more
+        case "blink":
             return {"do": word} | more
+    return None
+
+
+def _of_speech(word: str, said: _Values) -> Mapping[str, Any] | None:
+    """Return an ask to say a line or words; None where the address is about something else."""
+    match word:
         case "say":
-            return {"do": word} | ({"line": texts[0] if texts else str(plain[0])} if plain else {}) | more
+            line = said.first("line") or ({"line": str(said.plain[0])} if said.plain else {})
+            return {"do": word} | line | said.more
         case "text":
-            return {"do": "say", "text": " ".join(texts)} | more
+            return {"do": "say", "text": " ".join(said.texts)} | said.more
+    return None
+
+
+def _of_session(word: str, said: _Values) -> Mapping[str, Any] | None:
+    """Return what is said of the character's surroundings and to the session; None for any other address."""
+    texts, numbers, more = said.texts, said.numbers, said.more
+    match word:
+        case "status" | "describe":
+            return {"do": word} | more
         case "mode":
             return {"do": word, "mode": texts[0] if texts and texts[0] else None} | more
         case "place":
@@ -61,7 +105,7 @@ def request(address: str, values: Sequence[Any]) -> Mapping[str, Any]:
         case "withdraw":
             return {"do": word, "what": texts[0] if texts else ""} | more
         case "hello":
-            return {"do": word} | ({"token": texts[0]} if texts else {}) | more
+            return {"do": word} | said.first("token") | more
         case "events":
             return {"do": "hello", "events": bool(numbers and numbers[0])} | more
         case "poses":
@@ -71,7 +115,7 @@ def request(address: str, values: Sequence[Any]) -> Mapping[str, Any]:
                 if name in more:
                     poses[name] = bool(more.pop(name)) if name == "translations" else more.pop(name)
             return {"do": "hello", "poses": poses if rate > 0 else None} | more
-    raise OscError(f"there is no address {address[:80]}")
+    return None
 
 
 def _field(text: str) -> tuple[str, Any]:
