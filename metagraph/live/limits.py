@@ -9,6 +9,8 @@ from collections import Counter, deque
 from dataclasses import dataclass, field
 from typing import Any
 
+import msgspec
+
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Project
 from metagraph.playback.planning.understand import find_action, find_stance
@@ -250,6 +252,47 @@ class Limits:
         if over and share.count(client) >= share.of(RATES[lane]):
             return f"more than {RATES[lane]} of '{lane}' in {SPAN:g} s; try again in a moment"
         return ""
+
+
+def beyond(ask: Any, now: float) -> str:
+    """Say which time of an ask is too far ahead, or too long; "" where none is."""
+    for name in ("at", "stroke", "duration"):
+        value = getattr(ask, name, None)
+        if value is None:
+            continue
+        if name == "duration" and value > FARTHEST:
+            return f"{name}: at most {FARTHEST:g} s"
+        if name != "duration" and value > FARTHEST + now:
+            return f"{name}: at most {FARTHEST:g} s ahead; it is {now:.1f} s"
+    return ""
+
+
+@dataclass(frozen=True)
+class Timed:
+    """An ask as it is understood now. missed: seconds since it should have come. why: it comes too late, ""
+    where it does not.
+    """
+
+    ask: Any
+    missed: float
+    why: str = ""
+
+
+def timed(ask: Any, now: float, wait: float) -> Timed:
+    """Return an ask without a start that is over. wait: how long the project lets asks wait."""
+    stroke, late, missed = getattr(ask, "stroke", None), getattr(ask, "late", None), 0.0
+    if ask.at is not None and ask.at < now:
+        missed, ask = now - ask.at, msgspec.structs.replace(ask, at=None)
+    if stroke is not None:
+        missed = max(0.0, now - stroke)
+    if late is not None and missed > late:
+        why = f"asked for {missed:.2f} s ago, and may come {late:g} s late; it is {now:.1f} s"
+        return Timed(ask, missed, why)
+    if late is not None and stroke is None and missed > 0:
+        ask = msgspec.structs.replace(ask, late=late - missed)  # it counts from when it was asked for
+    if missed > wait:
+        return Timed(ask, missed, f"asked for {missed:.1f} s ago; it is {now:.1f} s")
+    return Timed(ask, missed)
 
 
 def unknown(project: Project, ask: Any, limits: Limits) -> str:

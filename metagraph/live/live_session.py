@@ -29,13 +29,14 @@ from metagraph.live.limits import (
     ADDED,
     BML_PER_TICK,
     BUSY,
-    FARTHEST,
     NAMES,
     PENDING,
     PER_TICK,
     SPEECH,
     TAG,
     RequestWords,
+    beyond,
+    timed,
     unknown,
 )
 from metagraph.live.messages import (
@@ -276,47 +277,27 @@ class LiveSession:
     def _admit(self, client: Client, ident: str, key: str, ask: Any, work: TickWork) -> str:
         """Take an ask on; return why not, if it is not."""
         wait = self.project.settings.wait
-        stroke, missed = getattr(ask, "stroke", None), 0.0
-        for name in ("at", "stroke", "duration"):
-            value = getattr(ask, name, None)
-            if value is not None and value > FARTHEST + (0.0 if name == "duration" else self.now):
-                return f"{name}: at most {FARTHEST:g} s" + (
-                    f" ahead; it is {self.now:.1f} s" if name != "duration" else ""
-                )
+        why = beyond(ask, self.now)
+        if why:
+            return why
         goes_on = isinstance(ask, a.Say) and self._goes_on(key, work)
-        if isinstance(ask, a.Say) and ask.audio is not None:
-            begun = self._speech(key)
-            said = 0.0 if begun is None else self.now + self.project.settings.lookahead - begun.start
+        if isinstance(ask, a.Say):
             try:
-                ask = self._sounds.told(key, ask, goes_on, said)
+                ask = self._said(key, ask, goes_on)
             except a.RequestError as error:
                 return str(error)
-        if isinstance(ask, a.Say) and len(ask.text) > SPEECH:
-            return f"at most {SPEECH} characters can be said at once; say it in pieces"
-        if ask.at is not None and ask.at < self.now:
-            missed, ask = self.now - ask.at, msgspec.structs.replace(ask, at=None)
-        if stroke is not None:
-            missed = max(0.0, self.now - stroke)
-        late = getattr(ask, "late", None)
-        if late is not None and missed > late:
-            return f"asked for {missed:.2f} s ago, and may come {late:g} s late; it is {self.now:.1f} s"
-        if late is not None and stroke is None and missed > 0:
-            ask = msgspec.structs.replace(ask, late=late - missed)  # it counts from when it was asked for
-        if missed > wait:
-            return f"asked for {missed:.1f} s ago; it is {self.now:.1f} s"
+        in_time = timed(ask, self.now, wait)
+        if in_time.why:
+            return in_time.why
+        ask = in_time.ask
         lane = self._words.lane(ask)
         if lane is None:
             return unknown(self.project, ask, self.ledger.limits)
         lane = ADDED if goes_on else lane
-        if isinstance(ask, a.Place) and ask.name not in self._names:
-            if len(self._names) >= NAMES:
-                return f"{NAMES} points have names already; use one of them again"
-            self._names.add(ask.name)
-        ledger = self.ledger
-        if key not in ledger.known and len(ledger.known) >= PENDING and ledger.pending(self.now) >= PENDING:
-            own = sum(1 for _ in ledger.of(client.number))
-            if own >= PENDING // max(1, len(self.clients)):
-                return f"{PENDING} requests wait already; try again when some of them have played"
+        why = self._without_name(ask) or self._without_room(client, key)
+        if why:
+            return why
+        ledger, stroke = self.ledger, getattr(ask, "stroke", None)
         wanted = stroke if stroke is not None else self.now if ask.at is None else ask.at
         why = ledger.limits.refusal(lane, wanted, wait, ask.priority, self.now, client.number)
         if why:
@@ -328,8 +309,37 @@ class LiveSession:
             ask = said_on(before, ask)
         work.close(key, "asked again under the same id")
         ledger.limits.planned[client.number] += 1
-        ledger.add(key, Known(client.number, ident, lane, ask.priority, wanted, missed=missed))
+        ledger.add(key, Known(client.number, ident, lane, ask.priority, wanted, missed=in_time.missed))
         work.asks[key] = msgspec.structs.replace(ask, id=key)
+        return ""
+
+    def _said(self, key: str, ask: a.Say, goes_on: bool) -> a.Say:
+        """Return a line with the sound that is streamed for it. Raises RequestError for one that is not heard
+        or too long.
+        """
+        if ask.audio is not None:
+            begun = self._speech(key)
+            said = 0.0 if begun is None else self.now + self.project.settings.lookahead - begun.start
+            ask = self._sounds.told(key, ask, goes_on, said)
+        if len(ask.text) > SPEECH:
+            raise a.RequestError(f"at most {SPEECH} characters can be said at once; say it in pieces")
+        return ask
+
+    def _without_name(self, ask: Any) -> str:
+        """Note the name an ask gives a point; say where there are too many."""
+        if isinstance(ask, a.Place) and ask.name not in self._names:
+            if len(self._names) >= NAMES:
+                return f"{NAMES} points have names already; use one of them again"
+            self._names.add(ask.name)
+        return ""
+
+    def _without_room(self, client: Client, key: str) -> str:
+        """Say where so many requests wait that a client has had its share of them."""
+        ledger = self.ledger
+        if key not in ledger.known and len(ledger.known) >= PENDING and ledger.pending(self.now) >= PENDING:
+            own = sum(1 for _ in ledger.of(client.number))
+            if own >= PENDING // max(1, len(self.clients)):
+                return f"{PENDING} requests wait already; try again when some of them have played"
         return ""
 
     def _speech(self, key: str) -> Speech | None:
