@@ -4,7 +4,7 @@ anything.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from math import isfinite
 from typing import Any
 
@@ -176,163 +176,196 @@ def _graph(project: Project, graph: MetaGraph) -> Iterator[Problem]:
                 layer,
             )
     for action in graph.actions.values():
-        yield from _action(project, graph, action)
+        yield from _ActionCheck(project, graph, action).problems()
 
 
-def _action(project: Project, graph: MetaGraph, action: Action) -> Iterator[Problem]:
-    def at(severity: Severity, code: str, message: str, remedy: str) -> Problem:
-        return Problem(
-            severity,
-            code,
-            told("'{name}' {message}", name=action.name, message=message),
-            remedy,
-            graph.layer,
-            action.stance,
-            action.id,
-            action.clip,
-        )
+class _ActionCheck:
+    """What is wrong with one action."""
 
-    timing, entry = action.timing, project.clips.get(action.clip)
-    if action.stance not in graph.stances:
-        yield at(
-            "error",
-            "lost-stance",
-            told("belongs to a stance that is not there"),
-            told("Move it to a stance, or remove it."),
-        )
-    if action.kind == "transition":
+    def __init__(self, project: Project, graph: MetaGraph, action: Action) -> None:
+        self.project, self.graph, self.action = project, graph, action
+        self.timing = action.timing
+
+    def at(self, severity: Severity, code: str, message: str, remedy: str) -> Problem:
+        action = self.action
+        words = told("'{name}' {message}", name=action.name, message=message)
+        return Problem(severity, code, words, remedy, self.graph.layer, action.stance, action.id, action.clip)
+
+    def problems(self) -> Iterator[Problem]:
+        """Yield them all; without its clip nothing is said of its times."""
+        yield from self.places()
+        yield from self.choice()
+        entry = self.project.clips.get(self.action.clip)
+        if entry is None:
+            yield self.at(
+                "error",
+                "lost-clip",
+                told("uses a clip that is not in the project"),
+                told("Remove it, or import the clip again."),
+            )
+            return
+        if self.action.clip_name:
+            yield self.at(
+                "error",
+                "swapped-clip",
+                told(
+                    "was made of clip '{was}', and now plays '{name}'",
+                    was=self.action.clip_name,
+                    name=entry.name,
+                ),
+                told("Choose in Problems which of the two it plays: by the button, or in the row's menu."),
+            )
+        end = entry.duration if self.timing.end is None else self.timing.end
+        yield from self.played(entry, end)
+        yield from self.blends()
+        yield from self.exit(end)
+        yield from self.ends()
+
+    def places(self) -> Iterator[Problem]:
+        """Yield what is wrong with the stances it leaves and enters."""
+        action, graph = self.action, self.graph
+        if action.stance not in graph.stances:
+            yield self.at(
+                "error",
+                "lost-stance",
+                told("belongs to a stance that is not there"),
+                told("Move it to a stance, or remove it."),
+            )
+        if action.kind != "transition":
+            return
         if action.end_stance is None:
-            yield at(
+            yield self.at(
                 "error", "no-end", told("is a transition that ends nowhere"), told("Choose its end stance.")
             )
         elif action.end_stance not in graph.stances:
-            yield at(
+            yield self.at(
                 "error",
                 "lost-end",
                 told("ends in a stance that is not there"),
                 told("Choose another end stance."),
             )
         elif action.end_stance == action.stance:
-            yield at(
+            yield self.at(
                 "warning",
                 "circle",
                 told("ends in the stance it starts from"),
                 told("Choose another end stance, or make it a gesture."),
             )
-    if not (isfinite(action.likelihood) and action.likelihood > 0):
-        yield at(
-            "error",
-            "likelihood",
-            told("has the likelihood {likelihood:g} and can never be chosen", likelihood=action.likelihood),
-            told("Set it above 0."),
-        )
-    if unknown := anatomy.unknown_joints(project.skeleton, action):
-        yield at(
-            "error",
-            "mask",
-            told("moves joint '{unknown}', which the skeleton does not have", unknown=unknown[0]),
-            told("Correct its joints."),
-        )
-    if entry is None:
-        yield at(
-            "error",
-            "lost-clip",
-            told("uses a clip that is not in the project"),
-            told("Remove it, or import the clip again."),
-        )
-        return
-    if action.clip_name:
-        yield at(
-            "error",
-            "swapped-clip",
-            told("was made of clip '{was}', and now plays '{name}'", was=action.clip_name, name=entry.name),
-            told("Choose in Problems which of the two it plays: by the button, or in the row's menu."),
-        )
-    end = entry.duration if timing.end is None else timing.end
-    tolerance = 0.5 / entry.fps
-    latest = entry.duration + tolerance
-    if not (0 <= timing.start <= latest and end <= latest):  # also where one of them is not a number
-        yield at(
-            "error",
-            "trim",
-            told(
-                "plays {start:.2f}-{end:.2f} s of a clip of {duration:.2f} s",
-                start=timing.start,
-                end=end,
-                duration=entry.duration,
-            ),
-            told("Bring start and end inside the clip."),
-        )
-    elif end <= timing.start and entry.frames > 1:
-        yield at(
-            "error",
-            "empty",
-            told("ends at {end:.2f} s, not after its start at {start:.2f} s", end=end, start=timing.start),
-            told("Move its end behind its start."),
-        )
-    elif (
-        action.kind != "stance"
-        and _sound(timing.blend_in + timing.blend_out)
-        and timing.blend_in + timing.blend_out > end - timing.start + tolerance
-    ):
-        yield at(
-            "warning",
-            "blend",
-            told(
-                "blends for {blends:.2f} s of its {length:.2f} s",
-                blends=timing.blend_in + timing.blend_out,
-                length=end - timing.start,
-            ),
-            told("Shorten its blends."),
-        )
-    for name, blend in (("in", timing.blend_in), ("out", timing.blend_out)):
-        if not _sound(blend):
-            severity: Severity = "warning" if isfinite(blend) else "error"  # a negative one plays as none
-            yield at(
-                severity,
-                "blend",
-                told("blends in for {blend:g} s", blend=blend)
-                if name == "in"
-                else told("blends out for {blend:g} s", blend=blend),
-                told("Set its blend in to 0 s or more.")
-                if name == "in"
-                else told("Set its blend out to 0 s or more."),
+
+    def choice(self) -> Iterator[Problem]:
+        """Yield what is wrong with how likely it is, and with the joints it moves."""
+        action = self.action
+        if not (isfinite(action.likelihood) and action.likelihood > 0):
+            yield self.at(
+                "error",
+                "likelihood",
+                told(
+                    "has the likelihood {likelihood:g} and can never be chosen", likelihood=action.likelihood
+                ),
+                told("Set it above 0."),
             )
-    if timing.earliest_exit is not None and not timing.start <= timing.earliest_exit <= end:
-        yield at(
-            "warning",
-            "exit",
-            told(
-                "may be left at {earliest_exit:.2f} s, outside what plays", earliest_exit=timing.earliest_exit
-            ),
-            told("Bring the earliest exit inside."),
-        )
-    yield from _ends(project, graph, action, at)
+        if unknown := anatomy.unknown_joints(self.project.skeleton, action):
+            yield self.at(
+                "error",
+                "mask",
+                told("moves joint '{unknown}', which the skeleton does not have", unknown=unknown[0]),
+                told("Correct its joints."),
+            )
+
+    def played(self, entry: ClipEntry, end: float) -> Iterator[Problem]:
+        """Yield what is wrong with the part of its clip that plays, up to `end` seconds."""
+        timing = self.timing
+        tolerance = 0.5 / entry.fps
+        latest = entry.duration + tolerance
+        blends = timing.blend_in + timing.blend_out
+        if not (0 <= timing.start <= latest and end <= latest):  # also where one of them is not a number
+            yield self.at(
+                "error",
+                "trim",
+                told(
+                    "plays {start:.2f}-{end:.2f} s of a clip of {duration:.2f} s",
+                    start=timing.start,
+                    end=end,
+                    duration=entry.duration,
+                ),
+                told("Bring start and end inside the clip."),
+            )
+        elif end <= timing.start and entry.frames > 1:
+            yield self.at(
+                "error",
+                "empty",
+                told(
+                    "ends at {end:.2f} s, not after its start at {start:.2f} s", end=end, start=timing.start
+                ),
+                told("Move its end behind its start."),
+            )
+        elif self.action.kind != "stance" and _sound(blends) and blends > end - timing.start + tolerance:
+            yield self.at(
+                "warning",
+                "blend",
+                told(
+                    "blends for {blends:.2f} s of its {length:.2f} s",
+                    blends=blends,
+                    length=end - timing.start,
+                ),
+                told("Shorten its blends."),
+            )
+
+    def blends(self) -> Iterator[Problem]:
+        """Yield which of its blends has no sensible length."""
+        blend_in, blend_out = self.timing.blend_in, self.timing.blend_out
+        if not _sound(blend_in):
+            yield self.at(
+                _severity(blend_in),
+                "blend",
+                told("blends in for {blend:g} s", blend=blend_in),
+                told("Set its blend in to 0 s or more."),
+            )
+        if not _sound(blend_out):
+            yield self.at(
+                _severity(blend_out),
+                "blend",
+                told("blends out for {blend:g} s", blend=blend_out),
+                told("Set its blend out to 0 s or more."),
+            )
+
+    def exit(self, end: float) -> Iterator[Problem]:
+        """Yield whether it may be left at a time that is not played."""
+        earliest = self.timing.earliest_exit
+        if earliest is not None and not self.timing.start <= earliest <= end:
+            yield self.at(
+                "warning",
+                "exit",
+                told("may be left at {earliest_exit:.2f} s, outside what plays", earliest_exit=earliest),
+                told("Bring the earliest exit inside."),
+            )
+
+    def ends(self) -> Iterator[Problem]:
+        """Compare its clip's ends with the stances it leaves and enters, on the joints its layer moves."""
+        project, graph, action = self.project, self.graph, self.action
+        if action.kind == "stance":
+            gap = end_gaps.seam(project, graph, action)
+            if gap is not None and gap.far and action.timing.blend_in <= 0:
+                yield self.at(
+                    "warning",
+                    "open-loop",
+                    told("does not close: its ends are {far:.0f} cm apart", far=gap.metres * 100),
+                    told("Blend its seam (blend in), or trim it to a loop."),
+                )
+            return
+        for gap in end_gaps.gaps(project, graph, action):
+            if gap.far:
+                yield self.at(
+                    "warning",
+                    "far-start" if gap.edge == "begins" else "far-end",
+                    end_gaps.gap_words(gap, stance_name(project, gap.stance)),
+                    told("Trim it, lengthen the blend, or place it on the stance it fits."),
+                )
 
 
 def _sound(seconds: float) -> bool:
     return isfinite(seconds) and seconds >= 0
 
 
-def _ends(
-    project: Project, graph: MetaGraph, action: Action, at: Callable[[Severity, str, str, str], Problem]
-) -> Iterator[Problem]:
-    """Compare a clip's ends with the stances it leaves and enters, on the joints its layer moves."""
-    if action.kind == "stance":
-        gap = end_gaps.seam(project, graph, action)
-        if gap is not None and gap.far and action.timing.blend_in <= 0:
-            yield at(
-                "warning",
-                "open-loop",
-                told("does not close: its ends are {far:.0f} cm apart", far=gap.metres * 100),
-                told("Blend its seam (blend in), or trim it to a loop."),
-            )
-        return
-    for gap in end_gaps.gaps(project, graph, action):
-        if gap.far:
-            yield at(
-                "warning",
-                "far-start" if gap.edge == "begins" else "far-end",
-                end_gaps.gap_words(gap, stance_name(project, gap.stance)),
-                told("Trim it, lengthen the blend, or place it on the stance it fits."),
-            )
+def _severity(blend: float) -> Severity:
+    return "warning" if isfinite(blend) else "error"  # a negative one plays as none

@@ -10,10 +10,11 @@ import numpy as np
 from metagraph.common.wording import told
 from metagraph.graph import anatomy
 from metagraph.graph.checks import end_gaps
-from metagraph.graph.model import LAYERS, Action, Layer, Project
+from metagraph.graph.model import LAYERS, Action, ClipEntry, Layer, Project
 from metagraph.graph.problem import Problem
 from metagraph.motion import rotation
 from metagraph.motion.features import pose_distance
+from metagraph.motion.skeleton import Skeleton
 
 FLOATS = 0.06  # of the height: how far the base pose's feet may be from where the stances have them
 TWISTED = np.radians(50)  # how far the base pose's hips may be turned from the stance's
@@ -35,47 +36,59 @@ def check_base(project: Project) -> Iterator[Problem]:
             )
             return
         if project.base.frame >= entry.frames:
-            last = entry.frames - 1
-            yield Problem(
-                "error",
-                "base-frame",
-                told(
-                    "the base pose is frame {frame} of '{name}', which ends at {last}",
-                    frame=project.base.frame,
-                    name=entry.name,
-                    last=last,
-                ),
-                told("Choose a frame inside the clip."),
-                clip=entry.id,
-            )
+            yield _past_the_end(project.base.frame, entry)
     elif any(project.graphs[layer].actions for layer in LAYERS):
-        first = _first_pose(project, _start_loop(project, "body") or _start_loop(project, "arms"))
-        if (
-            first is not None
-            and float(pose_distance(project.skeleton, first, anatomy.base_pose(project)))
-            > 0.25 * project.skeleton.height
-        ):
-            yield Problem(
-                "warning",
-                "base-rest",
-                told(
-                    "the base pose is the skeleton's rest pose, far from how the character stands; "
-                    "layers will add up to a twisted pose"
-                ),
-                told(
-                    "Take the base pose from a frame with the hands at the sides: right-click a clip, "
-                    "'Use this frame as base pose'."
-                ),
-            )
+        yield from _rest_pose(project, project.skeleton)
+    yield from _beside_stance(project, project.skeleton)
+
+
+def _past_the_end(frame: int, entry: ClipEntry) -> Problem:
+    last = entry.frames - 1
+    return Problem(
+        "error",
+        "base-frame",
+        told(
+            "the base pose is frame {frame} of '{name}', which ends at {last}",
+            frame=frame,
+            name=entry.name,
+            last=last,
+        ),
+        told("Choose a frame inside the clip."),
+        clip=entry.id,
+    )
+
+
+def _rest_pose(project: Project, skeleton: Skeleton) -> Iterator[Problem]:
+    """Yield whether the rest pose, which is the base pose where none is chosen, is far from the stances."""
+    first = _first_pose(project, _start_loop(project, "body") or _start_loop(project, "arms"))
+    if first is None:
+        return
+    if float(pose_distance(skeleton, first, anatomy.base_pose(project))) > 0.25 * skeleton.height:
+        yield Problem(
+            "warning",
+            "base-rest",
+            told(
+                "the base pose is the skeleton's rest pose, far from how the character stands; "
+                "layers will add up to a twisted pose"
+            ),
+            told(
+                "Take the base pose from a frame with the hands at the sides: right-click a clip, "
+                "'Use this frame as base pose'."
+            ),
+        )
+
+
+def _beside_stance(project: Project, skeleton: Skeleton) -> Iterator[Problem]:
+    """Yield whether the base pose stands lower, higher or turned beside the stance the body begins in."""
     loop = _start_loop(project, "body")
     stance = _first_pose(project, loop)
     if loop is None or stance is None:
         return
     rests = stance_name(project, loop.stance)
     base = anatomy.base_pose(project)
-    height = project.skeleton.height
-    base_r, base_p = project.skeleton.globals(base)
-    stance_r, stance_p = project.skeleton.globals(stance)
+    height = skeleton.height
+    base_r, base_p = skeleton.globals(base)
+    stance_r, stance_p = skeleton.globals(stance)
     roles = anatomy.roles(project)
     feet = [roles[r] for r in ("left_foot", "right_foot", "left_toes", "right_toes") if r in roles]
     lift = float(base_p[feet, 1].min() - stance_p[feet, 1].min()) if feet else 0.0
