@@ -87,6 +87,10 @@ def read_block(text: str, at: float = 0.0, priority: int = 1, project: Project |
     return Block(first + asks, tuple(reader.notes), root.get("id"), word)  # type: ignore[arg-type]
 
 
+# An element's asks, and its sync points' seconds after its start; None for as its clip has.
+_Read = tuple[list[Any], dict[str, float] | None]
+
+
 class _Reader:
     def __init__(self, words: BmlWords, at: float, priority: int) -> None:
         self.words, self.priority = words, priority
@@ -123,7 +127,7 @@ class _Reader:
             raise a.RequestError(f"{element.place}: a block has at most {MOST} behaviours; send several")
         self.timing.add(Behaviour(element, element.get("id"), asks, offsets, times))
 
-    def _read(self, kind: str, e: Element) -> tuple[list[Any], dict[str, float] | None]:
+    def _read(self, kind: str, e: Element) -> _Read:
         """Return an element's asks, still without times, and its sync points' seconds after its start; None
         for as its clip has.
         """
@@ -133,64 +137,40 @@ class _Reader:
         }
         tags = self._tags(e)
         layer: Any = e.get("metagraph:layer")  # no word for a layer is refused when the asks are timed
-        limb: Any
         match kind:
             case "gesture" | "pointing":
-                lexeme = e.get("lexeme") or ("" if spelled(e.get("type")) == "lexeme" else e.get("type"))
-                if kind == "pointing":
-                    lexeme = lexeme or "point"
-                    self._note(e, "is a pointing gesture as it was made; it does not aim at its target")
-                hand = spelled(e.get("mode", "hand")).removesuffix("s").removesuffix("hand")
-                limb = hand if hand in ("left", "right", "both") else None
-                more = {"limb": limb, "resume": e.get("metagraph:resume") == "true"}
-                if e.get("name") and not lexeme:
-                    ask: Any = a.Play(
-                        action=self.words.action(e.get("name"), layer),
-                        layer=layer or None,
-                        **common,
-                    )
-                else:
-                    ask = self._gesture(tags, lexeme, layer, common | more)
-                return [ask], None
+                return [self._hands(kind, e, tags, common)], None
             case "animation":
                 ask = a.Play(action=self.words.action(e.get("name"), layer), layer=layer or None, **common)
-                return [ask], None
-            case "metagraph:fidget":
-                more = {"limb": e.get("mode").lower() or None, "resume": e.get("metagraph:resume") == "true"}
-                ask = a.Fidget(
-                    tags=tags or _listed(e.get("lexeme")),
-                    layer=layer or "arms",
-                    **more,
-                    **common,
-                )
                 return [ask], None
             case "head":
                 return self._head(e, tags, common)
             case "posture" | "postureshift" | "body":
                 return self._posture(kind, e, common), {"ready": 0.5, "relax": 1.0, "end": 1.0}
             case "gaze" | "gazeshift" | "headdirectionshift":
-                amount = INFLUENCE.get(spelled(e.get("influence")), 1.0)
-                if e.get("offsetangle") not in ("", "0", "0.0"):
-                    self._note(e, "looks straight at its target, without the offset")
-                strict = e.get("metagraph:strict") == "true"
-                ask = a.Look(
-                    to=self._target(e),
-                    amount=self._number(e, "metagraph:amount", amount),
-                    strict=strict,
-                    **common,
-                )
-                return [ask], {"ready": 0.3, "relax": 1.0, "end": 1.3}
+                return [self._gaze(e, common)], {"ready": 0.3, "relax": 1.0, "end": 1.3}
             case "speech":
                 return self._speech(e, common)
             case "face" | "facelexeme" | "faceshift":
                 if spelled(e.get("lexeme", "type")) in BLINKS or spelled(e.get("lexeme")) in BLINKS:
                     return [a.Blink(**common)], {"attackpeak": 0.07, "end": 0.17}
                 self._note(e, "is left out; of the face only BLINK is asked for this way")
+                return [], {}
             case "wait" | "pause":
                 length = self._number(e, "duration", 0.0) or self._number(e, "max-wait", 0.0)
                 return [], {"end": length}
+        return self._own(kind, e, tags, common)
+
+    def _own(self, kind: str, e: Element, tags: tuple[str, ...] | None, common: dict[str, Any]) -> _Read:
+        """Return what `_read` does of our own elements; the others are left out with a note."""
+        layer: Any = e.get("metagraph:layer")
+        limb: Any = e.get("mode").lower() or None
+        match kind:
+            case "metagraph:fidget":
+                resume = e.get("metagraph:resume") == "true"
+                tags = tags or _listed(e.get("lexeme"))
+                return [a.Fidget(tags=tags, layer=layer or "arms", limb=limb, resume=resume, **common)], None
             case "metagraph:change":
-                limb = e.get("mode").lower() or None
                 return [a.Change(layer=layer or "arms", limb=limb, **common)], {"end": 1.0}
             case "metagraph:mode":
                 return [a.Behave(mode=e.get("mode") or None, **common)], {"end": 0.0}  # type: ignore[arg-type]
@@ -198,17 +178,36 @@ class _Reader:
                 length = self._number(e, "duration", -1.0)
                 return [a.Feel(duration=None if length < 0 else length, **common)], {"end": max(0.0, length)}
             case "metagraph:place":
-                return [a.Place(name=e.get("name"), point=self._point(e, e.get("point")), **common)], {
-                    "end": 0.0
-                }
+                place = a.Place(name=e.get("name"), point=self._point(e, e.get("point")), **common)
+                return [place], {"end": 0.0}
             case "metagraph:withdraw":
                 return [a.Withdraw(what=e.get("what"), **common)], {"end": 0.0}
-            case _:
-                self._note(
-                    e,
-                    f"is left out; {NOT_READ.get(kind, 'it is none of the behaviours that are understood')}",
-                )
+        why = NOT_READ.get(kind, "it is none of the behaviours that are understood")
+        self._note(e, f"is left out; {why}")
         return [], {}
+
+    def _hands(
+        self, kind: str, e: Element, tags: tuple[str, ...] | None, common: dict[str, Any]
+    ) -> a.Gesture | a.Play:
+        layer: Any = e.get("metagraph:layer")
+        lexeme = e.get("lexeme") or ("" if spelled(e.get("type")) == "lexeme" else e.get("type"))
+        if kind == "pointing":
+            lexeme = lexeme or "point"
+            self._note(e, "is a pointing gesture as it was made; it does not aim at its target")
+        hand = spelled(e.get("mode", "hand")).removesuffix("s").removesuffix("hand")
+        if e.get("name") and not lexeme:
+            return a.Play(action=self.words.action(e.get("name"), layer), layer=layer or None, **common)
+        limb = hand if hand in ("left", "right", "both") else None
+        more = {"limb": limb, "resume": e.get("metagraph:resume") == "true"}
+        return self._gesture(tags, lexeme, layer, common | more)
+
+    def _gaze(self, e: Element, common: dict[str, Any]) -> a.Look:
+        amount = INFLUENCE.get(spelled(e.get("influence")), 1.0)
+        if e.get("offsetangle") not in ("", "0", "0.0"):
+            self._note(e, "looks straight at its target, without the offset")
+        strict = e.get("metagraph:strict") == "true"
+        to, amount = self._target(e), self._number(e, "metagraph:amount", amount)
+        return a.Look(to=to, amount=amount, strict=strict, **common)
 
     def _no_later(self, e: Element, asks: list[Any]) -> list[Any]:
         """Return asks with how late they may come."""
@@ -220,9 +219,7 @@ class _Reader:
             return asks
         return [msgspec.structs.replace(ask, late=late) for ask in asks]
 
-    def _head(
-        self, e: Element, tags: tuple[str, ...] | None, common: dict[str, Any]
-    ) -> tuple[list[Any], dict[str, float] | None]:
+    def _head(self, e: Element, tags: tuple[str, ...] | None, common: dict[str, Any]) -> _Read:
         lexeme = e.get("lexeme", "type")
         if e.get("repetition", "repeats") not in ("", "1", "1.0"):
             self._note(e, "nods and shakes as often as its clip; the repetition is left out")
@@ -260,7 +257,7 @@ class _Reader:
         ]
         return [msgspec.structs.replace(x, id=f"{x.id}{n or ''}") if x.id else x for n, x in enumerate(asks)]
 
-    def _speech(self, e: Element, common: dict[str, Any]) -> tuple[list[Any], dict[str, float]]:
+    def _speech(self, e: Element, common: dict[str, Any]) -> _Read:
         pieces, marks = [], {}
         spoken = next((x for x in e if x.name.lower() == "text"), e)
         length = 0

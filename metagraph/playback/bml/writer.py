@@ -47,79 +47,78 @@ def _element(ask: a.AnyRequest) -> str:
         "metagraph:intensity": _number(getattr(ask, "intensity", None)),
     }
     times: dict[str, Any] = {"start": _number(ask.at)}
+    end = _after("start", getattr(ask, "duration", None))
     match ask:
         case a.Gesture():
-            times |= _phased(ask)
-            own |= _tagged(ask.tags) | {
-                "mode": f"{ask.limb.upper()}_HAND" if ask.limb in ("left", "right") else _upper(ask.limb)
-            }
-            own |= {
-                "metagraph:layer": ask.layer if ask.layer != "arms" else None,
-                "metagraph:resume": _flag(ask.resume, False),
-            }
-            times["end"] = _after("start", ask.duration)
-            return _tag("gesture", own | times)
+            return _gesture(ask, own, times)
         case a.Fidget():
             own |= _tagged(ask.tags) | {"mode": ask.limb, "metagraph:resume": _flag(ask.resume, False)}
-            own |= {"metagraph:layer": ask.layer if ask.layer != "arms" else None}
-            return _tag("metagraph:fidget", own | times | {"end": _after("start", ask.duration)})
+            return _tag("metagraph:fidget", own | _layered(ask.layer) | times | {"end": end})
         case a.Play():
-            return _tag(
-                "animation", own | {"name": ask.action, "metagraph:layer": ask.layer} | times | _phased(ask)
-            )
+            own |= {"name": ask.action, "metagraph:layer": ask.layer}
+            return _tag("animation", own | times | _phased(ask))
         case a.Go():
-            stance = _tag("stance", {"type": ask.stance})
             own |= {"metagraph:layer": ask.layer, "metagraph:stay": _flag(ask.stay, False)}
-            return _tag("postureShift", own | times, stance)
+            return _tag("postureShift", own | times, _tag("stance", {"type": ask.stance}))
         case a.Change():
-            own |= {"metagraph:layer": ask.layer if ask.layer != "arms" else None, "mode": ask.limb}
-            return _tag("metagraph:change", own | times | {"end": _after("start", ask.duration)})
+            own |= _layered(ask.layer) | {"mode": ask.limb}
+            return _tag("metagraph:change", own | times | {"end": end})
         case a.Nod() | a.Shake():
             tags = msgspec.json.encode(ask.tags).decode() if ask.tags else None
-            return _tag(
-                "head",
-                own
-                | {"lexeme": "NOD" if isinstance(ask, a.Nod) else "SHAKE", "metagraph:tags": tags}
-                | times,
-            )
+            own |= {"lexeme": "NOD" if isinstance(ask, a.Nod) else "SHAKE", "metagraph:tags": tags}
+            return _tag("head", own | times)
         case a.Look():
-            plain = not isinstance(ask.to, str) or (ask.to == ask.to.strip() and not _POINT.fullmatch(ask.to))
-            to = ask.to if isinstance(ask.to, str) else " ".join(map(_number, ask.to))  # type: ignore[arg-type]
-            own |= {
-                "target" if plain else "metagraph:to": to,
-                "metagraph:amount": _number(ask.amount) if ask.amount != 1 else None,
-            }
-            own |= {"metagraph:strict": _flag(ask.strict, False)}
-            return _tag(
-                "gazeShift" if ask.duration is None else "gaze",
-                own | times | {"end": _after("start", ask.duration)},
-            )
+            return _look(ask, own, times | {"end": end})
         case a.Blink():
             return _tag("faceLexeme", own | {"lexeme": "BLINK"} | times)
         case a.Say():
-            own |= {
-                "ref": None if ask.line is None else str(ask.line),
-                "metagraph:gestures": _flag(ask.gestures, True),
-            }
-            keep = {"xml:space": "preserve"} if ask.text != " ".join(ask.text.split()) else {}
-            return _tag(
-                "speech",
-                own | times | {"end": _after("start", ask.duration)},
-                _tag("text", keep, _escaped(ask.text, False)),
-            )
+            return _speech(ask, own, times | {"end": end})
         case a.Behave():
             return _tag("metagraph:mode", own | {"mode": ask.mode} | times)
         case a.Feel():
             return _tag("metagraph:mood", own | {"duration": _number(ask.duration)} | times)
         case a.Place():
-            return _tag(
-                "metagraph:place",
-                own | {"name": ask.name, "point": " ".join(map(_number, ask.point))} | times,  # type: ignore[arg-type]
-            )
+            return _tag("metagraph:place", own | {"name": ask.name, "point": _point(ask.point)} | times)
         case a.Withdraw():
             return _tag("metagraph:withdraw", own | {"what": ask.what or None} | times)
         case _:
             raise a.RequestError("a block of BML cannot hold another; write its behaviours out")
+
+
+def _gesture(ask: a.Gesture, own: dict[str, Any], times: dict[str, Any]) -> str:
+    hands = f"{ask.limb.upper()}_HAND" if ask.limb in ("left", "right") else _upper(ask.limb)
+    own = own | _tagged(ask.tags) | {"mode": hands} | _layered(ask.layer)
+    own |= {"metagraph:resume": _flag(ask.resume, False)}
+    return _tag("gesture", own | times | _phased(ask) | {"end": _after("start", ask.duration)})
+
+
+def _look(ask: a.Look, own: dict[str, Any], times: dict[str, Any]) -> str:
+    """Return a gaze. A name that reads as a point, or has spaces about it, goes into our own attribute."""
+    to = ask.to if isinstance(ask.to, str) else _point(ask.to)
+    plain = not isinstance(ask.to, str) or (ask.to == ask.to.strip() and not _POINT.fullmatch(ask.to))
+    own = own | {
+        "target" if plain else "metagraph:to": to,
+        "metagraph:amount": _number(ask.amount) if ask.amount != 1 else None,
+        "metagraph:strict": _flag(ask.strict, False),
+    }
+    return _tag("gazeShift" if ask.duration is None else "gaze", own | times)
+
+
+def _speech(ask: a.Say, own: dict[str, Any], times: dict[str, Any]) -> str:
+    own = own | {
+        "ref": None if ask.line is None else str(ask.line),
+        "metagraph:gestures": _flag(ask.gestures, True),
+    }
+    keep = {"xml:space": "preserve"} if ask.text != " ".join(ask.text.split()) else {}
+    return _tag("speech", own | times, _tag("text", keep, _escaped(ask.text, False)))
+
+
+def _layered(layer: str) -> dict[str, Any]:
+    return {"metagraph:layer": layer if layer != "arms" else None}
+
+
+def _point(point: Iterable[float]) -> str:
+    return " ".join(repr(float(x)) for x in point)
 
 
 def _phased(ask: a.Gesture | a.Play) -> dict[str, Any]:
