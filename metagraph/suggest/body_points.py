@@ -135,6 +135,87 @@ def points_of(
     """Return name -> `[F, 3]` of all NAMES there are, each from its ground, and of what is in world space; in
     heights.
     """
+    posed = _Posed(figure, clips, frames)
+    return posed.arms() | posed.head() | posed.body() | posed.fingers(), posed.world()
+
+
+class _Posed:
+    """A figure in frames of clips. places: `[F, J, 3]` of all its joints, p: `[F, 3]` of those it knows by
+    role, in heights. turns: `[F, J, 4]`. carrier: the role of what carries the arms.
+    """
+
+    def __init__(self, figure: Figure, clips: Sequence[Clip], frames: Sequence[Array]) -> None:
+        self.figure = figure
+        self.turns, places = figure.small.globals(_pose(figure, clips, frames))
+        self.places = places / np.float32(figure.height)
+        self.p = {role: self.places[:, i] for role, i in figure.places.items()}
+        self.p |= {f"{side}_tip": self.places[:, some[0]] for side, some in figure.tips.items()}
+        self.carrier = next(role for role in _CARRIERS if role in figure.places)
+        self.facing = facing_of(self.p, self.turns[:, figure.places["hips"]], figure.turned["hips"])
+
+    def axis(self, role: str, direction: Sequence[float]) -> Array:
+        """Return where a direction of the character's points, as a joint has turned."""
+        return rotation.rotate(
+            self.turns[:, self.figure.places[role]],
+            rotation.rotate(self.figure.turned[role], np.array(direction)).astype(np.float32),
+        )
+
+    def arms(self) -> dict[str, Array]:
+        """Return the arms' points, as what carries them sees them."""
+        p, place, turned = self.p, self.figure.places[self.carrier], self.figure.turned[self.carrier]
+        back = rotation.conjugate(rotation.multiply(self.turns[:, place], turned.astype(np.float32)))
+        return {name: rotation.rotate(back, p[name] - p[self.carrier]) for name in NAMES["arms"] if name in p}
+
+    def head(self) -> dict[str, Array]:
+        """Return the head's points, over what carries it."""
+        if "head" not in self.p:
+            return {}
+        ahead, up = self.axis("head", (0, 0, 1)), self.axis("head", (0, 1, 0))
+        middle = self.p["head"] - self.p[self.carrier]
+        points = {"head": middle, "nose": middle + AHEAD * ahead, "crown": middle + AHEAD * up}
+        return {name: seen_from(self.facing, v) for name, v in points.items()}
+
+    def body(self) -> dict[str, Array]:
+        """Return the body's points, over the ground between the feet."""
+        p, facing = self.p, self.facing
+        if "left_foot" in p and "right_foot" in p:
+            ground = (p["left_foot"] + p["right_foot"]) / 2 * np.array([1, 0, 1], np.float32)
+        else:
+            ground = p["hips"] * np.array([1, 0, 1], np.float32)
+        legs = [f"{side}_{part}" for side in ("left", "right") for part in ("lower_leg", "foot")]
+        out = {name: seen_from(facing, p[name] - ground) for name in ("hips", *legs) if name in p}
+        trunk = p[self.carrier] - ground
+        out["trunk"] = seen_from(facing, trunk)
+        out["trunk_ahead"] = seen_from(facing, trunk + AHEAD * self.axis(self.carrier, (0, 0, 1)))
+        for role in p:
+            if role.startswith("joint "):
+                out[role] = seen_from(facing, p[role] - ground)
+        return out
+
+    def fingers(self) -> dict[str, Array]:
+        """Return each hand's fingertips `[F, N, 3]`, as the hand sees them."""
+        out: dict[str, Array] = {}
+        for side, some in self.figure.tips.items():
+            wrist = f"{side}_hand"
+            hand = rotation.conjugate(self.turns[:, self.figure.places[wrist]])
+            out[f"{side}_fingers"] = rotation.rotate(
+                hand[:, None], self.places[:, some] - self.p[wrist][:, None]
+            )
+        return out
+
+    def world(self) -> dict[str, Array]:
+        """Return what is in world space: where it faces, and hips, limbs and head."""
+        p = self.p
+        limbs = {name: p[name] for name in p if name.endswith(_WORLD)}
+        world = {"facing": self.facing, "hips": p["hips"], **limbs, "carrier": p[self.carrier]}
+        if "head" in p:
+            world["skull"] = p["head"] + SKULL * self.axis("head", (0, 1, 0))
+            world["head"] = p["head"]
+        return world
+
+
+def _pose(figure: Figure, clips: Sequence[Clip], frames: Sequence[Array]) -> Pose:
+    """Return the poses of the figure's joints in frames of clips, one after another."""
     small = figure.small
     total = sum(map(len, frames))
     translations = np.broadcast_to(small.rest_translations.astype(np.float32), (total, len(small), 3)).copy()
@@ -148,57 +229,7 @@ def points_of(
     rotations = np.concatenate(
         [clip.rotations[np.ix_(index, figure.keep)] for clip, index in zip(clips, frames, strict=True)]
     )
-    turns, places = small.globals(Pose(rotations, translations))
-    places = places / np.float32(figure.height)
-    p = {role: places[:, i] for role, i in figure.places.items()}
-    p |= {f"{side}_tip": places[:, some[0]] for side, some in figure.tips.items()}
-
-    def axis(role: str, direction: Sequence[float]) -> Array:
-        return rotation.rotate(
-            turns[:, figure.places[role]],
-            rotation.rotate(figure.turned[role], np.array(direction)).astype(np.float32),
-        )
-
-    carrier = next(role for role in _CARRIERS if role in figure.places)
-    facing = facing_of(p, turns[:, figure.places["hips"]], figure.turned["hips"])
-    back = rotation.conjugate(
-        rotation.multiply(turns[:, figure.places[carrier]], figure.turned[carrier].astype(np.float32))
-    )
-    out: dict[str, Array] = {}
-    for name in NAMES["arms"]:
-        if name in p:
-            out[name] = rotation.rotate(back, p[name] - p[carrier])
-    if "head" in p and carrier != "head":
-        ahead, up = axis("head", (0, 0, 1)), axis("head", (0, 1, 0))
-        middle = p["head"] - p[carrier]
-        for name, v in (("head", middle), ("nose", middle + AHEAD * ahead), ("crown", middle + AHEAD * up)):
-            out[name] = seen_from(facing, v)
-    if "left_foot" in p and "right_foot" in p:
-        ground = (p["left_foot"] + p["right_foot"]) / 2 * np.array([1, 0, 1], np.float32)
-    else:
-        ground = p["hips"] * np.array([1, 0, 1], np.float32)
-    for name in ("hips", *(f"{side}_{part}" for side in ("left", "right") for part in ("lower_leg", "foot"))):
-        if name in p:
-            out[name] = seen_from(facing, p[name] - ground)
-    out["trunk"] = seen_from(facing, p[carrier] - ground)
-    out["trunk_ahead"] = seen_from(facing, p[carrier] - ground + AHEAD * axis(carrier, (0, 0, 1)))
-    for role in p:
-        if role.startswith("joint "):
-            out[role] = seen_from(facing, p[role] - ground)
-    for side, some in figure.tips.items():
-        hand = rotation.conjugate(turns[:, figure.places[f"{side}_hand"]])
-        out[f"{side}_fingers"] = rotation.rotate(hand[:, None], places[:, some] - p[f"{side}_hand"][:, None])
-    world = {
-        "facing": facing,
-        "hips": p["hips"],
-        **{name: p[name] for name in p if name.endswith(_WORLD)},
-    }
-    if "head" in p:
-        world["skull"] = p["head"] + SKULL * axis("head", (0, 1, 0))
-    for name in ("head", carrier):
-        if name in p:
-            world["head" if name == "head" else "carrier"] = p[name]
-    return out, world
+    return Pose(rotations, translations)
 
 
 def facing_of(p: Mapping[str, Array], hips: Array, turned: Array) -> Array:
