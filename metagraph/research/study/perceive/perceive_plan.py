@@ -161,18 +161,34 @@ def from_text(text: str, path: Path = Path(FILE)) -> PerceivePlan:
 
 def faults(plan: PerceivePlan) -> list[tuple[str, str]]:
     """Return what is wrong that the fields' types do not say: (field, cause)."""
+    out = _twice(plan)
+    for name, condition in plan.conditions.items():
+        out += [(f"conditions.{name}", cause) for cause in _condition_faults(plan, condition)]
+    out += _compare_faults(plan)
+    if plan.choice is None and plan.rating is None:
+        out.append(("", "nothing is asked: give 'choice', 'rating', or both"))
+    if plan.choice is not None:
+        out += _choice_faults(plan, plan.choice)
+    if plan.rating is not None:
+        out += _rating_faults(plan, plan.rating)
+    if plan.checks.allow >= plan.checks.told > 0:
+        out.append(("checks.allow", "nobody would ever be excluded: allow fewer than are told"))
+    return out
+
+
+def _twice(plan: PerceivePlan) -> list[tuple[str, str]]:
     out: list[tuple[str, str]] = []
     for field, names in (("participants", plan.ids), ("items", [i.id for i in plan.items])):
         folded = [n.casefold() for n in names]
-        twice = (
-            next((n for n in names if folded.count(n.casefold()) > 1), None)
-            if len(set(folded)) < len(folded)
-            else None
-        )
-        if twice is not None:
-            out.append((field, f"'{twice}' is there twice, large and small letters being the same"))
-    for name, condition in plan.conditions.items():
-        out += [(f"conditions.{name}", cause) for cause in _condition_faults(plan, condition)]
+        if len(set(folded)) == len(folded):
+            continue
+        twice = next(n for n in names if folded.count(n.casefold()) > 1)
+        out.append((field, f"'{twice}' is there twice, large and small letters being the same"))
+    return out
+
+
+def _compare_faults(plan: PerceivePlan) -> list[tuple[str, str]]:
+    out: list[tuple[str, str]] = []
     for n, (a, b) in enumerate(plan.compare):
         where = f"compare[{n}]"
         odd = next((c for c in (a, b) if c not in plan.conditions), None)
@@ -182,24 +198,22 @@ def faults(plan: PerceivePlan) -> list[tuple[str, str]]:
             out.append((where, "a condition is not compared with itself; 'checks' has 'same' for that"))
         elif any({a, b} == {*other} for other in plan.compare[:n]):
             out.append((where, f"'{a}' and '{b}' are compared twice"))
-    if plan.choice is None and plan.rating is None:
-        out.append(("", "nothing is asked: give 'choice', 'rating', or both"))
-    if plan.choice is not None:
-        out += _choice_faults(plan, plan.choice)
-    for n, item in enumerate(plan.rating.questions if plan.rating is not None else ()):
+    return out
+
+
+def _rating_faults(plan: PerceivePlan, rating: Rating) -> list[tuple[str, str]]:
+    out: list[tuple[str, str]] = []
+    for n, item in enumerate(rating.questions):
         if item.scale is None or item.choices or item.words:
             out.append((f"rating.questions[{n}]", "a question is answered on a scale: give 'scale'"))
         elif not 2 <= len(item.scale.points) <= 11:
             out.append((f"rating.questions[{n}].scale", "a scale has 2 to 11 points"))
-    if plan.rating is not None:
-        if len({q.id for q in plan.rating.questions}) < len(plan.rating.questions):
-            out.append(("rating.questions", "two questions have the same id"))
-        if plan.rating.each is not None and plan.rating.each > len(plan.items):
-            out.append(("rating.each", f"there are only {len(plan.items)} items"))
-        if (plan.rating.each or len(plan.items)) * len(plan.conditions) > MOST_TRIALS:
-            out.append(("rating", f"a person would rate more than {MOST_TRIALS} videos: give 'each'"))
-    if plan.checks.allow >= plan.checks.told > 0:
-        out.append(("checks.allow", "nobody would ever be excluded: allow fewer than are told"))
+    if len({q.id for q in rating.questions}) < len(rating.questions):
+        out.append(("rating.questions", "two questions have the same id"))
+    if rating.each is not None and rating.each > len(plan.items):
+        out.append(("rating.each", f"there are only {len(plan.items)} items"))
+    if (rating.each or len(plan.items)) * len(plan.conditions) > MOST_TRIALS:
+        out.append(("rating", f"a person would rate more than {MOST_TRIALS} videos: give 'each'"))
     return out
 
 
