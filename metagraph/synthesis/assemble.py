@@ -36,6 +36,15 @@ class _Frames:
     heading: Array
 
 
+@dataclass(frozen=True, eq=False)
+class _Walk:
+    """A path over the ground: its states `[T]`, where the hips are `[T, 2]` and where they face `[T]`."""
+
+    states: Array
+    ground: Array
+    heading: Array
+
+
 def assemble(
     states: States,
     clips: Sequence[Clip],
@@ -61,8 +70,8 @@ def assemble(
             f"the graph is of {len(states)} frames, but these takes have {len(frames.heading)}"
         )
     way = np.asarray(path.states, np.int64)
-    ground, heading = _walk(frames, way, ~_first(states))
-    out = _moved(frames, way, ground, heading)
+    walk = _walk(frames, way, ~_first(states))
+    out = _moved(frames, way, walk.ground, walk.heading)
     roots = np.flatnonzero(takes[0].skeleton.parents < 0)
     edges = [0, *path.jumps.tolist(), len(way)]
     for number, jump in enumerate(path.jumps.tolist()):
@@ -71,7 +80,7 @@ def assemble(
         after = min(blend, (edges[number + 2] - jump) // 2)
         if onward:
             before, after = 0, min(2 * blend, edges[number + 2] - jump)
-        _blend(out, frames, states, way, ground, heading, jump, before, after)
+        _blend(out, frames, states, walk, jump, (before, after))
     joints = sorted({0, *roots.tolist(), *(j for c in takes for j in c.translated)})
     made = Clip(
         name,
@@ -123,10 +132,8 @@ def _turned(v: Array, angle: Array) -> Array:
     return np.stack([c * v[..., 0] + s * v[..., 1], c * v[..., 1] - s * v[..., 0]], axis=-1)
 
 
-def _walk(frames: _Frames, way: Array, has_before: Array) -> tuple[Array, Array]:
-    """Return where the hips are over the ground `[T, 2]` and where they face `[T]`, by what each frame goes
-    on from the one before it in its own take.
-    """
+def _walk(frames: _Frames, way: Array, has_before: Array) -> _Walk:
+    """Return a path's walk, by what each frame goes on from the one before it in its own take."""
     before = np.where(has_before[way], way - 1, way)
     step = _turned(frames.ground[way] - frames.ground[before], -frames.heading[before])
     turn = frames.heading[way] - frames.heading[before]
@@ -136,7 +143,7 @@ def _walk(frames: _Frames, way: Array, has_before: Array) -> tuple[Array, Array]
     from_heading = np.concatenate([[0.0], heading[:-1]])
     going = _turned(step, from_heading)
     going[0] = 0.0
-    return np.cumsum(going, axis=0), heading
+    return _Walk(way, np.cumsum(going, axis=0), heading)
 
 
 def _moved(frames: _Frames, which: Array, ground: Array, heading: Array) -> Pose:
@@ -153,20 +160,12 @@ def _moved(frames: _Frames, which: Array, ground: Array, heading: Array) -> Pose
 
 
 def _blend(
-    out: Pose,
-    frames: _Frames,
-    states: States,
-    way: Array,
-    ground: Array,
-    heading: Array,
-    jump: int,
-    before: int,
-    after: int,
+    out: Pose, frames: _Frames, states: States, walk: _Walk, jump: int, about: tuple[int, int]
 ) -> None:
     """Fade one motion into the other about a transition: before it towards what the new take did there, after
-    it away from what the old one would have gone on to do.
+    it away from what the old one would have gone on to do. about: for how many frames before and after.
     """
-    span = before + after
+    way, before, span = walk.states, about[0], sum(about)
     if not span:
         return
     weight = 0.5 - 0.5 * np.cos(np.pi * (np.arange(span) + 1) / (span + 1))
@@ -182,7 +181,7 @@ def _blend(
         other = min(max(other, int(states.starts[take])), int(states.starts[take + 1]) - 1)
         # It stands where this one does: only how it moves its limbs is blended, the ground is walked over by
         # the path alone.
-        there = _moved(frames, np.array([other]), ground[t : t + 1], heading[t : t + 1])
+        there = _moved(frames, np.array([other]), walk.ground[t : t + 1], walk.heading[t : t + 1])
         w = float(weight[number]) if offset < 0 else 1.0 - float(weight[number])
         out.rotations[t] = rotation.slerp(
             out.rotations[t], there.rotations[0], np.full(len(out.rotations[t]), w)
