@@ -5,7 +5,9 @@ It keeps the cheapest few hundred of what it came upon, and may come to an end w
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from contextlib import suppress
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -36,13 +38,31 @@ AHEAD = 0.05  # of the threshold: what a second less of that counts as
 APART = 3  # frames: ends of kept candidates
 
 
+@dataclass(frozen=True)
+class Width:
+    """How widely is searched. saved: candidates that are kept of a stretch. branches: transitions of a run
+    that are gone deeper into. deepest: transitions one after another in a stretch, in the first try.
+    """
+
+    saved: int = SAVED
+    branches: int = BRANCHES
+    deepest: int = DEEPER[0][0]
+
+    def deeper(self) -> Iterator[Width]:
+        """Yield the widths of one try after another."""
+        for deepest, more in DEEPER:
+            yield replace(self, branches=self.branches + more, deepest=deepest)
+
+
+USUAL = Width()
+
+
 def greedy(
     graph: MotionGraph,
     heard: HeardStates,
     wanted: WantedSegment,
     seed: int = 1,
-    saved: int = SAVED,
-    branches: int = BRANCHES,
+    width: Width = USUAL,
     cancelled: Cancelled = None,
     run: int = 1,
     charged: FrameCosts | None = None,
@@ -55,17 +75,16 @@ def greedy(
     stretch only cheap ones are kept. Beyond the paper: a run that goes on longer with what is said next
     counts as a little cheaper, no two kept ones end within a few frames of each other while there are others,
     what is dearer than more than enough others is not followed, and a search that comes to an end is tried
-    again, deeper. saved: how many are kept; branches: how many are gone deeper into of a run; run: frames
-    between two transitions, at least; charged: what frames cost beside transitions, which counts as those do.
-    Raises SynthesisError when it comes to an end before the speech does,
-    though there may be a path, or when it was cancelled.
+    again, deeper. run: frames between two transitions, at least; charged: what frames cost beside
+    transitions, which counts as those do. Raises SynthesisError when it comes to an end before the speech
+    does, though there may be a path, or when it was cancelled.
     """
-    *first, last = ((branches + more, deepest) for deepest, more in DEEPER)
-    for wide, deep in first:
+    *first, last = width.deeper()
+    for wide in first:
         with suppress(SynthesisError):
-            return greedy_once(graph, heard, wanted, seed, saved, wide, deep, cancelled, run, charged)
+            return greedy_once(graph, heard, wanted, seed, wide, cancelled, run, charged)
         go_on(cancelled)
-    return greedy_once(graph, heard, wanted, seed, saved, *last, cancelled, run, charged)
+    return greedy_once(graph, heard, wanted, seed, last, cancelled, run, charged)
 
 
 def greedy_once(
@@ -73,15 +92,13 @@ def greedy_once(
     heard: HeardStates,
     wanted: WantedSegment,
     seed: int = 1,
-    saved: int = SAVED,
-    branches: int = BRANCHES,
-    deepest: int = DEEPER[0][0],
+    width: Width = USUAL,
     cancelled: Cancelled = None,
     run: int = 1,
     charged: FrameCosts | None = None,
 ) -> Path:
-    """Return what `greedy` does, in one try: so many of a run's transitions are gone deeper into, so many one
-    after another. Raises SynthesisError when it comes to an end before the speech does.
+    """Return what `greedy` does, in one try of this width. Raises SynthesisError when it comes to an end
+    before the speech does.
     """
     from metagraph.synthesis.search.greedy_search_kernels import segment
 
@@ -89,7 +106,7 @@ def greedy_once(
     fits = np.flatnonzero(fits_of(graph, heard, wanted, 0))
     if not len(fits):
         raise SynthesisError(stuck(0))
-    own = np.sort(chance.choice(fits, min(STARTS * saved, len(fits)), replace=False)).astype(np.int32)
+    own = np.sort(chance.choice(fits, min(STARTS * width.saved, len(fits)), replace=False)).astype(np.int32)
     at, cost, met = np.zeros(len(own), np.int32), np.zeros(len(own), np.float32), np.zeros(len(own), bool)
     links, speech, charges = links_of(graph), speech_of(graph, heard, wanted), charges_of(charged, frames)
     best_at = np.full(2 * len(graph.states), -1, np.int32)
@@ -111,16 +128,16 @@ def greedy_once(
             speech,
             charges,
             best_at,
-            saved,
-            branches,
+            width.saved,
+            width.branches,
             TRIES,
-            deepest,
+            width.deepest,
             run,
             np.uint64(random),
         )
         if not len(found):
             raise SynthesisError(stuck(t0))
-        keep = _kept(paid + ahead * np.maximum(0, t1 + LOOK - found[:, 3]), found[:, 4], saved, chance)
+        keep = _kept(paid + ahead * np.maximum(0, t1 + LOOK - found[:, 3]), found[:, 4], width.saved, chance)
         which, since, state, _, key = found[keep].T
         names = np.concatenate([ids, count + np.arange(len(off) - len(ids))])
         tree.append((names[off[len(ids) :]], ats[len(ids) :], owns[len(ids) :]))
