@@ -238,6 +238,7 @@ def build(options: Namespace) -> int:
 
     from app.cli.command_output import say
     from metagraph.suggest.jumps.fits import fits
+    from metagraph.synthesis.blocks import BlockMakers
     from metagraph.synthesis.graph import build as build_graph
     from metagraph.synthesis.graph import largest, threshold
     from metagraph.synthesis.states import key_states
@@ -253,7 +254,7 @@ def build(options: Namespace) -> int:
         options.most,
         False,
         _telling(options, "key states"),
-        folder=options.keep,
+        makers=BlockMakers(folder=options.keep),
     )
     graph = largest(whole)
     facts = {

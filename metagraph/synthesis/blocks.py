@@ -144,30 +144,39 @@ def block(work: BlockWork, first: int, cancelled: Callable[[], bool] | None = No
     return counts, targets, costs
 
 
+@dataclass(frozen=True)
+class BlockMakers:
+    """Who makes blocks. threads: of this machine, else as many as it has cores. folder: where finished blocks
+    are kept and taken up from, so that a build that was ended goes on where it was; those of each work are in
+    a folder of its own: other inputs, other blocks. cluster: a `distributed.Client`; its workers make the
+    blocks, else the threads do.
+    """
+
+    threads: int | None = None
+    folder: Path | None = None
+    cluster: Any = None
+
+
+THIS_MACHINE = BlockMakers()
+
+
 def transitions(
     work: BlockWork,
+    makers: BlockMakers = THIS_MACHINE,
     progress: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
-    threads: int | None = None,
-    folder: Path | None = None,
-    cluster: Any = None,
 ) -> Block:
-    """Return the transitions of all key states.
-
-    folder: where finished blocks are kept and taken up from, those of each work in a folder of its own: other
-    inputs, other blocks. cluster: a `distributed.Client`; its workers make the blocks, else the threads of
-    this machine do. Raises SynthesisError when it was cancelled.
-    """
-    kept = _Kept(None if folder is None else folder / work.digest)
+    """Return the transitions of all key states. Raises SynthesisError when it was cancelled."""
+    kept = _Kept(None if makers.folder is None else makers.folder / work.digest)
     rows = {first: len(b[0]) for first in work.firsts if (b := kept.get(first)) is not None}
     so_far, total = sum(rows.values()), len(work.keys)
     if progress is not None and so_far:
         progress(so_far, total)
     missing = [first for first in work.firsts if first not in rows]
     made = (
-        _here(work, missing, cancelled, threads)
-        if cluster is None
-        else _there(work, missing, cancelled, cluster)
+        _here(work, missing, cancelled, makers.threads)
+        if makers.cluster is None
+        else _there(work, missing, cancelled, makers.cluster)
     )
     for first, new in made:
         kept.put(first, new)

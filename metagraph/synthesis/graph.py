@@ -6,14 +6,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.suggest.jumps.johnson import JohnsonSB, fit
-from metagraph.synthesis.blocks import transitions, work_of
+from metagraph.synthesis.blocks import THIS_MACHINE, BlockMakers, transitions, work_of
 from metagraph.synthesis.states import LEVEL, STEP, States, SynthesisError, costs_apart, key_states
 
 Array = NDArray[Any]
@@ -88,23 +87,20 @@ def build(
     connected: bool = True,
     progress: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
-    threads: int | None = None,
-    folder: Path | None = None,
-    cluster: Any = None,
+    makers: BlockMakers = THIS_MACHINE,
 ) -> MotionGraph:
     """Return the motion graph of takes.
 
     limit: what transitions may cost, else `threshold(states)`. keys: the states they may leave and enter,
     else `key_states(states)`. most: how many of the cheapest are kept of each state, all when None; bounds
-    the memory of large sets. connected: keep only the largest strongly connected component. threads: of this
-    machine, else as many as it has cores. folder: where finished blocks are kept, so that a build that was
-    ended takes up where it was. cluster: a `distributed.Client` whose workers make the blocks. Raises
-    SynthesisError when it was cancelled, or when nothing is connected.
+    the memory of large sets. connected: keep only the largest strongly connected component. makers: who makes
+    the blocks of transitions, and where they are kept. Raises SynthesisError when it was cancelled, or when
+    nothing is connected.
     """
     limit = threshold(states) if limit is None else limit
     keys = key_states(states) if keys is None else np.asarray(keys)
     work = work_of(states, keys, limit.limit, most)
-    rows, targets, costs = transitions(work, progress, cancelled, threads, folder, cluster)
+    rows, targets, costs = transitions(work, makers, progress, cancelled)
     del work
     starts = np.zeros(len(states) + 1, np.int64)
     starts[keys + 1] = rows

@@ -17,6 +17,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from metagraph.synthesis import blocks, kernels
+from metagraph.synthesis.blocks import BlockMakers
 from metagraph.synthesis.graph import MotionGraph, Threshold, build
 from metagraph.synthesis.states import States, SynthesisError, key_states, with_velocity
 
@@ -70,24 +71,28 @@ def test_a_build_that_is_ended_takes_up_where_it_was(tmp_path: Path, monkeypatch
             LIMIT,
             keys,
             most=60,
-            folder=tmp_path,
+            makers=BlockMakers(threads=1, folder=tmp_path),
             progress=lambda n, _: seen.append(n),
             cancelled=lambda: len(seen) >= 3,
-            threads=1,
         )
     kept = files(tmp_path)
     assert 3 <= len(kept) < len(keys) // 128
     told: list[tuple[int, int]] = []
     same(
         build(
-            states, LIMIT, keys, most=60, folder=tmp_path, progress=lambda n, total: told.append((n, total))
+            states,
+            LIMIT,
+            keys,
+            most=60,
+            makers=BlockMakers(folder=tmp_path),
+            progress=lambda n, total: told.append((n, total)),
         ),
         whole,
     )
     assert told[0][0] >= 3 * 128 and told[-1] == (len(keys), len(keys))
     after = files(tmp_path)
     assert all(after[name] == at for name, at in kept.items()), "what was there is not made again"
-    same(build(states, LIMIT, keys, most=60, folder=tmp_path), whole)
+    same(build(states, LIMIT, keys, most=60, makers=BlockMakers(folder=tmp_path)), whole)
     assert files(tmp_path) == after
 
 
@@ -99,8 +104,7 @@ def _slowly(folder: Path) -> None:
         LIMIT,
         key_states(states),
         most=60,
-        folder=folder,
-        threads=1,
+        makers=BlockMakers(threads=1, folder=folder),
         progress=lambda n, total: time.sleep(0.2),
     )
 
@@ -120,14 +124,17 @@ def test_a_process_that_is_killed_leaves_whole_blocks(
     states = made()
     keys = key_states(states)
     assert 2 <= len(kept) < len(keys) // 128
-    same(build(states, LIMIT, keys, most=60, folder=tmp_path), build(states, LIMIT, keys, most=60))
+    same(
+        build(states, LIMIT, keys, most=60, makers=BlockMakers(folder=tmp_path)),
+        build(states, LIMIT, keys, most=60),
+    )
     assert all(files(tmp_path)[name] == at for name, at in kept.items())
 
 
 def test_blocks_of_other_inputs_are_not_taken(tmp_path: Path) -> None:
     states = made(1500)
     keys = key_states(states)
-    build(states, LIMIT, keys, folder=tmp_path)
+    build(states, LIMIT, keys, makers=BlockMakers(folder=tmp_path))
     other = made(1500, seed=2)
     changed = (
         (other, LIMIT, key_states(other), None),
@@ -137,23 +144,29 @@ def test_blocks_of_other_inputs_are_not_taken(tmp_path: Path) -> None:
         (with_velocity(states, 0.05), LIMIT, keys, None),
     )
     for some, limit, which, most in changed:
-        same(build(some, limit, which, most, folder=tmp_path), build(some, limit, which, most))
+        same(
+            build(some, limit, which, most, makers=BlockMakers(folder=tmp_path)),
+            build(some, limit, which, most),
+        )
     assert len(list(tmp_path.iterdir())) == 6, "each in a folder of its own"
 
 
 def test_a_spoiled_block_is_made_again(tmp_path: Path) -> None:
     states = made(3000)
     keys = key_states(states)
-    whole = build(states, LIMIT, keys, folder=tmp_path)
+    whole = build(states, LIMIT, keys, makers=BlockMakers(folder=tmp_path))
     some = sorted(tmp_path.rglob("*.npz"))
     some[0].write_bytes(some[0].read_bytes()[:100])
     some[-1].write_bytes(b"")
-    same(build(states, LIMIT, keys, folder=tmp_path), whole)
+    same(build(states, LIMIT, keys, makers=BlockMakers(folder=tmp_path)), whole)
 
 
 def test_one_thread_and_many_make_the_same() -> None:
     states = made(3000)
-    same(build(states, LIMIT, threads=1), build(states, LIMIT, threads=4))
+    same(
+        build(states, LIMIT, makers=BlockMakers(threads=1)),
+        build(states, LIMIT, makers=BlockMakers(threads=4)),
+    )
 
 
 @pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
@@ -226,15 +239,18 @@ def test_a_cluster_makes_the_same_edges(tmp_path: Path) -> None:
                 LIMIT,
                 keys,
                 most=40,
-                cluster=client,
+                makers=BlockMakers(cluster=client),
                 progress=lambda n, total: told.append((n, total)),
             ),
             whole,
         )
         assert told[-1] == (len(keys), len(keys))
-        same(build(states, LIMIT, keys, most=40, cluster=client, folder=tmp_path / "kept"), whole)
+        same(
+            build(states, LIMIT, keys, most=40, makers=BlockMakers(folder=tmp_path / "kept", cluster=client)),
+            whole,
+        )
         with pytest.raises(SynthesisError, match="cancelled"):
-            build(states, LIMIT, keys, cluster=client, cancelled=lambda: True)
+            build(states, LIMIT, keys, makers=BlockMakers(cluster=client), cancelled=lambda: True)
     kept = files(tmp_path / "kept")
-    same(build(states, LIMIT, keys, most=40, folder=tmp_path / "kept"), whole)
+    same(build(states, LIMIT, keys, most=40, makers=BlockMakers(folder=tmp_path / "kept")), whole)
     assert files(tmp_path / "kept") == kept, "a cluster's blocks are this machine's"
