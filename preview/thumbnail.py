@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -40,35 +41,52 @@ def telling_frame(clip: Clip) -> int:
     return int(frames[np.argmax(apart.sum(1))])
 
 
+@dataclass(frozen=True)
+class ThumbnailStyle:
+    """How a thumbnail is drawn: `size * scale` pixels on a side. paper: sRGB background, None for a
+    transparent one. tint: an sRGB colour (that of the clip's kind) the paper takes a little of.
+    """
+
+    size: int = 160
+    scale: int = 2
+    tint: tuple[float, float, float] | None = None
+    paper: tuple[float, float, float] | None = (0.110, 0.114, 0.129)
+    theme: Theme = DARK
+
+    @property
+    def background(self) -> tuple[float, float, float, float]:
+        """The colour behind the figure, with its opacity."""
+        if self.paper is None:
+            return 0.0, 0.0, 0.0, 0.0
+        share = 0.0 if self.tint is None else 0.16
+        tint = self.tint or self.paper
+        r, g, b = (p * (1 - share) + t * share for p, t in zip(self.paper, tint, strict=True))
+        return r, g, b, 1.0
+
+
+USUAL = ThumbnailStyle()
+
+
 def thumbnail(
     offscreen: Offscreen,
     figure: Figure,
     rotations: Array,
     positions: Array,
-    size: int = 160,
-    scale: int = 2,
-    tint: tuple[float, float, float] | None = None,
-    paper: tuple[float, float, float] | None = (0.110, 0.114, 0.129),
-    theme: Theme = DARK,
+    style: ThumbnailStyle = USUAL,
 ) -> Array:
     """Return a square picture `[size * scale, size * scale, 4]` uint8 of one pose on the figure's skeleton.
 
-    rotations `[J, 4]`, positions `[J, 3]`: global. paper: sRGB background, None for a transparent one. tint:
-    an sRGB colour (that of the clip's kind) the paper takes a little of. All clips of a skeleton are framed
-    alike, so that they can be compared; one that leaves the frame is shown whole.
+    rotations `[J, 4]`, positions `[J, 3]`: global. All clips of a skeleton are framed alike, so that they can
+    be compared; one that leaves the frame is shown whole.
     """
-    pixels = size * scale
-    background = (0.0, 0.0, 0.0, 0.0)
-    if paper is not None:
-        share = 0.0 if tint is None else 0.16
-        r, g, b = (p * (1 - share) + t * share for p, t in zip(paper, tint or paper, strict=True))
-        background = (r, g, b, 1.0)
+    pixels = style.size * style.scale
     # The figure is turned to the lamp, not the camera round it: all thumbnails are in the same light.
     turn = rotation.from_axis_angle(np.array([0.0, 1, 0]), np.array(-_heading(figure, positions)))
     centred = rotation.rotate(turn, positions - positions[0] * [1, 0, 1])
     actor = Actor(figure, rotation.multiply(turn, rotations), centred)
     camera = _camera(_person(figure, figure.posed_bounds(actor.rotations, actor.positions)))
-    return offscreen.render(Scene((actor,), background=background), camera, theme, (pixels, pixels))
+    scene = Scene((actor,), background=style.background)
+    return offscreen.render(scene, camera, style.theme, (pixels, pixels))
 
 
 def thumbnails(
@@ -126,10 +144,10 @@ def _camera(box: Box) -> Camera:
     return Camera().facing(np.radians(22), np.radians(6)).frame(box, 1.0, margin=1.02)
 
 
-def clip_thumbnail(offscreen: Offscreen, figure: Figure, clip: Clip, **options: Any) -> Array:
+def clip_thumbnail(offscreen: Offscreen, figure: Figure, clip: Clip, style: ThumbnailStyle = USUAL) -> Array:
     """Return `thumbnail` of the clip's telling frame; the clip is on the figure's skeleton."""
     rotations, positions = clip.skeleton.globals(clip.poses()[telling_frame(clip)])
-    return thumbnail(offscreen, figure, rotations, positions, **options)
+    return thumbnail(offscreen, figure, rotations, positions, style)
 
 
 def _heading(figure: Figure, positions: Array) -> float:

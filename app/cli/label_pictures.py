@@ -17,15 +17,16 @@ def pictures(project: Project, folder: Path, clips: Iterable[str]) -> Mapping[st
     from app.cli.render_command import figure_of
     from metagraph.errors import FileError
     from preview.offscreen import Offscreen, OpenGLError
-    from preview.thumbnail import clip_thumbnail, thumbnail
+    from preview.thumbnail import ThumbnailStyle, clip_thumbnail, thumbnail
 
     out: dict[str, Any] = {}
+    style = ThumbnailStyle(SIZE, scale=1)
     try:
         figure = figure_of(project, folder)
         with Offscreen(SIZE, SIZE) as stage:
             for clip in clips:
                 if (motion := project.clips[clip].motion) is not None:
-                    out[clip] = clip_thumbnail(stage, figure, motion, size=SIZE, scale=1)
+                    out[clip] = clip_thumbnail(stage, figure, motion, style)
             for graph in project.graphs.values():
                 for stance in graph.stances:
                     rest = next(iter(graph.of(stance, "stance")), None)
@@ -35,7 +36,7 @@ def pictures(project: Project, folder: Path, clips: Iterable[str]) -> Mapping[st
                     start, end = project.span(rest)
                     frame = min(motion.frames - 1, round((start + end) / 2 * motion.fps))
                     pose = motion.skeleton.globals(motion.poses()[frame])
-                    out[stance] = thumbnail(stage, figure, *pose, size=SIZE, scale=1)
+                    out[stance] = thumbnail(stage, figure, *pose, style)
     except (OpenGLError, FileError) as error:
         print(f"note: the report has no pictures: {error}", file=sys.stderr)
         return {}

@@ -55,7 +55,7 @@ _Waiting = queue.PriorityQueue[tuple[bool, float, PictureOrder | None]]
 def draw(offscreen: Any, figure: Any, order: PictureOrder) -> list[np.ndarray]:
     """Return a clip's pictures `[H, W, 4]`: one telling pose, or its whole loop."""
     from preview.scene import THEMES
-    from preview.thumbnail import telling_frame, thumbnail, thumbnails
+    from preview.thumbnail import ThumbnailStyle, telling_frame, thumbnail, thumbnails
 
     motion = order.clip
     if order.what in FRAMED:
@@ -73,12 +73,8 @@ def draw(offscreen: Any, figure: Any, order: PictureOrder) -> list[np.ndarray]:
         frames = np.linspace(0, motion.frames - 1, count).round().astype(int)
     size = MOVING_SIZE if order.what == "moving" else SIZE
     rotations, positions = motion.skeleton.globals(motion.poses()[frames])
-    return [
-        thumbnail(
-            offscreen, figure, r, p, size=size, scale=SCALE, paper=order.paper, theme=THEMES[order.theme]
-        )
-        for r, p in zip(rotations, positions, strict=True)
-    ]
+    style = ThumbnailStyle(size, SCALE, paper=order.paper, theme=THEMES[order.theme])
+    return [thumbnail(offscreen, figure, r, p, style) for r, p in zip(rotations, positions, strict=True)]
 
 
 def serve(orders: BinaryIO, results: BinaryIO) -> None:

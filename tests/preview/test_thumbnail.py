@@ -9,7 +9,7 @@ from metagraph.motion import rotation
 from metagraph.motion.character_mesh import Character, Material, Surface
 from metagraph.motion.clip import Clip
 from preview.figure import SkinnedFigure, StickFigure
-from preview.thumbnail import clip_thumbnail, telling_frame, thumbnail, thumbnails
+from preview.thumbnail import ThumbnailStyle, clip_thumbnail, telling_frame, thumbnail, thumbnails
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 
 SKELETON = mannequin_skeleton()
@@ -43,9 +43,9 @@ def test_long_clips_are_looked_at_here_and_there():
 @pytest.mark.gl
 def test_a_thumbnail_shows_the_figure_on_tinted_paper(offscreen):
     figure = StickFigure(SKELETON)
-    plain = clip_thumbnail(offscreen, figure, clip([0.0, 1.0]), size=40)
-    tinted = clip_thumbnail(offscreen, figure, clip([0.0, 1.0]), size=40, tint=(0.94, 0.65, 0.24))
-    clear = clip_thumbnail(offscreen, figure, clip([0.0, 1.0]), size=40, paper=None)
+    plain = clip_thumbnail(offscreen, figure, clip([0.0, 1.0]), ThumbnailStyle(40))
+    tinted = clip_thumbnail(offscreen, figure, clip([0.0, 1.0]), ThumbnailStyle(40, tint=(0.94, 0.65, 0.24)))
+    clear = clip_thumbnail(offscreen, figure, clip([0.0, 1.0]), ThumbnailStyle(40, paper=None))
     assert plain.shape == (80, 80, 4)
     assert plain[0, 0].tolist() == [28, 29, 33, 255]
     assert tinted[0, 0, 0] > tinted[0, 0, 2] + 10
@@ -59,8 +59,8 @@ def test_the_figure_is_seen_from_the_front_wherever_it_stands_and_faces(offscree
     rotations, positions = SKELETON.globals(SKELETON.rest)
     turn = rotation.from_axis_angle(np.array([0.0, 1, 0]), np.array(2.0))
     there = rotation.rotate(turn, positions) + [7.0, 0, -3.0]
-    first = thumbnail(offscreen, figure, rotations, positions, size=40).astype(int)
-    second = thumbnail(offscreen, figure, rotation.multiply(turn, rotations), there, size=40)
+    first = thumbnail(offscreen, figure, rotations, positions, ThumbnailStyle(40)).astype(int)
+    second = thumbnail(offscreen, figure, rotation.multiply(turn, rotations), there, ThumbnailStyle(40))
     assert np.abs(first - second).mean() < 0.5
 
 
