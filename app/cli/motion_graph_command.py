@@ -345,7 +345,7 @@ def synthesize(options: Namespace) -> int:
     from metagraph.synthesis.graph import build as build_graph
     from metagraph.synthesis.graph import threshold
     from metagraph.synthesis.search.path_quality import quality
-    from metagraph.synthesis.search.relaxing import Constraints, answer
+    from metagraph.synthesis.search.relaxing import Constraints, Searching, answer
     from metagraph.synthesis.search.ruled_search import FREE, JUMP_RULES
     from metagraph.synthesis.soft_constraints import SoftMaterial, soft_report
     from metagraph.synthesis.states import key_states
@@ -387,10 +387,8 @@ def synthesize(options: Namespace) -> int:
         cut(new.segments, options.start, seconds),
         seconds,
         asked,
-        options.search,
-        options.seed,
+        Searching(options.search, options.seed, options.strict),
         soft=soft,
-        strict=options.strict,
     )
     path = found.path
     if words := found.words():
@@ -500,7 +498,7 @@ def evaluate(options: Namespace) -> int:
     from app.cli.command_output import say
     from metagraph.formats.atomic import write_atomically
     from metagraph.research.motion_graph.evaluation_table import csv_of, table_of
-    from metagraph.research.motion_graph.search_evaluation import SETTINGS
+    from metagraph.research.motion_graph.search_evaluation import SETTINGS, Beside, GraphMaking, Trials
     from metagraph.research.motion_graph.search_evaluation import evaluate as run
 
     _checked(options)
@@ -515,16 +513,11 @@ def evaluate(options: Namespace) -> int:
             clips,
             [one.segments for one in spoken],
             SETTINGS[:1] if options.quick else SETTINGS,
-            options.search or ("greedy", "exact"),
-            options.k,
-            options.level,
-            options.keys,
-            options.most,
-            seed=options.seed,
-            progress=_telling(options, "cases"),
-            cancelled=stopped,
-            wish=wish,
-            spoken=spoken,
+            Trials(options.search or ("greedy", "exact"), seed=options.seed),
+            GraphMaking(options.k, options.level, options.keys, options.most),
+            _telling(options, "cases"),
+            stopped,
+            Beside(wish, spoken),
         )
     if options.out is not None:
         write_atomically(options.out, csv_of(found.cases).encode())

@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
 from metagraph.graph.conversation.model import Segment  # noqa: E402
-from metagraph.research.motion_graph.search_evaluation import Setting, cut, evaluate  # noqa: E402
+from metagraph.research.motion_graph.search_evaluation import Beside, Setting, Trials, cut, evaluate  # noqa: E402
 from metagraph.speech.prosody import prosody  # noqa: E402
 from metagraph.synthesis.assemble import assemble  # noqa: E402
 from metagraph.synthesis.constraints import changes, heard  # noqa: E402
@@ -29,7 +29,7 @@ from metagraph.synthesis.graph import build  # noqa: E402
 from metagraph.synthesis.iconic_words import word_wish  # noqa: E402
 from metagraph.synthesis.prosody_costs import SpokenTake  # noqa: E402
 from metagraph.synthesis.search.path_quality import quality  # noqa: E402
-from metagraph.synthesis.search.relaxing import answer  # noqa: E402
+from metagraph.synthesis.search.relaxing import Searching, answer  # noqa: E402
 from metagraph.synthesis.soft_constraints import SoftMaterial, SoftWish, soft_report  # noqa: E402
 from metagraph.synthesis.states import key_states, states_of  # noqa: E402
 from tests.synthesis.talking import VOICE, aloud, speech, talking  # noqa: E402
@@ -83,8 +83,9 @@ def wishes(takes: int = 8, windows: int = 16) -> None:
             offer, rows, words, steps, moved, took = material(wish), [], [0, 0], [], [], 0.0
             times: list[tuple[float, float]] = []
             for said, heights, one in new:
+                searching = Searching(search)  # type: ignore[arg-type]
                 soft, begun = offer.constraints(one, 0.0, SECONDS), time.perf_counter()
-                found = answer(graph, sound, cut(said, 0, SECONDS), SECONDS, None, search, soft=soft)  # type: ignore[arg-type]
+                found = answer(graph, sound, cut(said, 0, SECONDS), SECONDS, None, searching, soft=soft)
                 took += time.perf_counter() - begun
                 known = told.constraints(one, 0.0, SECONDS)
                 report = soft_report(soft, states, found.path, found.retiming)
@@ -121,7 +122,7 @@ def scarce() -> None:
             clips = [talking(f"take {n}", s, seconds, n) for n, s in enumerate(said)]
             exactly = (Setting("a frame", tolerance=0.034),)
             wish = SoftWish(retime=share)
-            (row,) = evaluate(clips, said, exactly, ("exact",), window=10, every=5, wish=wish).rows
+            (row,) = evaluate(clips, said, exactly, Trials(("exact",), 10, 5), beside=Beside(wish)).rows
             found, cases = found + row.found, cases + row.cases
         print(f"within a frame, speed changed by up to {share:.0%}: {found} of {cases} windows find motion")
 

@@ -20,7 +20,7 @@ from metagraph.synthesis.constraints import HeardStates, WantedSegment, heard, w
 from metagraph.synthesis.graph import BLEND
 from metagraph.synthesis.retiming import keeps_to, retimable, retime, timing_cost
 from metagraph.synthesis.search.path import Path
-from metagraph.synthesis.search.relaxing import Constraints, answer, misses
+from metagraph.synthesis.search.relaxing import Constraints, Searching, answer, misses
 from metagraph.synthesis.soft_constraints import SoftConstraints, SoftWish
 from metagraph.synthesis.standing_feet import standing
 from metagraph.synthesis.states import SynthesisError, states_of
@@ -119,17 +119,18 @@ def test_a_path_is_found_where_there_is_none_without() -> None:
     new = [clause(1.5, 2.1, 3.2)]
     soft = SoftConstraints(free=np.ones(150, bool), most=0.15)
     with pytest.raises(SynthesisError):
-        answer(graph, spoken, new, 5.0, strict=True)
+        answer(graph, spoken, new, 5.0, searching=Searching(strict=True))
     without = answer(graph, spoken, new, 5.0)
     assert without.given_up == ("exactness, 0.2 s instead",) and without.misses
     for strict in (True, False):
-        found = answer(graph, spoken, new, 5.0, soft=soft, strict=strict)
+        found = answer(graph, spoken, new, 5.0, searching=Searching(strict=strict), soft=soft)
         assert found.retiming is not None and found.given_up == () and found.misses == ()
         assert found.kept == Constraints()
         assert misses(spoken, found.path, new, Constraints(), found.retiming) == ()
         assert misses(spoken, found.path, new, Constraints()), "it is the speed that does it"
     with pytest.raises(SynthesisError):  # too far for what speed can do
-        answer(graph, spoken, new, 5.0, soft=SoftConstraints(free=soft.free, most=0.02), strict=True)
+        slow = SoftConstraints(free=soft.free, most=0.02)
+        answer(graph, spoken, new, 5.0, searching=Searching(strict=True), soft=slow)
 
 
 def test_what_a_path_keeps_to_is_not_lost_by_retiming() -> None:

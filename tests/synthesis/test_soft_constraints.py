@@ -8,7 +8,7 @@ import pytest
 from metagraph.graph.conversation.model import Segment
 from metagraph.motion.clip import Clip
 from metagraph.research.motion_graph.evaluation_table import csv_of, table_of
-from metagraph.research.motion_graph.search_evaluation import SETTINGS, cut, evaluate
+from metagraph.research.motion_graph.search_evaluation import SETTINGS, Beside, Trials, cut, evaluate
 from metagraph.speech.prosody import prosody
 from metagraph.synthesis.assemble import assemble
 from metagraph.synthesis.constraints import changes, heard
@@ -16,7 +16,7 @@ from metagraph.synthesis.cooccurrence import speeds
 from metagraph.synthesis.graph import MotionGraph, build
 from metagraph.synthesis.iconic_words import word_wish
 from metagraph.synthesis.prosody_costs import SpokenTake
-from metagraph.synthesis.search.relaxing import answer
+from metagraph.synthesis.search.relaxing import Searching, answer
 from metagraph.synthesis.soft_constraints import NO_WISH, SoftMaterial, SoftWish, soft_report
 from metagraph.synthesis.states import SynthesisError, key_states, states_of
 from tests.synthesis.talking import VOICE, aloud, speech, talking
@@ -73,7 +73,7 @@ def test_what_is_said_louder_is_gestured_faster_where_it_was_so_in_the_takes(
                 cut(said, 0, 10),
                 10.0,
                 None,
-                search,  # type: ignore[arg-type]
+                Searching(search),  # type: ignore[arg-type]
                 soft=material.constraints(new, 0.0, 10.0),
             )
             matches = soft_report(both.constraints(new, 0.0, 10.0), studio.states, found.path).matches
@@ -97,7 +97,9 @@ def test_words_and_speed_are_told_and_what_is_paid(studio: Studio) -> None:
     _, _, new = recorded(103, 20, 0.0)
     wish = SoftWish(0.25, 0.25, WORDS, hard=True, retime=0.15)
     soft = studio.material(wish).constraints(new, 2.0, 10.0)
-    found = answer(studio.graph, sound, cut(new.segments, 2.0, 10.0), 10.0, None, "greedy", soft=soft)
+    found = answer(
+        studio.graph, sound, cut(new.segments, 2.0, 10.0), 10.0, None, Searching("greedy"), soft=soft
+    )
     report = soft_report(soft, studio.states, found.path, found.retiming)
     assert set(report.paid) == {"loudness", "rate", "words"} and [m.measure for m in report.matches] == [
         "loudness",
@@ -141,11 +143,11 @@ def test_what_cannot_be_compared_is_told(studio: Studio) -> None:
 def test_an_evaluation_tells_what_became_of_a_wish() -> None:
     few = Studio(3, 24)
     wish = SoftWish(0.25, 0.25, WORDS, retime=0.15)
-    found = evaluate(few.clips, few.said, SETTINGS[:1], ("exact",), wish=wish, spoken=few.spoken)
+    found = evaluate(few.clips, few.said, SETTINGS[:1], Trials(("exact",)), beside=Beside(wish, few.spoken))
     (row,) = found.rows
     assert row.loudness is not None and row.pace is not None and row.off is not None and row.was is not None
     assert 0 < row.off <= row.was and row.words is not None and 0 <= row.words <= 1
     assert "spreads off" in table_of(found) and "before retiming" in table_of(found)
     assert csv_of(found.cases).splitlines()[0].endswith("loudness,pace,words,off,was")
-    plain = evaluate(few.clips, few.said, SETTINGS[:1], ("exact",))
+    plain = evaluate(few.clips, few.said, SETTINGS[:1], Trials(("exact",)))
     assert plain.rows[0].loudness is None and "spreads" not in table_of(plain)

@@ -23,7 +23,6 @@ from metagraph.motion.clip import Clip
 
 if TYPE_CHECKING:
     from metagraph.synthesis.search.path_quality import PathQuality
-    from metagraph.synthesis.search.ruled_search import Search
     from metagraph.synthesis.soft_constraints import SoftWish
 
 FOLDER = "motion-graph"  # beside the project file, where new clips are kept
@@ -191,14 +190,14 @@ def synthesise(
     from metagraph.synthesis.assemble import assemble
     from metagraph.synthesis.constraints import heard
     from metagraph.synthesis.search.path_quality import quality
-    from metagraph.synthesis.search.relaxing import Constraints, answer
+    from metagraph.synthesis.search.relaxing import Constraints, Searching, answer
     from metagraph.synthesis.soft_constraints import NOTHING, SoftMaterial, soft_report
 
     said = heard(graph.states, takes.speech)
     # Takes nobody annotated went with anything.
     use = wish.use if takes.told else ()
     asked = Constraints(wish.tolerance, use, wish.peaks and takes.told, wish.edges)
-    search: Search = "exact" if wish.exact else "greedy"
+    searching = Searching("exact" if wish.exact else "greedy", wish.seed)
     began = time.perf_counter()
     soft = NOTHING
     if wish.soft is not None and wish.soft.asks and wish.side is not None:
@@ -209,7 +208,7 @@ def synthesise(
         material = SoftMaterial(wish.soft, graph.states, takes.clips, theirs, graph.threshold.limit)
         new = spoken(wish.side, wish.whole, folder, wish.soft)
         soft = material.constraints(new, wish.start, wish.seconds, wish.tolerance)
-    found = answer(graph, said, wish.segments, wish.seconds, asked, search, wish.seed, cancelled, soft)
+    found = answer(graph, said, wish.segments, wish.seconds, asked, searching, cancelled, soft)
     took, path = time.perf_counter() - began, found.path
     made = assemble(graph.states, takes.clips, path, name, retiming=found.retiming)
     beside = soft_report(soft, graph.states, path, found.retiming).told()

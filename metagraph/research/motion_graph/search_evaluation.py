@@ -21,7 +21,7 @@ from metagraph.synthesis.cooccurrence import wilson
 from metagraph.synthesis.graph import MotionGraph, build, threshold
 from metagraph.synthesis.prosody_costs import SpokenTake
 from metagraph.synthesis.search.path_quality import quality
-from metagraph.synthesis.search.relaxing import Constraints, answer
+from metagraph.synthesis.search.relaxing import Constraints, Searching, answer
 from metagraph.synthesis.search.ruled_search import FREE, JUMP_RULES, JumpRules, Search, find_path
 from metagraph.synthesis.soft_constraints import (
     NO_WISH,
@@ -211,38 +211,65 @@ def cut(segments: Sequence[Segment], start: float, length: float) -> list[Segmen
     return out
 
 
+@dataclass(frozen=True)
+class GraphMaking:
+    """How a graph is made of takes, as `build` and `threshold` take it. keys: share of states that are key
+    states.
+    """
+
+    k: int = STEP
+    level: float = LEVEL
+    keys: float = KEYS
+    most: int | None = None
+
+
+@dataclass(frozen=True)
+class Trials:
+    """How held-out speech is cut, see `windows`, and searched for. seed: of the greedy search."""
+
+    searches: Collection[Search] = ("greedy", "exact")
+    window: float = WINDOW
+    every: float = EVERY
+    seed: int = 1
+
+
+@dataclass(frozen=True)
+class Beside:
+    """What motion should have beside a setting's constraints. spoken: what is known of each take's speech,
+    no more than its segments where None.
+    """
+
+    wish: SoftWish = NO_WISH
+    spoken: Sequence[SpokenTake] | None = None
+
+
+ALL_TRIALS, USUAL_GRAPH, NOTHING_BESIDE = Trials(), GraphMaking(), Beside()
+
+
 def evaluate(
     takes: Sequence[Clip],
     speech: Sequence[Sequence[Segment]],
     settings: Sequence[Setting] = SETTINGS,
-    searches: Collection[Search] = ("greedy", "exact"),
-    k: int = STEP,
-    level: float = LEVEL,
-    keys: float = KEYS,
-    most: int | None = None,
-    window: float = WINDOW,
-    every: float = EVERY,
-    seed: int = 1,
+    trials: Trials = ALL_TRIALS,
+    making: GraphMaking = USUAL_GRAPH,
     progress: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
-    wish: SoftWish = NO_WISH,
-    spoken: Sequence[SpokenTake] | None = None,
+    beside: Beside = NOTHING_BESIDE,
 ) -> Evaluation:
     """Hold out one take after another, build the graph of the rest as `build` does, and search it for what
     was said in the one held out.
 
-    speech: what each take goes with, `heard_by`. keys: share of states that are key states. seed: of the
-    greedy search. wish: what motion should have beside a setting's constraints, for which spoken is what is
-    known of each take's speech. A take without which there is no graph makes cases that find nothing.
-    Cancelled, it returns what there is. Raises SynthesisError when there are fewer than two takes, not as
-    many speeches, or no case at all.
+    speech: what each take goes with, `heard_by`. A take without which there is no graph makes cases that find
+    nothing. Cancelled, it returns what there is. Raises SynthesisError when there are fewer than two takes,
+    not as many speeches, or no case at all.
     """
-    spoken = [SpokenTake(tuple(s)) for s in speech] if spoken is None else spoken
-    takes, speech, spoken = _checked(takes, speech, spoken)
+    searches = trials.searches
+    known = [SpokenTake(tuple(s)) for s in speech] if beside.spoken is None else beside.spoken
+    takes, speech, spoken = _checked(takes, speech, known)
     every_state = states_of(takes)
     _warm(searches)
     lengths = np.diff(every_state.starts) / RATE
-    cases = [windows(float(length), window, every) for length in lengths]
+    cases = [windows(float(length), trials.window, trials.every) for length in lengths]
     total = sum(map(len, cases)) * len(settings) * len(searches)
     if not total:
         raise SynthesisError(f"no take is longer than {LEAST:g} s, so there is no case: give longer takes")
@@ -251,13 +278,13 @@ def evaluate(
     for n, take in enumerate(takes):
         if not cases[n]:
             continue
-        made = _graph(every_state, speech, n, k, level, keys, most, cancelled)
+        made = _graph(every_state, speech, n, making, cancelled)
         if not isinstance(made, str):
             graph, sound, seconds = made
             kept, edges = graph.size
             graphs.append(Graph(take.name, kept, len(graph.states), edges, graph.threshold.limit, seconds))
             rest, theirs = [*takes[:n], *takes[n + 1 :]], [*spoken[:n], *spoken[n + 1 :]]
-            material = SoftMaterial(wish, graph.states, rest, theirs, graph.threshold.limit)
+            material = SoftMaterial(beside.wish, graph.states, rest, theirs, graph.threshold.limit)
         for start, length in cases[n]:
             said = cut(speech[n], start, length)
             for setting, search in ((s, x) for s in settings for x in searches):
@@ -277,7 +304,7 @@ def evaluate(
                 )
                 if not isinstance(made, str):
                     soft = material.constraints(spoken[n], start, length, setting.tolerance)
-                    case = _tried(case, graph, sound, said, setting, seed, soft)
+                    case = _tried(case, graph, sound, said, setting, trials.seed, soft)
                 done.append(case)
                 if progress is not None:
                     progress(len(done), total)
@@ -317,10 +344,7 @@ def _graph(
     states: States,
     speech: Sequence[Sequence[Segment]],
     out: int,
-    k: int,
-    level: float,
-    share: float,
-    most: int | None,
+    making: GraphMaking,
     cancelled: Callable[[], bool] | None,
 ) -> tuple[MotionGraph, HeardStates, float] | str:
     """Return the graph without a take, what is heard at its states, and how long it took; or why there is
@@ -330,8 +354,9 @@ def _graph(
     rest = without(states, out)
     said = [s for n, s in enumerate(speech) if n != out]
     try:
-        keys = key_states(rest, share, changes(rest, said))
-        graph = build(rest, threshold(rest, k, level), keys, most, cancelled=cancelled)
+        keys = key_states(rest, making.keys, changes(rest, said))
+        limit = threshold(rest, making.k, making.level)
+        graph = build(rest, limit, keys, making.most, cancelled=cancelled)
         return graph, heard(rest, said), perf_counter() - begun
     except SynthesisError as error:
         return str(error)  # also where it was cancelled: then no case is tried
@@ -355,9 +380,10 @@ def _tried(
     soft: SoftConstraints,
 ) -> Case:
     asked = Constraints(setting.tolerance, setting.use, setting.peaks, setting.edges, setting.rules)
+    searching = Searching(case.search, seed, strict=True)
     begun = perf_counter()
     try:
-        found = answer(graph, sound, said, case.length, asked, case.search, seed, soft=soft, strict=True)
+        found = answer(graph, sound, said, case.length, asked, searching, soft=soft)
     except SynthesisError as error:
         return replace(case, seconds=perf_counter() - begun, why=str(error))
     took, path = perf_counter() - begun, found.path

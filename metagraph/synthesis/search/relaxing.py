@@ -142,120 +142,142 @@ def given_up(asked: Constraints, kept: Constraints) -> tuple[str, ...]:
     return tuple(out)
 
 
+@dataclass(frozen=True)
+class Searching:
+    """How motion is looked for. seed: of the greedy search. strict: nothing is given up."""
+
+    search: Search = "exact"
+    seed: int = 1
+    strict: bool = False
+
+
+EXACTLY = Searching()
+
+
 def answer(
     graph: MotionGraph,
     heard: HeardStates,
     segments: Sequence[Segment],
     seconds: float,
     asked: Constraints | None = None,
-    search: Search = "exact",
-    seed: int = 1,
+    searching: Searching = EXACTLY,
     cancelled: Callable[[], bool] | None = None,
     soft: SoftConstraints = NOTHING,
-    strict: bool = False,
 ) -> Answer:
     """Return motion for speech, with as many of the constraints as there is any for: they are given up until
-    there is some, and then taken back one by one. soft: what it should have beside them. strict: nothing is
-    given up. Raises SynthesisError where the takes cannot even go on so long, or with nothing given up, or
-    when it was cancelled.
+    there is some, and then taken back one by one. soft: what it should have beside them. Raises
+    SynthesisError where the takes cannot even go on so long, or with nothing given up, or when it was
+    cancelled.
 
     What may be retimed is looked for with WIDER the tolerance too where there is nothing within it: where
     speed brings all of it within the tolerance that was asked for, nothing was given up.
     """
     asked = Constraints() if asked is None else asked
     asked = replace(asked, words=soft.hard and bool(soft.places))
+    task = _Task(graph, heard, segments, seconds, asked, searching, cancelled, soft)
+    return task.strictly() if searching.strict else task.relaxed()
 
-    def tried(kept: Constraints) -> Path:
-        want = kept.wanted(segments, seconds, soft)
+
+@dataclass(frozen=True, eq=False)
+class _Task:
+    """What `answer` is asked for."""
+
+    graph: MotionGraph
+    heard: HeardStates
+    segments: Sequence[Segment]
+    seconds: float
+    asked: Constraints
+    searching: Searching
+    cancelled: Callable[[], bool] | None
+    soft: SoftConstraints
+
+    def relaxed(self) -> Answer:
+        """Return motion that keeps to what it can."""
+        path, kept = self._first()
+        failed: set[Constraints] = set()
+        while more := next((c for c in _taken_back(kept, self.asked) if c not in failed), None):
+            found = self._path_or_none(more)
+            if found is None:
+                failed.add(more)
+            else:
+                kept, path = more, found
+        retiming, kept = self._retimed(path, kept)
+        words = given_up(self.asked, kept)
+        missed = misses(self.heard, path, self.segments, self.asked, retiming) if words else ()
+        return Answer(path, kept, words, missed, retiming)
+
+    def strictly(self) -> Answer:
+        """Return motion that keeps to all that is asked, retimed where that helps. Raises SynthesisError."""
+        asked = self.asked
+        try:
+            path = self._path(asked)
+        except SynthesisError:
+            wider = replace(asked, tolerance=WIDER * asked.tolerance)
+            if self.soft.free is None or wider == asked:
+                raise
+            with suppress(SynthesisError):
+                path = self._path(wider)
+                retiming, kept = self._retimed(path, wider)
+                if kept == asked:
+                    return Answer(path, kept, retiming=retiming)
+            raise
+        return Answer(path, asked, retiming=self._retimed(path, asked)[0])
+
+    def _first(self) -> tuple[Path, Constraints]:
+        """Return a path that keeps to as much as the first for which there is one. Raises SynthesisError."""
+        for kept in steps(self.asked):
+            path = self._path_or_none(kept)
+            if path is not None:
+                return path, kept
+        raise SynthesisError(
+            f"these takes cannot go on for {self.seconds:g} s without a jump: choose more takes, raise k or "
+            "the level, or ask for less"
+        )
+
+    def _path(self, kept: Constraints) -> Path:
+        """Return a path that keeps to constraints. Raises SynthesisError where there is none."""
+        soft, how = self.soft, self.searching
+        want = self._wanted(kept)
         charged = soft.charged
         if soft.free is not None:
             kinds = charged.kinds if charged is not None else ()
-            price = NEARER if kept.tolerance <= asked.tolerance else FARTHER
-            charged = together([*kinds, timing_cost(heard, want, graph.threshold.limit, price)])
-        return find_path(graph, heard, want, search, kept.rules, seed, cancelled, charged)
+            price = NEARER if kept.tolerance <= self.asked.tolerance else FARTHER
+            charged = together([*kinds, timing_cost(self.heard, want, self.graph.threshold.limit, price)])
+        return find_path(
+            self.graph, self.heard, want, how.search, kept.rules, how.seed, self.cancelled, charged
+        )
 
-    def tried_or_none(kept: Constraints) -> Path | None:
+    def _path_or_none(self, kept: Constraints) -> Path | None:
+        """Return a path that keeps to constraints, None where there is none. Raises SynthesisError when it
+        was cancelled.
+        """
         try:
-            return tried(kept)
+            return self._path(kept)
         except SynthesisError:
-            if cancelled is not None and cancelled():
+            if self.cancelled is not None and self.cancelled():
                 raise
             return None
 
-    if strict:
-        return _strictly(asked, tried, heard, segments, seconds, soft)
-    for kept in steps(asked):
-        path = tried_or_none(kept)
-        if path is not None:
-            break
-    else:
-        raise SynthesisError(
-            f"these takes cannot go on for {seconds:g} s without a jump: choose more takes, raise k or the "
-            "level, or ask for less"
-        )
-    failed: set[Constraints] = set()
-    while more := next((c for c in _taken_back(kept, asked) if c not in failed), None):
-        found = tried_or_none(more)
-        if found is None:
-            failed.add(more)
-        else:
-            kept, path = more, found
-    retiming, kept = _retimed(path, kept, asked, heard, segments, seconds, soft)
-    words = given_up(asked, kept)
-    return Answer(
-        path, kept, words, misses(heard, path, segments, asked, retiming) if words else (), retiming
-    )
+    def _wanted(self, kept: Constraints) -> WantedSegment:
+        return kept.wanted(self.segments, self.seconds, self.soft)
 
-
-def _strictly(
-    asked: Constraints,
-    tried: Callable[[Constraints], Path],
-    heard: HeardStates,
-    segments: Sequence[Segment],
-    seconds: float,
-    soft: SoftConstraints,
-) -> Answer:
-    """Return motion that keeps to all that is asked, retimed where that helps. Raises SynthesisError."""
-    try:
-        path, kept = tried(asked), asked
-    except SynthesisError:
-        wider = replace(asked, tolerance=WIDER * asked.tolerance)
-        if soft.free is None or wider == asked:
-            raise
-        with suppress(SynthesisError):
-            path = tried(wider)
-            retiming, kept = _retimed(path, wider, asked, heard, segments, seconds, soft)
-            if kept == asked:
-                return Answer(path, kept, retiming=retiming)
-        raise
-    return Answer(path, kept, retiming=_retimed(path, kept, asked, heard, segments, seconds, soft)[0])
-
-
-def _retimed(
-    path: Path,
-    kept: Constraints,
-    asked: Constraints,
-    heard: HeardStates,
-    segments: Sequence[Segment],
-    seconds: float,
-    soft: SoftConstraints,
-) -> tuple[Retiming | None, Constraints]:
-    """Return how a path is retimed, and the constraints it then keeps to: the tolerance that was asked for,
-    where it does. What it kept to before it does not lose: else it is not retimed.
-    """
-    reach = float(round(kept.tolerance * RATE))
-    held = kept.wanted(segments, seconds, soft)
-    exactly = replace(kept, tolerance=asked.tolerance)
-    nearer = exactly.wanted(segments, seconds, soft)
-    for part in PARTS:
-        retiming = soft.retimed(path, heard, held, reach, part)
-        if retiming is None:
-            break
-        if keeps_to(path.states, retiming.moments, heard, nearer):
-            return retiming, exactly
-        if keeps_to(path.states, retiming.moments, heard, held):
-            return retiming, kept
-    return None, kept
+    def _retimed(self, path: Path, kept: Constraints) -> tuple[Retiming | None, Constraints]:
+        """Return how a path is retimed, and the constraints it then keeps to: the tolerance that was asked
+        for, where it does. What it kept to before it does not lose: else it is not retimed.
+        """
+        reach = float(round(kept.tolerance * RATE))
+        held = self._wanted(kept)
+        exactly = replace(kept, tolerance=self.asked.tolerance)
+        nearer = self._wanted(exactly)
+        for part in PARTS:
+            retiming = self.soft.retimed(path, self.heard, held, reach, part)
+            if retiming is None:
+                break
+            if keeps_to(path.states, retiming.moments, self.heard, nearer):
+                return retiming, exactly
+            if keeps_to(path.states, retiming.moments, self.heard, held):
+                return retiming, kept
+        return None, kept
 
 
 def misses(

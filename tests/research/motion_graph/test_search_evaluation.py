@@ -16,7 +16,9 @@ from metagraph.motion.clip import Clip
 from metagraph.research.motion_graph.evaluation_table import csv_of, table_of
 from metagraph.research.motion_graph.search_evaluation import (
     SETTINGS,
+    GraphMaking,
     Setting,
+    Trials,
     cut,
     evaluate,
     windows,
@@ -89,7 +91,7 @@ def test_each_take_is_held_out_and_both_searches_find_its_speech_in_the_others(t
 
 
 def test_rows_are_told_as_a_table_and_cases_as_csv(takes: Takes) -> None:
-    found = evaluate(*takes, settings=SOME, searches=("greedy",))
+    found = evaluate(*takes, settings=SOME, trials=Trials(("greedy",)))
     lines = list(csv.DictReader(io.StringIO(csv_of(found.cases))))
     assert (
         len(lines) == 6
@@ -123,7 +125,7 @@ def test_it_can_be_cancelled_and_keeps_what_there_is(takes: Takes) -> None:
     found = evaluate(
         *takes,
         settings=SOME,
-        searches=("greedy",),
+        trials=Trials(("greedy",)),
         progress=lambda n, _: seen.append(n),
         cancelled=lambda: len(seen) >= 3,
     )
@@ -136,7 +138,7 @@ def test_it_can_be_cancelled_and_keeps_what_there_is(takes: Takes) -> None:
 def test_takes_without_which_there_is_no_graph_find_nothing_and_say_why(takes: Takes) -> None:
     clips, said = takes
     short = [first(c, 3) for c in clips[1:]]
-    found = evaluate([clips[0], *short], [said[0], [], []], settings=SETTINGS[:1], k=4)
+    found = evaluate([clips[0], *short], [said[0], [], []], settings=SETTINGS[:1], making=GraphMaking(k=4))
     assert found.graphs == () and [c.found for c in found.cases] == [False, False]
     assert "longer takes" in found.cases[0].why and "0/1" in table_of(found)
 
@@ -159,14 +161,14 @@ def test_speech_longer_than_its_take_and_none_at_all_are_fine(takes: Takes) -> N
     clips, said = takes
     beyond = [*said[0], Segment("clause", 23.5, 60.0, 40.0)]
     free = next(s for s in SETTINGS if s.name == "free jumps")
-    found = evaluate(clips, [beyond, [], said[2]], settings=[free], searches=("greedy",))
+    found = evaluate(clips, [beyond, [], said[2]], settings=[free], trials=Trials(("greedy",)))
     assert len(found.cases) == 3 and not found.cases[1].why.startswith("no motion"), "silence is idle"
 
 
 def test_takes_of_other_rates_are_brought_to_thirty_frames_a_second(takes: Takes) -> None:
     clips, said = takes
     fast = talking("fast", said[1], 24, 1, fps=60.0)
-    found = evaluate([clips[0], fast, clips[2]], said, settings=SETTINGS[:1], searches=("greedy",))
+    found = evaluate([clips[0], fast, clips[2]], said, settings=SETTINGS[:1], trials=Trials(("greedy",)))
     assert [c.length for c in found.cases] == [15, 15, 15] and abs(found.graphs[0].states - 2 * 24 * 30) <= 2
 
 
