@@ -126,34 +126,41 @@ def side_sound(conversation: Conversation, side: int, folder: Path) -> tuple[Arr
         recording = read_recording(folder / of.audio, LONGEST)
         samples = recording.samples
         one = samples.mean(0) if of.channel is None else samples[min(of.channel, len(samples) - 1)]
-        heard = at_rate(one[None], recording.rate)[0][:count]
-        out[int(n != side), : len(heard)] += heard
+        voice = at_rate(one[None], recording.rate)[0][:count]
+        out[int(n != side), : len(voice)] += voice
     return out, tuple(notes)
 
 
-def heard_side(project: Project, ident: str, side: int, folder: Path) -> tuple[Array, Array, tuple[str, ...]]:
-    """Return what is heard in a conversation, as `side_sound` does, who speaks `[T, 4]`, and what is missing.
-    Raises FileError.
+@dataclass(frozen=True, eq=False)
+class Heard:
+    """What motion is made to. samples: `[C, N]` at `features.RATE`, own voice first. activity: who speaks,
+    `[T, 4]`. notes: what is missing, or there is to know, in words.
     """
+
+    samples: Array
+    activity: Array
+    notes: tuple[str, ...] = ()
+
+
+def heard_side(project: Project, ident: str, side: int, folder: Path) -> Heard:
+    """Return what is heard in a conversation, as `side_sound` does. Raises FileError."""
     samples, notes = side_sound(project.conversations[ident], side, folder)
     count = frames_of(samples.shape[1])
-    return samples, conversation_activity(project.conversations[ident], side, count), notes
+    return Heard(samples, conversation_activity(project.conversations[ident], side, count), notes)
 
 
-def heard_file(path: Path) -> tuple[Array, Array, tuple[str, ...]]:
-    """Return what is heard in a sound file `[C, N]`, at most two channels, the first one's own voice; who
-    speaks, by loudness; and what there is to know. Raises FileError.
+def heard_file(path: Path) -> Heard:
+    """Return what is heard in a sound file: at most two channels, the first one's own voice; loudness tells
+    who speaks. Raises FileError.
     """
     recording = read_recording(path, LONGEST)
     samples = at_rate(recording.samples, recording.rate)[:2]
-    notes = ("Loudness tells who speaks.",)
-    return samples, heard_activity(samples), notes
+    return Heard(samples, heard_activity(samples), ("Loudness tells who speaks.",))
 
 
 def spoken(
     model: Model,
-    samples: Array,
-    activity: Array,
+    heard: Heard,
     chance: Chance,
     name: str,
     first: Array | None = None,
@@ -161,10 +168,10 @@ def spoken(
     cancelled: Callable[[], bool] | None = None,
 ) -> Clip:
     """Return a model's motion to a recording, as long as it is, on the model's skeleton: what `sampler.whole`
-    gives, a second at a time. samples: `[C, N]` at `features.RATE`, own voice first; activity: `[T, 4]`.
-    progress: called with seconds done, of how many. Raises FeatureError, and CancelledError.
+    gives, a second at a time. progress: called with seconds done, of how many. Raises FeatureError, and
+    CancelledError.
     """
-    samples = np.atleast_2d(samples)
+    samples = np.atleast_2d(heard.samples)
     size = samples.shape[1]
     if not size:
         raise FeatureError("there is no sound to move to")
@@ -178,7 +185,7 @@ def spoken(
         gains=[gain_of(channel, SOUND_RATE) for channel in samples],
         first=first,
     )
-    told = activity[: frames_of(size)]
+    told = heard.activity[: frames_of(size)]
     ready = []
     for n, start in enumerate(range(0, size, AT_ONCE)):
         if cancelled is not None and cancelled():
@@ -193,29 +200,25 @@ def spoken(
 def side_clip(
     model: Model,
     project: Project,
-    ident: str,
-    side: int,
-    folder: Path,
+    heard: Heard,
     chance: Chance,
     name: str,
     progress: Progress | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> tuple[Clip, tuple[str, ...]]:
     """Return what moves one side of a project's conversation, and what there is to know of it, in words.
-    folder: what paths begin at. Raises FileError, PoseError, RetargetError, FeatureError and CancelledError.
+    heard: `heard_side`. Raises PoseError, RetargetError, FeatureError and CancelledError.
     """
-    samples, activity, notes = heard_side(project, ident, side, folder)
     first = first_of(model, project)
-    clip = spoken(model, samples, activity, chance, name, first, progress, cancelled)
+    clip = spoken(model, heard, chance, name, first, progress, cancelled)
     clip, told = on_project(project, clip)
-    return clip, (*notes, *told)
+    return clip, (*heard.notes, *told)
 
 
 def long_takes(
     model: Model,
     project: Project,
-    samples: Array,
-    activity: Array,
+    heard: Heard,
     seconds: float,
     chance: Chance,
     name: str,
@@ -223,10 +226,10 @@ def long_takes(
     cancelled: Callable[[], bool] | None = None,
 ) -> tuple[list[Clip], tuple[str, ...]]:
     """Return takes of together `seconds` to a recording, on the project's skeleton; where it is shorter it is
-    moved to again and again, each time by another chance. What there is to know, in words. Arguments and
-    errors as for `spoken`.
+    moved to again and again, each time by another chance. Beside them, what there is to know, in words.
+    Errors as for `spoken`.
     """
-    samples = np.atleast_2d(samples)
+    samples = np.atleast_2d(heard.samples)
     wanted, length = round(seconds * SOUND_RATE), samples.shape[1]
     if not length:
         raise FeatureError("there is no sound to move to")
@@ -242,9 +245,8 @@ def long_takes(
                 progress(min(total, done + n), total)
 
         drawn = replace(chance, take=chance.take + len(out))
-        clip = spoken(
-            model, samples[:, :part], activity, drawn, name, first_of(model, project), tell, cancelled
-        )
+        some = Heard(samples[:, :part], heard.activity)
+        clip = spoken(model, some, drawn, name, first_of(model, project), tell, cancelled)
         clip, notes = on_project(project, clip)
         out.append(clip)
         left -= part

@@ -16,6 +16,7 @@ from metagraph.generation.features import RATE, FeatureError
 from metagraph.generation.offered import offered
 from metagraph.generation.performing import (
     Chance,
+    Heard,
     fits,
     heard_file,
     heard_side,
@@ -67,7 +68,7 @@ def taller(by: float = 1.2) -> Project:
 def test_only_what_the_model_moves_leaves_the_base_pose(sample, model, tmp_path):
     project = talking(sample, tmp_path)
     assert fits(model, project)
-    clip, notes = side_clip(model, project, "v1", 0, tmp_path, Chance(3), "ada")
+    clip, notes = side_clip(model, project, heard_side(project, "v1", 0, tmp_path), Chance(3), "ada")
     assert clip.skeleton == project.skeleton and clip.duration == pytest.approx(6.0, abs=0.05) and not notes
     base = anatomy.base_pose(project)
     moved = {j for line in project_rig(project).lines for j in line}
@@ -80,7 +81,7 @@ def test_only_what_the_model_moves_leaves_the_base_pose(sample, model, tmp_path)
 def test_another_figure_gets_the_motion_retargeted_and_is_told(model, tmp_path):
     project = talking(taller(), tmp_path)
     assert not fits(model, project)
-    clip, notes = side_clip(model, project, "v1", 1, tmp_path, Chance(), "ben")
+    clip, notes = side_clip(model, project, heard_side(project, "v1", 1, tmp_path), Chance(), "ben")
     assert clip.skeleton == project.skeleton and "retargeted" in notes[-1]
     arm = anatomy.roles(project)["left_upper_arm"]
     assert np.ptp(clip.rotations[:, arm], axis=0).max() > 0.01
@@ -91,15 +92,16 @@ def test_another_figure_gets_the_motion_retargeted_and_is_told(model, tmp_path):
 def test_the_same_chance_gives_the_same_clip_and_pieces_do_not_matter(model):
     sound = np.stack([babble(4.3, 1), babble(4.3, 2)])
     told = heard_activity(sound)
-    one = spoken(model, sound, told, Chance(5, 0.8), "a")
-    assert (one.rotations == spoken(model, sound, told, Chance(5, 0.8), "a").rotations).all()
+    heard = Heard(sound, told)
+    one = spoken(model, heard, Chance(5, 0.8), "a")
+    assert (one.rotations == spoken(model, heard, Chance(5, 0.8), "a").rotations).all()
     assert (one.rotations == whole(model, sound, told, seed=5, temperature=0.8).rotations).all()
-    assert (one.rotations != spoken(model, sound, told, Chance(6, 0.8), "a").rotations).any()
+    assert (one.rotations != spoken(model, heard, Chance(6, 0.8), "a").rotations).any()
 
 
 def test_a_short_sound_is_moved_to_again_each_time_otherwise(sample, model):
     sound = babble(5.0)[None]
-    made, _ = long_takes(model, sample, sound, heard_activity(sound), 14.0, Chance(), "long")
+    made, _ = long_takes(model, sample, Heard(sound, heard_activity(sound)), 14.0, Chance(), "long")
     assert [round(c.duration) for c in made] == [5, 5, 4]
     assert (made[0].rotations[:90] != made[1].rotations[:90]).any()
 
@@ -140,16 +142,17 @@ def test_a_sound_that_is_gone_is_an_error_that_names_it(sample, tmp_path):
 
 def test_a_file_of_one_voice_is_heard(tmp_path):
     soundfile.write(tmp_path / "one.wav", babble(2.0), RATE)
-    samples, activity, _ = heard_file(tmp_path / "one.wav")
-    assert samples.shape == (1, 2 * RATE) and activity.shape[1] == 4 and not activity[:, 1:3].any()
+    heard = heard_file(tmp_path / "one.wav")
+    assert heard.samples.shape == (1, 2 * RATE)
+    assert heard.activity.shape[1] == 4 and not heard.activity[:, 1:3].any()
 
 
 def test_it_can_be_cancelled_and_nothing_cannot_be_moved_to(sample, model):
     sound = babble(5.0)[None]
     with pytest.raises(CancelledError):
-        spoken(model, sound, heard_activity(sound), Chance(), "a", cancelled=lambda: True)
+        spoken(model, Heard(sound, heard_activity(sound)), Chance(), "a", cancelled=lambda: True)
     with pytest.raises(FeatureError):
-        spoken(model, sound[:, :0], heard_activity(sound), Chance(), "a")
+        spoken(model, Heard(sound[:, :0], heard_activity(sound)), Chance(), "a")
     with pytest.raises(PoseError, match="nobody to move"):
         on_project(Project(), moving(1.0))
 

@@ -151,16 +151,15 @@ def side_motion(
     model: Model, named: str, speaker: Speaker, chance: Chance, progress: Progress, cancelled: Cancelled
 ) -> tuple[Loaded, tuple[str, ...]]:
     """Make the motion of one side of a conversation and keep it as a file; return what `add_clips` takes, and
-    what there is to know. Raises what `performing.side_clip` raises.
+    what there is to know. Raises what `heard_side` and `side_clip` of `performing` raise.
     """
-    from metagraph.generation.performing import side_clip
+    from metagraph.generation.performing import heard_side, side_clip
 
     project, side, folder = speaker.project, speaker.side, speaker.folder
     talk = project.conversations[speaker.conversation]
     name = tr("{talk} {side} by {model}", talk=talk.name, side=talk.sides[side].name or side + 1, model=named)
-    clip, notes = side_clip(
-        model, project, speaker.conversation, side, folder, chance, name, progress, cancelled
-    )
+    heard = heard_side(project, speaker.conversation, side, folder)
+    clip, notes = side_clip(model, project, heard, chance, name, progress, cancelled)
     if cancelled():
         raise CancelledError
     taken = {e.name for e in project.clips.values()}

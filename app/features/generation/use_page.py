@@ -357,21 +357,20 @@ class UsePage(Page):
             from metagraph.generation.stored import read_model
 
             if speech == FILE and sound is not None:
-                heard, activity, notes = heard_file(sound)
+                heard = heard_file(sound)
             else:
-                heard, activity, notes = heard_side(project, speech[0], speech[1], folder)
+                heard = heard_side(project, speech[0], speech[1], folder)
             made, told = long_takes(
                 read_model(path),
                 project,
                 heard,
-                activity,
                 seconds,
                 chance,
                 f"{named} {chance.seed}",
                 job.tell,
                 lambda: job.cancelled,
             )
-            return cut_pieces(made, project, job.tell, lambda: job.cancelled), (*notes, *told)
+            return cut_pieces(made, project, job.tell, lambda: job.cancelled), (*heard.notes, *told)
 
         def done(made: Any) -> None:
             (found, why), notes = made
