@@ -73,7 +73,7 @@ def evaluate(options: Namespace) -> int:
     from app.cli.generate_takes import models_of, read_all, telling
     from metagraph.formats.outputs import claim
     from metagraph.generation.stored import SUFFIX
-    from metagraph.research.generation.evaluation import for_all, judge
+    from metagraph.research.generation.evaluation import HeldOut, for_all, judge
 
     paths = [p for p in options.given if p.suffix.lower() == SUFFIX]
     options.takes = [p for p in options.given if p.suffix.lower() != SUFFIX]
@@ -90,9 +90,9 @@ def evaluate(options: Namespace) -> int:
     takes, left = for_all(models, batch.takes)
     if left:
         print(f"note: {len(left)} takes are left out, since a model has learned from them", file=sys.stderr)
-    floor = floor_of(options.floor, options.takes, takes, first.rig)
+    held = HeldOut(takes, floor_of(options.floor, options.takes, takes, first.rig))
     show = telling(options, "made")
-    judged = judge(first.rig, models, takes, floor, manner, draws=options.draws, progress=show)
+    judged = judge(first.rig, models, held, manner, draws=options.draws, progress=show)
     beside = {r.name for r in judged.rows} if judged.floor is None else {"other motion"}
     notes = cautions(models, takes, beside)
     said: dict[str, Any] = {

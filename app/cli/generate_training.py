@@ -274,6 +274,7 @@ def ablate(options: Namespace) -> int:
     from metagraph.generation.take_files import find_takes
     from metagraph.generation.takes import split
     from metagraph.research.generation import ablation
+    from metagraph.research.generation.evaluation import HeldOut
 
     check(options)
     claim(options.out / "table.json", options.out / "table.csv")
@@ -285,20 +286,19 @@ def ablate(options: Namespace) -> int:
     rig = batch.rig
     learned, held = split(batch.takes)
     files, _ = find_takes(options.takes, [p for p in options.speech if p.is_dir()])
+    sizes = sizes_of(options.model, options.size, rig.numbers, tracks * MELS)
     done = ablation.ablate(
         options.out,
         lambda job: _train_one(options, rig, tracks, job),
-        rig,
-        options.model,
-        sizes_of(options.model, options.size, rig.numbers, tracks * MELS),
-        learned,
-        held,
-        {f.clip.stem: f for f in files},
-        lambda: twins_of(batch, learned),
+        ablation.Material(
+            rig,
+            learned,
+            HeldOut(held, floor_of(options.floor, options.takes, held, rig)),
+            {f.clip.stem: f for f in files},
+            lambda: twins_of(batch, learned),
+        ),
+        ablation.Training(options.model, sizes, options.seconds, options.trainings),
         changes,
-        options.seconds,
-        options.trainings,
-        floor_of(options.floor, options.takes, held, rig),
         manner,
         options.draws,
         lambda name: None if options.json else print(name, file=sys.stderr, flush=True),

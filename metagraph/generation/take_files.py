@@ -27,7 +27,7 @@ from metagraph.formats.conversations.languages import Speaking
 from metagraph.formats.transcripts.words import SUFFIXES as TRANSCRIPTS
 from metagraph.generation.features import RATE, at_rate
 from metagraph.generation.poses import PoseError, PoseRig, rig_of
-from metagraph.generation.takes import Source, Take, TakeError, take_of
+from metagraph.generation.takes import Source, Take, TakeError, TakeSound, take_of
 from metagraph.graph.conversation.model import Conversation
 from metagraph.motion.clip import Clip
 from metagraph.speech.sound import read_recording
@@ -199,9 +199,8 @@ def _take(
     if folder not in licences:
         licences[folder] = licence_of(folder)
     source = Source(files.clip.stem, digests, licences[folder])
-    take = take_of(
-        rig, clip, speech.samples, RATE, source, speech.conversation, files.side, tracks, speech.clipped
-    )
+    heard = TakeSound(speech.samples, RATE, speech.clipped)
+    take = take_of(rig, clip, heard, source, speech.conversation, files.side, tracks)
     return replace(take, notes=(*speech.notes, *take.notes))
 
 

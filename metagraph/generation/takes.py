@@ -116,20 +116,28 @@ class Take:
         )
 
 
+@dataclass(frozen=True, eq=False)
+class TakeSound:
+    """What is heard with a take. samples: `[C, N]`, own voice first, then the partner's where there is one.
+    clipped: share of each channel's samples that were cut off at full scale.
+    """
+
+    samples: Array
+    rate: int
+    clipped: Sequence[float] = ()
+
+
 def take_of(
     rig: PoseRig,
     clip: Clip,
-    samples: Array,
-    rate: int,
+    heard: TakeSound,
     source: Source,
     conversation: Conversation | None = None,
     side: int = 0,
     tracks: int = 1,
-    clipped: Sequence[float] = (),
 ) -> Take:
-    """Return a take. samples: `[C, N]`, own voice first, then the partner's where there is one.
-    conversation: who says what when, `side` being this take's; None: loudness tells. clipped: share of each
-    channel's samples that were cut off at full scale. Raises TakeError.
+    """Return a take. conversation: who says what when, `side` being this take's; None: loudness tells. Raises
+    TakeError.
     """
     notes: list[str] = []
     who = f"'{source.name}'"
@@ -137,10 +145,10 @@ def take_of(
         poses = poses_of(rig, clip, FPS)
     except PoseError as error:
         raise TakeError(f"{who}: {error}") from None
-    sound = np.atleast_2d(np.asarray(samples, np.float32))
+    sound = np.atleast_2d(np.asarray(heard.samples, np.float32))
     if not np.isfinite(sound).all() or not np.isfinite(poses).all():
         raise TakeError(f"{who} holds a value that is not a number: export it anew")
-    sound = at_rate(sound, rate)[:2]
+    sound = at_rate(sound, heard.rate)[:2]
     count = min(len(poses), frames_of(sound.shape[1]))
     if count < SHORTEST * FPS:
         shorter = "motion" if len(poses) <= frames_of(sound.shape[1]) else "sound"
@@ -159,7 +167,7 @@ def take_of(
             )
         )
     shared = conversation is not None and all(s.segments for s in conversation.sides)
-    _check_sound(who, sound, clipped, shared, notes)
+    _check_sound(who, sound, heard.clipped, shared, notes)
     if tracks == 2 and len(sound) == 1:
         sound = np.concatenate([sound, np.zeros_like(sound)])
     if conversation is None:
@@ -178,11 +186,11 @@ def take_of(
     elif not activity[:, PARTNER].any():
         notes.append(told("{who}: the partner never speaks: it teaches speaking alone.", who=who))
     gains = [gain_of(channel, RATE) for channel in sound]
-    heard = features(sound, activity, tracks, gains)[:count]
+    audio = features(sound, activity, tracks, gains)[:count]
     if float(poses[:count].std(0).max()) < 1e-3:
         raise TakeError(f"{who} does not move above the hips: there is nothing to learn")
     marks = marks.shifted(0.0, count / FPS)
-    return Take(source, poses[:count], heard, marks, tuple(notes))
+    return Take(source, poses[:count], audio, marks, tuple(notes))
 
 
 def _check_sound(who: str, sound: Array, clipped: Sequence[float], shared: bool, notes: list[str]) -> None:

@@ -13,6 +13,7 @@ from metagraph.generation.takes import (
     Source,
     SplitError,
     TakeError,
+    TakeSound,
     check_split,
     mirrored,
     scales_of,
@@ -31,7 +32,8 @@ def _take(seconds=12.0, seed=1, name=None, digests=None, talk=True, **given):
     sound = np.stack([babble(seconds, 10 + seed), babble(seconds, 20 + seed)])
     told = conversation(seconds, seed) if talk else None
     source = Source(name, (name,) if digests is None else digests, "MIT")
-    return take_of(rig(), clip, given.pop("samples", sound), RATE, source, told, **given)
+    heard = TakeSound(given.pop("samples", sound), RATE, given.pop("clipped", ()))
+    return take_of(rig(), clip, heard, source, told, **given)
 
 
 def test_a_take_is_as_long_as_the_shorter_of_motion_and_sound():
@@ -75,11 +77,11 @@ def test_another_skeleton_and_one_that_does_not_move_are_refused():
     clip = Clip("odd", other, 30, np.repeat(other.rest_rotations[None], 300, 0), np.zeros((300, 1, 3)))
     sound = np.stack([babble(10, 1), babble(10, 2)])
     with pytest.raises(TakeError, match=r"'odd'.*another skeleton"):
-        take_of(rig(), clip, sound, RATE, Source("odd"))
+        take_of(rig(), clip, TakeSound(sound, RATE), Source("odd"))
     still = moving(10)
     still = replace(still, rotations=np.repeat(still.rotations[:1], still.frames, 0))
     with pytest.raises(TakeError, match="does not move"):
-        take_of(rig(), still, sound, RATE, Source("still"), conversation(10))
+        take_of(rig(), still, TakeSound(sound, RATE), Source("still"), conversation(10))
 
 
 def test_what_can_be_learned_from_all_the_same_is_told():
@@ -160,9 +162,9 @@ def test_an_overlapping_window_in_the_other_half_fails():
     # Cut by somebody else, into a file of its own, between two frames.
     clip = moving(40, 1, fps=100.0)
     sound = np.stack([babble(40, 11), babble(40, 21)])
-    whole = take_of(rig(), clip, sound, RATE, Source("whole", ("w",)), conversation(40))
+    whole = take_of(rig(), clip, TakeSound(sound, RATE), Source("whole", ("w",)), conversation(40))
     cut = sound[:, round(12.41 * RATE) :], clip.trimmed(1241)
-    window = take_of(rig(), cut[1], cut[0], RATE, Source("window", ("v",)))
+    window = take_of(rig(), cut[1], TakeSound(cut[0], RATE), Source("window", ("v",)))
     with pytest.raises(SplitError, match="'window' is held out"):
         check_split([whole], [window])
 

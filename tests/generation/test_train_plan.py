@@ -11,7 +11,7 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.generation.features import RATE
-from metagraph.generation.takes import Source, SplitError, Take, take_of
+from metagraph.generation.takes import Source, SplitError, Take, TakeSound, take_of
 from metagraph.generation.train_plan import (
     PLAN,
     TAKES,
@@ -34,7 +34,8 @@ def takes() -> tuple[Take, Take]:
     for seed in (1, 2):
         sound = np.stack([babble(8.0, seed), babble(8.0, seed + 50)])
         source = Source(f"take {seed}", (f"motion {seed}",), "CC0", 2.0)
-        out.append(take_of(rig(), moving(8.0, seed), sound, RATE, source, conversation(8.0, seed)))
+        heard = TakeSound(sound, RATE)
+        out.append(take_of(rig(), moving(8.0, seed), heard, source, conversation(8.0, seed)))
     return out[0], out[1]
 
 

@@ -16,13 +16,13 @@ from metagraph.generation.landmarks import LANDMARKS
 from metagraph.generation.networks import Kind, parameters, sizes_of
 from metagraph.generation.performing import fits, side_sound
 from metagraph.generation.statistics import mean_landmarks, wasserstein
-from metagraph.generation.takes import Source, SplitError, Take, TakeError, take_of
+from metagraph.generation.takes import Source, SplitError, Take, TakeError, TakeSound, take_of
 from metagraph.graph.editing.retargeting import Bringing
 from metagraph.research.exhibits.exhibit import Drawing, ExhibitTable, Shown
 from metagraph.research.exhibits.material import Material
 from metagraph.research.exhibits.published import HELD_OUT, JOINTS, PARAMETERS
 from metagraph.research.generation import figures
-from metagraph.research.generation.evaluation import Judged, Manner, judge, unseen
+from metagraph.research.generation.evaluation import HeldOut, Judged, Manner, judge, unseen
 
 NO_MODEL = (
     "there is no learned generator: it comes with the program where it is installed (sample_clips/models), "
@@ -160,7 +160,8 @@ def _judged(material: Material) -> Judged | str:
                 if clip.skeleton != model.rig.skeleton and bringing is not None:
                     known = bringing.known(clip) or bringing.propose(clip.skeleton)
                     clip, brought = bringing.bring(clip, known), brought + 1
-                takes.append(take_of(model.rig, clip, samples, RATE, source, recorded.conversation, side))
+                heard = TakeSound(samples, RATE)
+                takes.append(take_of(model.rig, clip, heard, source, recorded.conversation, side))
             except (TakeError, ValueError) as error:
                 material.notes.append(str(error))
     if not takes:
@@ -177,7 +178,7 @@ def _judged(material: Material) -> Judged | str:
         return str(error)
     if left:
         material.notes.append(f"{len(left)} takes are left out, since the model has learned from them")
-    return judge(model.rig, {"generated": model}, fresh, None, Manner(seeds=1), draws=0)
+    return judge(model.rig, {"generated": model}, HeldOut(fresh), Manner(seeds=1), draws=0)
 
 
 def _about(material: Material) -> str:

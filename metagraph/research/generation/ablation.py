@@ -22,10 +22,10 @@ from metagraph.generation.features import BOTH, MELS, NONE, PARTNER, SELF, featu
 from metagraph.generation.networks import ACTIVITY, FPS, CvaeSizes, FlowSizes, Kind, MatchingSizes, Sizes
 from metagraph.generation.poses import PoseRig
 from metagraph.generation.statistics import DRAWS, Performance, Row, performance, table
-from metagraph.generation.stored import SUFFIX, read_model
+from metagraph.generation.stored import SUFFIX, Model, read_model
 from metagraph.generation.take_files import TakeFiles, read_speech
 from metagraph.generation.takes import Take
-from metagraph.research.generation.evaluation import Manner, generated, truth
+from metagraph.research.generation.evaluation import HeldOut, Manner, generated, truth
 
 Array = NDArray[Any]
 
@@ -179,69 +179,106 @@ def file_of(folder: Path, change: Change, training: int) -> Path:
     return folder / f"{change.name.replace(' ', '-').replace(chr(39), '')}-{training}{SUFFIX}"
 
 
+@dataclass(frozen=True, eq=False)
+class Material:
+    """What models are trained and judged on. files: by the takes' names. twins: mirror twins of what is
+    learned from, made where they are needed.
+    """
+
+    rig: PoseRig
+    learned: Sequence[Take]
+    held: HeldOut
+    files: Mapping[str, TakeFiles]
+    twins: Callable[[], Sequence[Take]]
+
+    def heard(self, change: Change, takes: Sequence[Take]) -> list[Take]:
+        """Return takes with what a change leaves of their sound."""
+        if not change.hearing:
+            return list(takes)
+        return [replace(t, features=heard(change, t, self.files)) for t in takes]
+
+
+@dataclass(frozen=True)
+class Training:
+    """How each model is trained. seconds: of the processor. trainings: how many of each, by other seeds."""
+
+    kind: Kind
+    sizes: Sizes
+    seconds: float = 60.0
+    trainings: int = 1
+
+
 def ablate(
     folder: Path,
     trainer: Trainer,
-    rig: PoseRig,
-    kind: Kind,
-    sizes: Sizes,
-    learned: Sequence[Take],
-    held: Sequence[Take],
-    files: Mapping[str, TakeFiles],
-    twins: Callable[[], Sequence[Take]],
+    material: Material,
+    training: Training,
     changes: Sequence[Change] = CHANGES,
-    seconds: float = 60.0,
-    trainings: int = 1,
-    floor: Sequence[Array] | None = None,
     manner: Manner = Manner(),  # noqa: B008
     draws: int = DRAWS,
     progress: Callable[[str], None] | None = None,
 ) -> Ablated:
     """Train and judge a model with one thing changed at a time. folder: where models are kept, and found
-    again by the next run. trainings: seeds. twins: mirror twins of what is learned from. floor: as for
-    `evaluation.judge`. Raises FileError where the folder is of another ablation, and what trainings raise.
+    again by the next run. Raises FileError where the folder is of another ablation, and what trainings raise.
     """
+    seconds, trainings = training.seconds, training.trainings
     if not seconds > 0 or not 1 <= trainings <= 20:
         raise ValueError("an ablation has 1 to 20 trainings of each kind, of more than 0 s")
-    digests = tuple(t.source.digests[0] if t.source.digests else t.source.name for t in (*learned, *held))
-    asked = Asked(kind=kind, sizes=sizes, seconds=seconds, trainings=trainings, takes=digests)
-    _own(folder, asked)
+    rig, held, floor = material.rig, material.held.takes, material.held.floor
+    _own(folder, _asked(material, training))
     true = tuple(performance(rig, t.poses, t) for t in held)
     systems: dict[str, list[tuple[Performance, ...]]] = {}
     ran, kept, left = [], [], []
     for change in changes:
-        wanted = sizes_for(change, kind, sizes)
+        wanted = sizes_for(change, training.kind, training.sizes)
         if wanted is None:
             left.append(change.name)
             continue
-        hearing = [replace(t, features=heard(change, t, files)) for t in held] if change.hearing else held
+        hearing = material.heard(change, held)
         systems[change.name] = []
-        for training in range(1, trainings + 1):
+        for seed in range(1, trainings + 1):
             # What differs in how it is sampled alone is not trained again.
-            out = file_of(folder, change if change.guidance is None else CHANGES[0], training)
-            name = f"{change.name}, seed {training}"
+            out = file_of(folder, change if change.guidance is None else CHANGES[0], seed)
+            name = f"{change.name}, seed {seed}"
             if progress is not None:
                 progress(name)
             if out.exists():
                 kept.append(name)
             else:
-                some = list(learned)
-                if change.hearing:
-                    some = [replace(t, features=heard(change, t, files)) for t in learned]
+                some = material.heard(change, material.learned)
                 if change.mirrored:
-                    some += twins()
-                trainer(Job(*wanted, change.settings, training, seconds, tuple(some), tuple(hearing), out))
+                    some += material.twins()
+                trainer(Job(*wanted, change.settings, seed, seconds, tuple(some), tuple(hearing), out))
                 ran.append(name)
-            model = read_model(out)
             how = manner if change.guidance is None else replace(manner, guidance=change.guidance)
-            for seed in range(1, manner.seeds + 1):
-                poses = [generated(model, t.features, seed, n, how) for n, t in enumerate(hearing)]
-                # What is judged is the motion beside all that was said, whatever the model heard of it.
-                made = tuple(performance(rig, p, t) for p, t in zip(poses, held, strict=True))
-                systems[change.name].append(made)
+            systems[change.name] += _made(rig, read_model(out), how, hearing, held)
     other = None if floor is None else [performance(rig, p, t) for p, t in zip(floor, held, strict=True)]
     rows = [truth(true, other, draws), *table(systems, true, other, draws)]
     return Ablated(tuple(rows), tuple(ran), tuple(kept), tuple(left))
+
+
+def _asked(material: Material, training: Training) -> Asked:
+    takes = (*material.learned, *material.held.takes)
+    return Asked(
+        kind=training.kind,
+        sizes=training.sizes,
+        seconds=training.seconds,
+        trainings=training.trainings,
+        takes=tuple(t.source.digests[0] if t.source.digests else t.source.name for t in takes),
+    )
+
+
+def _made(
+    rig: PoseRig, model: Model, manner: Manner, hearing: Sequence[Take], held: Sequence[Take]
+) -> list[tuple[Performance, ...]]:
+    """Return a model's motion to what it hears, each seed's. What is judged is the motion beside all that was
+    said, whatever the model heard of it.
+    """
+    out = []
+    for seed in range(1, manner.seeds + 1):
+        poses = [generated(model, t.features, seed, n, manner) for n, t in enumerate(hearing)]
+        out.append(tuple(performance(rig, p, t) for p, t in zip(poses, held, strict=True)))
+    return out
 
 
 def _own(folder: Path, asked: Asked) -> None:

@@ -36,6 +36,16 @@ class Manner:
 
 
 @dataclass(frozen=True, eq=False)
+class HeldOut:
+    """Takes that models are judged on. floor: poses `[T, X]` of each, other true motion to the same speech;
+    None: half of the takes' blocks stands beside the other half.
+    """
+
+    takes: Sequence[Take]
+    floor: Sequence[Array] | None = None
+
+
+@dataclass(frozen=True, eq=False)
 class Judged:
     """What came of it. true, floor: performances of each take; None: there is no floor of other motion. made:
     of each model, of each seed. rows: the table, recorded motion itself first.
@@ -98,19 +108,17 @@ def for_all(models: Mapping[str, Model], takes: Sequence[Take]) -> tuple[tuple[T
 def judge(
     rig: PoseRig,
     models: Mapping[str, Model],
-    takes: Sequence[Take],
-    floor: Sequence[Array] | None = None,
+    held: HeldOut,
     manner: Manner = Manner(),
     hear: Callable[[str, Take], Array] | None = None,
     draws: int = DRAWS,
     progress: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Judged:
-    """Judge models on takes. floor: poses `[T, X]` of each take, other true motion to the same speech;
-    None: half of the takes' blocks stands beside the other half. hear: what a model is given of a take, its
-    features unless given. Raises ValueError where there is too little to judge, CancelledError once
-    `cancelled` says so.
+    """Judge models on takes. hear: what a model is given of a take, its features unless given. Raises
+    ValueError where there is too little to judge, CancelledError once `cancelled` says so.
     """
+    takes, floor = held.takes, held.floor
     if not takes:
         raise ValueError("there is no take to judge a model on")
     if not 1 <= manner.seeds <= 100:

@@ -10,7 +10,7 @@ import torch
 
 from metagraph.generation.features import RATE
 from metagraph.generation.networks import Control, FlowSizes, Kind, MatchingSizes, Sizes
-from metagraph.generation.takes import Marks, Source, Take, take_of
+from metagraph.generation.takes import Marks, Source, Take, TakeSound, take_of
 from metagraph.generation.train_plan import Settings, TrainingPlan, folder_of, plan_of, write_training
 from metagraph.generation.training.run import Run
 from metagraph.motion.clip import Clip
@@ -23,7 +23,8 @@ def take(seconds: float, seed: int, clip: Clip | None = None, tracks: int = 1) -
     sound = np.stack([babble(seconds, seed), babble(seconds, seed + 50)])
     source = Source(f"take {seed}", (f"motion {seed}", f"sound {seed}"), "made for a test")
     said = conversation(seconds, seed)
-    return take_of(rig(), clip or moving(seconds, seed), sound, RATE, source, said, tracks=tracks)
+    heard = TakeSound(sound, RATE)
+    return take_of(rig(), clip or moving(seconds, seed), heard, source, said, tracks=tracks)
 
 
 def plan(

@@ -8,8 +8,16 @@ from metagraph.generation.features import NONE, PARTNER, SELF
 from metagraph.generation.networks import shapes_of, sizes_of
 from metagraph.generation.stored import write_model
 from metagraph.generation.take_files import find_takes, read_takes
-from metagraph.research.generation.ablation import CHANGES, NAMES, ablate, heard, sizes_for
-from metagraph.research.generation.evaluation import Manner
+from metagraph.research.generation.ablation import (
+    CHANGES,
+    NAMES,
+    Material,
+    Training,
+    ablate,
+    heard,
+    sizes_for,
+)
+from metagraph.research.generation.evaluation import HeldOut, Manner
 from metagraph.research.generation.planted import Planted, write_planted
 from tests.generation.makers import rig, tiny, untrained
 from tests.research.generation.test_evaluation import TAKES
@@ -31,22 +39,19 @@ class Trained:
         write_model(untrained(job.kind, sizes=job.sizes), job.out)
 
 
-def run(folder, trainer, changes=("whole", "no past", "no activity", "mirrored"), **more):
+def material(twins=list):
+    return Material(rig(), TAKES[:1], HeldOut(TAKES[1:]), {}, twins)
+
+
+def run(folder, trainer, changes=("whole", "no past", "no activity", "mirrored"), trainings=1):
     return ablate(
         folder,
         trainer,
-        rig(),
-        "flow-vae",
-        tiny("flow-vae"),
-        TAKES[:1],
-        TAKES[1:],
-        {},
-        twins=lambda: [replace(TAKES[0], source=replace(TAKES[0].source, mirrored=True))],
+        material(lambda: [replace(TAKES[0], source=replace(TAKES[0].source, mirrored=True))]),
+        Training("flow-vae", tiny("flow-vae"), 1.0, trainings),
         changes=[BY_NAME[c] for c in changes],
-        seconds=1.0,
         manner=Manner(seeds=1),
         draws=2,
-        **more,
     )
 
 
@@ -99,18 +104,7 @@ def test_what_is_trained_is_not_trained_again(tmp_path):
 def test_another_ablations_folder_is_left_alone(tmp_path):
     run(tmp_path / "a", Trained(), ("whole",))
     with pytest.raises(FileError, match="other seconds"):
-        ablate(
-            tmp_path / "a",
-            Trained(),
-            rig(),
-            "flow-vae",
-            tiny("flow-vae"),
-            TAKES[:1],
-            TAKES[1:],
-            {},
-            list,
-            seconds=2.0,
-        )
+        ablate(tmp_path / "a", Trained(), material(), Training("flow-vae", tiny("flow-vae"), 2.0))
     (tmp_path / "b").mkdir()
     (tmp_path / "b" / "thesis.txt").write_text("mine")
     with pytest.raises(FileError, match="other files"):
@@ -124,15 +118,9 @@ def test_what_differs_in_sampling_alone_is_trained_once(tmp_path):
     found = ablate(
         tmp_path,
         trainer,
-        rig(),
-        "matching",
-        tiny("matching"),
-        TAKES[:1],
-        TAKES[1:],
-        {},
-        list,
+        material(),
+        Training("matching", tiny("matching"), 1.0),
         changes=[BY_NAME["whole"], BY_NAME["no guidance"], BY_NAME["no past"]],
-        seconds=1.0,
         manner=Manner(seeds=1),
         draws=1,
     )

@@ -9,7 +9,7 @@ from metagraph.generation.poses import decode, encode, poses_of
 from metagraph.generation.sampler import clip_of, whole
 from metagraph.generation.stored import TakeCard
 from metagraph.generation.takes import Marks, Source, SplitError, Take, split
-from metagraph.research.generation.evaluation import Manner, for_all, generated, judge, unseen
+from metagraph.research.generation.evaluation import HeldOut, Manner, for_all, generated, judge, unseen
 from tests.generation.makers import babble, conversation, moving, rig, untrained
 
 SECONDS = 12.0
@@ -94,8 +94,7 @@ def test_the_table_has_the_truth_what_stands_beside_it_and_each_model():
     judged = judge(
         rig(),
         {"one": untrained("flow-vae")},
-        TAKES,
-        floor=[t.poses[::-1] for t in TAKES],
+        HeldOut(TAKES, floor=[t.poses[::-1] for t in TAKES]),
         manner=Manner(seeds=2),
         draws=3,
         progress=lambda *x: told.append(x),
@@ -113,17 +112,17 @@ def test_what_a_model_hears_can_be_changed():
     deaf = judge(
         rig(),
         {"one": untrained("cvae")},
-        TAKES[:1],
+        HeldOut(TAKES[:1]),
         manner=Manner(seeds=1),
         draws=1,
         hear=lambda _, t: np.repeat(t.features[:1], len(t.features), 0),
     )
-    hears = judge(rig(), {"one": untrained("cvae")}, TAKES[:1], manner=Manner(seeds=1), draws=1)
+    hears = judge(rig(), {"one": untrained("cvae")}, HeldOut(TAKES[:1]), manner=Manner(seeds=1), draws=1)
     assert np.abs(deaf.made["one"][0][0].poses - hears.made["one"][0][0].poses).max() > 1e-4
 
 
 def test_nothing_to_judge_is_refused_in_words():
     with pytest.raises(ValueError, match="no take"):
-        judge(rig(), {}, ())
+        judge(rig(), {}, HeldOut(()))
     with pytest.raises(ValueError, match="1 to 100 seeds"):
-        judge(rig(), {}, TAKES, manner=Manner(seeds=0))
+        judge(rig(), {}, HeldOut(TAKES), manner=Manner(seeds=0))
