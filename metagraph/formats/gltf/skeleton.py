@@ -119,6 +119,67 @@ def _build(
     as_is: Collection[str],
 ) -> GltfRig:
     translations, rotations, scales = _transforms(gltf, nodes)
+    joints, above = _joints(gltf, members, parents, order)
+    places = {node: i for i, node in enumerate(joints)}
+    locals_ = compose(translations, rotations, scales)
+    worlds = _globals(locals_, np.array(parents), order)
+
+    still = (rotations[joints], translations[joints], scales[joints])
+    roots = np.flatnonzero(above < 0)
+    base = np.tile(np.eye(4), (len(joints), 1, 1))  # what was folded into each root: its ancestors' transform
+    for i in roots:
+        if parents[joints[i]] >= 0:
+            base[i] = worlds[parents[joints[i]]]
+    rest_t, rest_r, rest_s = _rest_pose(gltf, places, above, base, locals_, worlds, still)
+    _, base_r, base_s = decompose(base[roots])
+    notes = _scale_notes(above, rest_s, base_s)
+    lift, shift, turn = (
+        _lift(above, rest_s, base_s),
+        np.zeros((len(joints), 3)),
+        rotation.identity((len(joints),)),
+    )
+    lift[roots], shift[roots], turn[roots] = base[roots, :3, :3], base[roots, :3, 3], base_r
+    rest_translations = np.einsum("jab,jb->ja", lift, rest_t) + shift
+    rest_rotations = rotation.normalize(rotation.multiply(turn, rest_r))
+    names = unique_names([nodes[n].name or f"node_{n}" for n in joints])
+    if len(set(names) - {nodes[n].name.strip() for n in joints if nodes[n].name}):
+        notes.append("joints without a name or with a repeated one were given names of their own")
+
+    rest_locals = compose(rest_t, rest_r, rest_s)
+    rest_locals[roots] = base[roots] @ rest_locals[roots]
+    rest_matrices = _globals(rest_locals, above, range(len(joints)))
+    if not (
+        np.isfinite(rest_matrices).all()
+        and np.isfinite(rest_translations).all()
+        and np.abs(rest_translations).max() < 1e9
+    ):
+        gltf.fail(told("its joints are scaled beyond all bounds"), told("its nodes"))
+    unit, repairs = _unit(rest_matrices, as_is)
+    if unit != 1.0:
+        lift, shift, rest_translations = lift * unit, shift * unit, rest_translations * unit
+        rest_matrices[:, :3] *= unit
+    skeleton = Skeleton(names, above, rest_rotations, rest_translations)
+    return GltfRig(
+        skeleton,
+        tuple(joints),
+        places,
+        tuple(parents),
+        lift,
+        shift,
+        turn,
+        *still,
+        rest_matrices,
+        worlds,
+        unit,
+        tuple(notes),
+        repairs,
+    )
+
+
+def _joints(gltf: Gltf, members: set[int], parents: list[int], order: list[int]) -> tuple[list[int], Array]:
+    """Return the joints' nodes, parents first, and each joint's parent among them, -1 for none. Refuses more
+    than any character has.
+    """
     joints = _in_order(gltf, members, parents, order)
     if len(joints) > JOINTS:
         gltf.fail(
@@ -141,86 +202,51 @@ def _build(
             told("its nodes"),
             told("Leave out ropes, hair and cloth, or export the character alone."),
         )
-    locals_ = compose(translations, rotations, scales)
-    worlds = _globals(locals_, np.array(parents), order)
+    return joints, above
+
+
+def _scale_notes(above: Array, scales: Array, base_scales: Array) -> list[str]:
+    """Return what there is to say of the joints' scales at rest, and of those folded into the roots."""
     notes: list[str] = []
-    repairs: list[Repair] = []
-
-    still = (rotations[joints], translations[joints], scales[joints])
-    roots = np.flatnonzero(above < 0)
-    base = np.tile(np.eye(4), (len(joints), 1, 1))  # what was folded into each root: its ancestors' transform
-    for i in roots:
-        if parents[joints[i]] >= 0:
-            base[i] = worlds[parents[joints[i]]]
-    rest_t, rest_r, rest_s = _rest_pose(gltf, places, above, base, locals_, worlds, still)
-
-    spread = np.abs(rest_s).max(-1) > np.abs(rest_s).min(-1) * 1.01
+    spread = np.abs(scales).max(-1) > np.abs(scales).min(-1) * 1.01
     if spread.any():
         notes.append(
             f"{int(spread.sum())} joints are scaled unevenly; their rotation is kept, their scale is not"
         )
-    size = np.abs(np.cbrt(np.prod(rest_s, -1)))
-    lift, shift, turn = (
-        np.zeros((len(joints), 3, 3)),
-        np.zeros((len(joints), 3)),
-        rotation.identity((len(joints),)),
-    )
-    _, base_r, base_s = decompose(base[roots])
     carrying = [int(p) for p in above if p >= 0]  # a mirrored tip changes nothing
-    if (base_s[:, 0] < 0).any() or (rest_s[carrying] < 0).any():
+    if (base_scales[:, 0] < 0).any() or (scales[carrying] < 0).any():
         notes.append("the file mirrors a part of its scene with a negative scale; that part may look turned")
-    lift[roots], shift[roots], turn[roots] = base[roots, :3, :3], base[roots, :3, 3], base_r
+    return notes
+
+
+def _lift(above: Array, scales: Array, base_scales: Array) -> Array:
+    """Return matrices `[J, 3, 3]` that scale each joint's translation as those above it do, zero for roots.
+    scales: at rest. base_scales: what was folded into each root.
+    """
+    size = np.abs(np.cbrt(np.prod(scales, -1)))
+    roots, inner = np.flatnonzero(above < 0), np.flatnonzero(above >= 0)
     total = size.tolist()  # the scale that a joint hands down; parents come first
-    for root, scale in zip(roots.tolist(), np.abs(np.cbrt(np.prod(base_s, -1))).tolist(), strict=True):
+    for root, scale in zip(roots.tolist(), np.abs(np.cbrt(np.prod(base_scales, -1))).tolist(), strict=True):
         total[root] *= scale
-    inner = np.flatnonzero(above >= 0)
     for joint, parent in zip(inner.tolist(), above[inner].tolist(), strict=True):
         total[joint] *= total[parent]
     own = above[inner]
+    lift = np.zeros((len(above), 3, 3))
     lift[inner[:, None], range(3), range(3)] = (
-        rest_s[own] * (np.array(total)[own] / np.where(size[own] > 0, size[own], 1))[:, None]
+        scales[own] * (np.array(total)[own] / np.where(size[own] > 0, size[own], 1))[:, None]
     )
-    rest_translations = np.einsum("jab,jb->ja", lift, rest_t) + shift
-    rest_rotations = rotation.normalize(rotation.multiply(turn, rest_r))
-    names = unique_names([nodes[n].name or f"node_{n}" for n in joints])
-    if len(set(names) - {nodes[n].name.strip() for n in joints if nodes[n].name}):
-        notes.append("joints without a name or with a repeated one were given names of their own")
+    return lift
 
-    rest_locals = compose(rest_t, rest_r, rest_s)
-    rest_locals[roots] = base[roots] @ rest_locals[roots]
-    rest_matrices = _globals(rest_locals, above, range(len(joints)))
-    if not (
-        np.isfinite(rest_matrices).all()
-        and np.isfinite(rest_translations).all()
-        and np.abs(rest_translations).max() < 1e9
-    ):
-        gltf.fail(told("its joints are scaled beyond all bounds"), told("its nodes"))
-    height = float(np.ptp(rest_matrices[:, :3, 3], axis=0).max())
-    unit = 0.01 if height > _TALL else 100.0 if 1e-3 < height < _TINY and len(joints) > 3 else 1.0
-    if unit != 1.0:
-        larger = "100 times smaller (centimetres)" if unit < 1 else "100 times larger"
-        repairs.append(Repair(UNIT, f"its skeleton is {height:.3g} m long: read {larger}", UNIT not in as_is))
-    if unit != 1.0 and UNIT in as_is:
-        unit = 1.0
-    elif unit != 1.0:
-        lift, shift, rest_translations = lift * unit, shift * unit, rest_translations * unit
-        rest_matrices[:, :3] *= unit
-    skeleton = Skeleton(names, above, rest_rotations, rest_translations)
-    return GltfRig(
-        skeleton,
-        tuple(joints),
-        places,
-        tuple(parents),
-        lift,
-        shift,
-        turn,
-        *still,
-        rest_matrices,
-        worlds,
-        unit,
-        tuple(notes),
-        tuple(repairs),
-    )
+
+def _unit(rest: Array, as_is: Collection[str]) -> tuple[float, tuple[Repair, ...]]:
+    """Return the metres per unit of a figure, and the repair where it is not in metres. rest: `[J, 4, 4]`."""
+    height = float(np.ptp(rest[:, :3, 3], axis=0).max())
+    unit = 0.01 if height > _TALL else 100.0 if 1e-3 < height < _TINY and len(rest) > 3 else 1.0
+    if unit == 1.0:
+        return unit, ()
+    larger = "100 times smaller (centimetres)" if unit < 1 else "100 times larger"
+    repair = Repair(UNIT, f"its skeleton is {height:.3g} m long: read {larger}", UNIT not in as_is)
+    return (unit if repair.made else 1.0), (repair,)
 
 
 def _tree(gltf: Gltf, nodes: list[Node]) -> tuple[list[int], list[int]]:
