@@ -84,43 +84,7 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
     if "/" in document.glb or "\\" in document.glb:
         raise DataError("$.glb", "should be the name of a file beside this one")
     skeleton = _skeleton(document.joints)
-    takes: list[Clip] = []
-    if motions:
-        from metagraph.formats.gltf.reader import read_gltf_clips
-
-        takes = read_gltf_clips(glb_beside(path, document))
-    # Clips of one frame are read behind the longer ones.
-    longer = sorted(x.animation for x in document.clips if x.frames > 1) or [
-        x.animation for x in document.clips
-    ]
-    order = [*longer, *sorted({x.animation for x in document.clips}.difference(longer))]
-    clips: dict[str, ClipEntry] = {}
-    for n, clip in enumerate(document.clips):
-        if clip.id in clips:
-            raise DataError(f"$.clips[{n}].id", f"'{clip.id}' is used twice")
-        if motions and clip.animation >= len(takes):
-            raise DataError(
-                f"$.clips[{n}].animation", f"the GLB has {len(takes)} animations, no number {clip.animation}"
-            )
-        motion = takes[clip.animation] if motions else None
-        motion = (
-            replace(motion, skeleton=skeleton)
-            if motion is not None and motion.skeleton.names == skeleton.names
-            else motion
-        )
-        take = order.index(clip.animation)
-        clips[clip.id] = ClipEntry(
-            clip.id,
-            clip.name,
-            document.glb,
-            take,
-            clip.sha256,
-            clip.frames,
-            clip.fps,
-            motion,
-            made_by=clip.made_by,
-            made_seed=clip.made_seed,
-        )
+    clips = _clips(path, document, motions, skeleton)
     p = document.planner
     base = BasePose(document.base.clip, document.base.frame)
     rigs: dict[str, Any] = {}
@@ -161,6 +125,43 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         performances=dict(document.performances),
         voices=read_voices(document.voices),
     )
+
+
+def _clips(path: Path, document: c.Export, motions: bool, skeleton: Skeleton) -> dict[str, ClipEntry]:
+    """Return the clips by id. motions: with what the GLB beside the JSON has of them. Raises DataError."""
+    takes: list[Clip] = []
+    if motions:
+        from metagraph.formats.gltf.reader import read_gltf_clips
+
+        takes = read_gltf_clips(glb_beside(path, document))
+    # Clips of one frame are read behind the longer ones.
+    every = [x.animation for x in document.clips]
+    longer = sorted(x.animation for x in document.clips if x.frames > 1) or every
+    order = [*longer, *sorted(set(every).difference(longer))]
+    clips: dict[str, ClipEntry] = {}
+    for n, clip in enumerate(document.clips):
+        if clip.id in clips:
+            raise DataError(f"$.clips[{n}].id", f"'{clip.id}' is used twice")
+        if motions and clip.animation >= len(takes):
+            raise DataError(
+                f"$.clips[{n}].animation", f"the GLB has {len(takes)} animations, no number {clip.animation}"
+            )
+        motion = takes[clip.animation] if motions else None
+        if motion is not None and motion.skeleton.names == skeleton.names:
+            motion = replace(motion, skeleton=skeleton)
+        clips[clip.id] = ClipEntry(
+            clip.id,
+            clip.name,
+            document.glb,
+            order.index(clip.animation),
+            clip.sha256,
+            clip.frames,
+            clip.fps,
+            motion,
+            made_by=clip.made_by,
+            made_seed=clip.made_seed,
+        )
+    return clips
 
 
 def glb_beside(path: Path, document: c.Export) -> Path:
