@@ -49,53 +49,26 @@ def write_video(
     if not (fps > 0 and np.isfinite(fps)):
         raise FileError(path, f"{fps} frames per second is no frame rate")
     part = path.with_name(f".{path.name}.part.mp4")
-    count = 0
     try:
         with (
             av.open(str(part), "w", format="mp4", options={"movflags": "faststart"}) as container,
             ThreadPoolExecutor(1) as encoder,
         ):
-            stream: Any = None
-            voice: Any = None
-            encoding: deque[Future[None]] = deque()
-
-            def encode(frame: Any) -> None:
-                for packet in stream.encode(frame):  # scales to the stream's size where it differs
-                    container.mux(packet)
-
-            def encoded(waiting: int) -> None:
-                """Come back when no more than so many wait."""
-                nonlocal count
-                while len(encoding) > waiting:
-                    encoding.popleft().result()
-                    count += 1
-                    if progress is not None:
-                        progress(count)
-
+            video = _Video(container, encoder, progress)
             for picture in frames:
                 if cancelled is not None and cancelled():
                     raise Cancelled
-                if stream is None:
+                if video.stream is None:
                     height, width = picture.shape[:2]
-                    width, height = size or (width, height)
-                    stream = container.add_stream("libx264", rate=Fraction(fps).limit_denominator(1001))
-                    stream.width, stream.height = max(2, width + width % 2), max(2, height + height % 2)
-                    stream.pix_fmt = "yuv420p"
-                    stream.options = {"preset": "veryfast", "crf": str(quality), "tune": "animation"}
-                    if sound is not None:
-                        voice = container.add_stream("aac", rate=sound[1], layout="mono")
-                frame = _frame(picture)  # a copy: who draws may draw into the same memory again
-                encoded(IN_FLIGHT - 1)
-                encoding.append(encoder.submit(encode, frame))
-            encoded(0)
-            if stream is None:
+                    video.begin(size or (width, height), fps, quality, None if sound is None else sound[1])
+                video.add(picture)
+            if video.stream is None:
                 raise FileError(
                     path, "there are no frames to write", remedy="Choose a time span longer than one frame."
                 )
-            for packet in stream.encode():
-                container.mux(packet)
-            if voice is not None and sound is not None:
-                _write_sound(container, voice, sound[0], round(count / fps * sound[1]))
+            video.end()
+            if sound is not None:
+                _write_sound(container, video.voice, sound[0], round(video.count / fps * sound[1]))
         with being_written(path):
             part.replace(path)
     except OSError as error:
@@ -104,7 +77,56 @@ def write_video(
         ) from error
     finally:
         part.unlink(missing_ok=True)
-    return count
+    return video.count
+
+
+class _Video:
+    """A video while it is written. stream, voice: of pictures and of sound, None until it begins. count:
+    pictures that are written.
+    """
+
+    def __init__(
+        self, container: Any, encoder: ThreadPoolExecutor, progress: Callable[[int], None] | None
+    ) -> None:
+        self.container, self.encoder, self.progress = container, encoder, progress
+        self.stream: Any = None
+        self.voice: Any = None
+        self.count = 0
+        self._encoding: deque[Future[None]] = deque()
+
+    def begin(self, size: tuple[int, int], fps: float, quality: int, rate: int | None) -> None:
+        """Make the streams. rate: samples of sound a second, None where there is none."""
+        width, height = size
+        self.stream = self.container.add_stream("libx264", rate=Fraction(fps).limit_denominator(1001))
+        self.stream.width, self.stream.height = max(2, width + width % 2), max(2, height + height % 2)
+        self.stream.pix_fmt = "yuv420p"
+        self.stream.options = {"preset": "veryfast", "crf": str(quality), "tune": "animation"}
+        if rate is not None:
+            self.voice = self.container.add_stream("aac", rate=rate, layout="mono")
+
+    def add(self, picture: Array) -> None:
+        """Hand a picture to the encoder, once there is room for one more."""
+        frame = _frame(picture)  # a copy: who draws may draw into the same memory again
+        self._wait(IN_FLIGHT - 1)
+        self._encoding.append(self.encoder.submit(self._encode, frame))
+
+    def end(self) -> None:
+        """Write what the encoder still has."""
+        self._wait(0)
+        for packet in self.stream.encode():
+            self.container.mux(packet)
+
+    def _encode(self, frame: Any) -> None:
+        for packet in self.stream.encode(frame):  # scales to the stream's size where it differs
+            self.container.mux(packet)
+
+    def _wait(self, waiting: int) -> None:
+        """Come back when no more than so many wait."""
+        while len(self._encoding) > waiting:
+            self._encoding.popleft().result()
+            self.count += 1
+            if self.progress is not None:
+                self.progress(self.count)
 
 
 def _frame(picture: Array) -> Any:
