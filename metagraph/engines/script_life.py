@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from metagraph.engines.script_parts import Case, ScriptStep, ask, once
 from metagraph.graph.model import Project
 
+ALIVE = (True,)  # the life layers are on
+
 
 def _timed_lines() -> Iterator[Case]:
     """Yield lines whose words and mouth shapes are told with their times."""
@@ -90,10 +92,43 @@ def life_cases(project: Project) -> Iterator[Case]:
     """Yield looks, blinks, modes, lines and nods, where the life layers are on."""
     if not project.life.on:
         return
-    both, times = (True,), (0.5, 1.05, 1.3, 2.2, 3.6, 5.15, 7.9, 11.0)
-    point = [0.8, 1.4, 0.9]
+    yield from _looks()
+    yield once(
+        "blinks and modes",
+        "blinks asked for; modes change rates",
+        [
+            ask("b1", "blink", 1.0),
+            ask("b2", "blink", 1.05),
+            ask("m1", "mode", 2.0, mode="listening"),
+            ask("m2", "mode", 8.0, mode="talking"),
+            ask("m3", "mode", 11.0, mode=None),
+        ],
+        60.0,
+        times=(0.9, 1.03, 1.1, 9.0, 33.3),
+        alive=ALIVE,
+    )
+    yield _said()
+    yield from _timed_lines()
+    yield _cut_short()
+    yield from _lines(project)
+    if any(a.kind == "gesture" for a in project.graphs["head"].actions.values()):
+        asks = [ask("n1", "nod", 1.0), ask("n2", "shake", 5.0), ask("n3", "nod", 9.0, priority=2)]
+        yield once("nods", "gestures of the head tagged so, or called so", asks, alive=ALIVE)
+    yield once(
+        "two minutes",
+        "what is drawn goes on being drawn",
+        [],
+        120.0,
+        idle=True,
+        times=(61.3, 99.9, 119.5),
+        alive=ALIVE,
+    )
+
+
+def _looks() -> Iterator[Case]:
+    times = (0.5, 1.05, 1.3, 2.2, 3.6, 5.15, 7.9, 11.0)
     asks = [
-        ask("l1", "look", 1.0, to=point, duration=2.0),
+        ask("l1", "look", 1.0, to=[0.8, 1.4, 0.9], duration=2.0),
         ask("l2", "look", 5.0, to="ahead", duration=1.5),
         ask("l3", "look", 7.0, to=[-1.0, 0.6, 0.2], amount=0.5),
     ]
@@ -103,7 +138,7 @@ def life_cases(project: Project) -> Iterator[Case]:
         asks,
         idle=False,
         times=times,
-        alive=both,
+        alive=ALIVE,
     )
     near = [
         ask("l4", "look", 1.0, to=[0.06, 1.58, 0.2]),
@@ -114,7 +149,7 @@ def life_cases(project: Project) -> Iterator[Case]:
         "what is nearer than a hand is looked at as if it were farther",
         near,
         times=times,
-        alive=both,
+        alive=ALIVE,
     )
     asks = [
         ask("s1", "look", 1.0, to="thing", strict=True),
@@ -130,40 +165,28 @@ def life_cases(project: Project) -> Iterator[Case]:
         "strict looks do not avert; the gaze follows a named point",
         asks,
         times=times,
-        alive=both,
+        alive=ALIVE,
     )
-    asks = [
-        ask("b1", "blink", 1.0),
-        ask("b2", "blink", 1.05),
-        ask("m1", "mode", 2.0, mode="listening"),
-        ask("m2", "mode", 8.0, mode="talking"),
-        ask("m3", "mode", 11.0, mode=None),
-    ]
-    yield once(
-        "blinks and modes",
-        "blinks asked for; modes change rates",
-        asks,
-        60.0,
-        times=(0.9, 1.03, 1.1, 9.0, 33.3),
-        alive=both,
-    )
+
+
+def _said() -> Case:
     asks = [
         ask("t1", "say", 1.0, text="Hello there, nice to see you!"),
         ask("t2", "say", 4.0, text="Größe, naïve Straße: 42", duration=2.0),
-    ]
-    asks += [
         ask("t3", "say", 5.0, text="This interrupts it."),
         ask("t4", "say", 9.0, text="日本 Ещё καλημέρα", priority=2),
         ask("t5", "say", 9.5, text="not said", priority=1),
     ]
-    yield once(
+    return once(
         "words that are said",
         "mouth shapes from letters; what interrupts, what is not said",
         asks,
         times=(1.2, 1.5, 2.0, 4.7, 5.3, 9.3, 9.8, 10.4),
-        alive=both,
+        alive=ALIVE,
     )
-    yield from _timed_lines()
+
+
+def _cut_short() -> Case:
     long = (
         "This is a rather long sentence, which goes on and on, so that many of its syllables are "
         "stressed, and nobody stops it for a while."
@@ -173,35 +196,25 @@ def life_cases(project: Project) -> Iterator[Case]:
         ask("cut", "say", 14.0, text="Nobody hears the end of this one, ever, at all."),
     ]
     steps = (ScriptStep(0.0, 24.0, tuple(asks)), ScriptStep(15.0, 24.0, (ask("w", "withdraw", what="cut"),)))
-    yield Case(
+    return Case(
         "stressed syllables",
         "blinks on them; a mouth that is cut short closes",
         steps,
         times=(2.3, 5.1, 8.7, 15.11, 15.15, 15.2),
-        alive=both,
+        alive=ALIVE,
     )
+
+
+def _lines(project: Project) -> Iterator[Case]:
     said = list(project.lines)[:2]
-    if said:
-        asks = [ask(f"line{n}", "say", 1.0 + 6 * n, line=line) for n, line in enumerate(said)] + [
-            ask("bare", "say", 14.0, line=said[0], gestures=False)
-        ]
-        yield once(
-            "lines",
-            "their sound's mouth shapes and their own requests",
-            asks,
-            24.0,
-            times=(1.3, 1.9, 2.6, 7.4, 14.5, 15.2),
-            alive=both,
-        )
-    if any(a.kind == "gesture" for a in project.graphs["head"].actions.values()):
-        asks = [ask("n1", "nod", 1.0), ask("n2", "shake", 5.0), ask("n3", "nod", 9.0, priority=2)]
-        yield once("nods", "gestures of the head tagged so, or called so", asks, alive=both)
+    if not said:
+        return
+    asks = [ask(f"line{n}", "say", 1.0 + 6 * n, line=line) for n, line in enumerate(said)]
     yield once(
-        "two minutes",
-        "what is drawn goes on being drawn",
-        [],
-        120.0,
-        idle=True,
-        times=(61.3, 99.9, 119.5),
-        alive=both,
+        "lines",
+        "their sound's mouth shapes and their own requests",
+        [*asks, ask("bare", "say", 14.0, line=said[0], gestures=False)],
+        24.0,
+        times=(1.3, 1.9, 2.6, 7.4, 14.5, 15.2),
+        alive=ALIVE,
     )
