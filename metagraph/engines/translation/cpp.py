@@ -275,24 +275,9 @@ class Cpp(Braces):
     # --- expressions
 
     def expression(self, node: x.Expression) -> tuple[Document, int]:
+        if isinstance(node, x.Named):
+            return self.named(node)
         match node:
-            case x.Value():
-                return self.literal(node), ALONE if not str(node.value).startswith("-") else UNARY
-            case x.Local():
-                return self.word(node.name), ALONE
-            case x.Global():
-                return self.reached(node.module, node.name), ALONE
-            case x.This():
-                return "lang::self(this)", ALONE
-            case x.Known():
-                if node.type.kind == "record":
-                    return self.expression(node.of)
-                return ("*", self.strong(node.of, ALONE)), UNARY
-            case x.Member():
-                call = "()" if node.computed else ""
-                if isinstance(node.of, x.This):
-                    return f"this->{self.word(node.name)}{call}", ALONE
-                return (self.strong(node.of, ALONE), f"->{self.word(node.name)}{call}"), ALONE
             case x.Call():
                 return (
                     self.strong(node.function, ALONE),
@@ -326,6 +311,26 @@ class Cpp(Braces):
             case x.Formatted():
                 return ("lang::text", listed("(", [self.piece(p) for p in node.parts], ")")), ALONE
         return super().expression(node)
+
+    def named(self, node: x.Named) -> tuple[Document, int]:
+        match node:
+            case x.Value():
+                return self.literal(node), ALONE if not str(node.value).startswith("-") else UNARY
+            case x.Local():
+                return self.word(node.name), ALONE
+            case x.Global():
+                return self.reached(node.module, node.name), ALONE
+            case x.This():
+                return "lang::self(this)", ALONE
+            case x.Known():
+                if node.type.kind == "record":
+                    return self.expression(node.of)
+                return ("*", self.strong(node.of, ALONE)), UNARY
+            case x.Member():
+                call = "()" if node.computed else ""
+                if isinstance(node.of, x.This):
+                    return f"this->{self.word(node.name)}{call}", ALONE
+                return (self.strong(node.of, ALONE), f"->{self.word(node.name)}{call}"), ALONE
 
     def reached(self, module: str, name: str) -> str:
         if module == self.module.name:

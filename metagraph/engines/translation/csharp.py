@@ -351,24 +351,9 @@ class CSharp(Braces):
         return self.plain(tests[0] if len(tests) == 1 else x.Logic(x.BOOL, "and", tuple(tests)))
 
     def expression(self, node: x.Expression) -> tuple[Document, int]:
+        if isinstance(node, x.Named):
+            return self.named(node)
         match node:
-            case x.Value():
-                return self.literal(node), ALONE if not str(node.value).startswith("-") else UNARY
-            case x.Local():
-                return self.local(node), ALONE
-            case x.Global():
-                name = self.shared(node.name)
-                here = node.module == self.module.name and not self.in_record
-                return (name if here else f"{self.rules(node.module)}.{name}"), ALONE
-            case x.This():
-                return "this", ALONE
-            case x.Known():
-                of = self.strong(node.of, ALONE)
-                return ((of, ".Value") if node.type.kind in VALUES else of), ALONE
-            case x.Member():
-                if isinstance(node.of, x.This):
-                    return pascal(node.name), ALONE
-                return (self.strong(node.of, ALONE), f".{pascal(node.name)}"), ALONE
             case x.Call():
                 return (self.strong(node.function, ALONE), listed("(", self.given(node), ")")), ALONE
             case x.New():
@@ -410,6 +395,26 @@ class CSharp(Braces):
             case x.Formatted():
                 return self.formatted(node)
         return super().expression(node)
+
+    def named(self, node: x.Named) -> tuple[Document, int]:
+        match node:
+            case x.Value():
+                return self.literal(node), ALONE if not str(node.value).startswith("-") else UNARY
+            case x.Local():
+                return self.local(node), ALONE
+            case x.Global():
+                name = self.shared(node.name)
+                here = node.module == self.module.name and not self.in_record
+                return (name if here else f"{self.rules(node.module)}.{name}"), ALONE
+            case x.This():
+                return "this", ALONE
+            case x.Known():
+                of = self.strong(node.of, ALONE)
+                return ((of, ".Value") if node.type.kind in VALUES else of), ALONE
+            case x.Member():
+                if isinstance(node.of, x.This):
+                    return pascal(node.name), ALONE
+                return (self.strong(node.of, ALONE), f".{pascal(node.name)}"), ALONE
 
     def given(self, node: x.Call) -> list[Document]:
         *first, last = node.arguments or (None,)

@@ -248,21 +248,9 @@ class GDScript(Printer):
     # --- expressions
 
     def expression(self, node: x.Expression) -> tuple[Document, int]:
+        if isinstance(node, x.Named):
+            return self.named(node)
         match node:
-            case x.Value():
-                return self.literal(node), ALONE if not str(node.value).startswith("-") else UNARY
-            case x.Local():
-                return self.word(node.name), ALONE
-            case x.Global():
-                return self.reached(node), ALONE
-            case x.This():
-                return "self", ALONE
-            case x.Known():
-                return self.expression(node.of)
-            case x.Member():
-                # A value's properties are worked out when it is made; those of what changes are functions.
-                call = "()" if node.computed and self.record_of(node.of.type.bare).changes else ""
-                return (self.strong(node.of, ALONE), f".{self.word(node.name)}{call}"), ALONE
             case x.Call():
                 return (
                     self.strong(node.function, ALONE),
@@ -314,6 +302,23 @@ class GDScript(Printer):
             case x.Formatted():
                 return self.formatted(node), PLUS
         return super().expression(node)
+
+    def named(self, node: x.Named) -> tuple[Document, int]:
+        match node:
+            case x.Value():
+                return self.literal(node), ALONE if not str(node.value).startswith("-") else UNARY
+            case x.Local():
+                return self.word(node.name), ALONE
+            case x.Global():
+                return self.reached(node), ALONE
+            case x.This():
+                return "self", ALONE
+            case x.Known():
+                return self.expression(node.of)
+            case x.Member():
+                # A value's properties are worked out when it is made; those of what changes are functions.
+                call = "()" if node.computed and self.record_of(node.of.type.bare).changes else ""
+                return (self.strong(node.of, ALONE), f".{self.word(node.name)}{call}"), ALONE
 
     def reached(self, node: x.Global) -> str:
         name = self.word(node.name)

@@ -241,22 +241,9 @@ class JavaScript(Braces):
         return Group((f"{names} =>", Nest((Break(" "), self.plain(body)))))
 
     def expression(self, node: x.Expression) -> tuple[Document, int]:
+        if isinstance(node, x.Named):
+            return self.named(node)
         match node:
-            case x.Value():
-                return self.literal(node), ALONE if not str(node.value).startswith("-") else UNARY
-            case x.Local():
-                return self.local(node), ALONE
-            case x.Global():
-                is_function = node.type.kind == "function"
-                name = self.function_name(node.name) if is_function else self.constant_name(node.name)
-                self.used.setdefault(node.module, set()).add(name)
-                return name, ALONE
-            case x.This():
-                return "this", ALONE
-            case x.Known():
-                return self.expression(node.of)
-            case x.Member():
-                return (self.strong(node.of, ALONE), f".{camel(node.name)}"), ALONE
             case x.Call():
                 return (self.strong(node.function, ALONE), listed("(", self.given(node), ")", ",")), ALONE
             case x.New():
@@ -320,6 +307,24 @@ class JavaScript(Braces):
             case x.Formatted():
                 return self.formatted(node), ALONE
         return super().expression(node)
+
+    def named(self, node: x.Named) -> tuple[Document, int]:
+        match node:
+            case x.Value():
+                return self.literal(node), ALONE if not str(node.value).startswith("-") else UNARY
+            case x.Local():
+                return self.local(node), ALONE
+            case x.Global():
+                is_function = node.type.kind == "function"
+                name = self.function_name(node.name) if is_function else self.constant_name(node.name)
+                self.used.setdefault(node.module, set()).add(name)
+                return name, ALONE
+            case x.This():
+                return "this", ALONE
+            case x.Known():
+                return self.expression(node.of)
+            case x.Member():
+                return (self.strong(node.of, ALONE), f".{camel(node.name)}"), ALONE
 
     def given(self, node: x.Call) -> list[Document]:
         if not node.rest:

@@ -18,12 +18,8 @@ class Expressions(Calls):
 
     def expression(self, node: m.Expression) -> x.Expression:
         match node:
-            case m.IntExpr():
-                return x.Value(x.INT, node.value)
-            case m.FloatExpr():
-                return x.Value(x.FLOAT, node.value)
-            case m.StrExpr():
-                return x.Value(x.STR, node.value)
+            case m.IntExpr() | m.FloatExpr() | m.StrExpr():
+                return self._literal(node)
             case m.NameExpr():
                 return self._name(node)
             case m.MemberExpr():
@@ -35,9 +31,7 @@ class Expressions(Calls):
             case m.ComparisonExpr():
                 return self._comparison(node)
             case m.UnaryExpr():
-                if node.op == "not":
-                    return x.Negated(x.BOOL, "not", self.truth(node.expr))
-                return x.Negated(self.of(node), node.op, self.expression(node.expr))
+                return self._negated(node)
             case m.ConditionalExpr():
                 kind = self.of(node)
                 then, other = self.expression(node.if_expr), self.expression(node.else_expr)
@@ -50,25 +44,36 @@ class Expressions(Calls):
                 return self._gathered(node)
             case m.DictExpr():
                 return self._mapped(node)
-            case m.ListComprehension():
-                return self._comprehension(node.generator, self.of(node))
-            case m.SetComprehension():
-                return self._comprehension(node.generator, self.of(node))
-            case m.GeneratorExpr():
-                return self._comprehension(node, x.Type("list", (self.of(node.left_expr),)))
+            case m.ListComprehension() | m.SetComprehension() | m.GeneratorExpr():
+                return self._comprehension(node)
             case m.DictionaryComprehension() if node.key is not None:
                 clauses = self._clauses(node.sequences, node.indices, node.condlists)
                 return x.Comprehension(
                     self.of(node), self.expression(node.value), clauses, self.expression(node.key)
                 )
             case m.LambdaExpr():
-                names = tuple(
-                    x.Local(self.declared(a.variable, node), a.variable.name) for a in node.arguments
-                )
-                (body,) = node.body.body
-                assert isinstance(body, m.ReturnStmt) and body.expr is not None
-                return x.Lambda(self.of(node), names, self.expression(body.expr))
+                return self._lambda(node)
         raise self.refuse(node, f"{type(node).__name__} is outside the subset", "write it with simpler means")
+
+    def _literal(self, node: m.IntExpr | m.FloatExpr | m.StrExpr) -> x.Expression:
+        match node:
+            case m.IntExpr():
+                return x.Value(x.INT, node.value)
+            case m.FloatExpr():
+                return x.Value(x.FLOAT, node.value)
+            case m.StrExpr():
+                return x.Value(x.STR, node.value)
+
+    def _negated(self, node: m.UnaryExpr) -> x.Expression:
+        if node.op == "not":
+            return x.Negated(x.BOOL, "not", self.truth(node.expr))
+        return x.Negated(self.of(node), node.op, self.expression(node.expr))
+
+    def _lambda(self, node: m.LambdaExpr) -> x.Expression:
+        names = tuple(x.Local(self.declared(a.variable, node), a.variable.name) for a in node.arguments)
+        (body,) = node.body.body
+        assert isinstance(body, m.ReturnStmt) and body.expr is not None
+        return x.Lambda(self.of(node), names, self.expression(body.expr))
 
     def _name(self, node: m.NameExpr) -> x.Expression:
         plain = {"True": (x.BOOL, True), "False": (x.BOOL, False), "None": (x.NONE, None)}
@@ -215,9 +220,15 @@ class Expressions(Calls):
             pairs.append((self.expression(key), self.expression(value)))
         return x.Mapped(self.of(node), tuple(pairs))
 
-    def _comprehension(self, node: m.GeneratorExpr, kind: x.Type) -> x.Expression:
-        clauses = self._clauses(node.sequences, node.indices, node.condlists)
-        return x.Comprehension(kind, self.expression(node.left_expr), clauses)
+    def _comprehension(
+        self, node: m.ListComprehension | m.SetComprehension | m.GeneratorExpr
+    ) -> x.Expression:
+        if isinstance(node, m.GeneratorExpr):
+            made, kind = node, x.Type("list", (self.of(node.left_expr),))
+        else:
+            made, kind = node.generator, self.of(node)
+        clauses = self._clauses(made.sequences, made.indices, made.condlists)
+        return x.Comprehension(kind, self.expression(made.left_expr), clauses)
 
     def _clauses(
         self,

@@ -232,6 +232,9 @@ class Known(Expression):
 # --- statements
 
 
+Named = Value | Local | Global | This | Known | Member  # what stands there, or has a name
+
+
 @dataclass(frozen=True)
 class Statement:
     """comments: lines above it. beside: a comment at its end."""
