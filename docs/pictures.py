@@ -344,6 +344,7 @@ def motion_graph() -> None:
 def page() -> None:
     """The web page, in a browser, having been asked to wave."""
     from metagraph.engines.targets import registry, web
+    from metagraph.engines.targets.target import Contents
     from metagraph.formats.store import open_project
 
     samples = ROOT / "sample_clips"
@@ -351,7 +352,7 @@ def page() -> None:
         folder = Path(place)
         web.tools = lambda folder: ROOT / "tests" / "node_modules"  # type: ignore[assignment]
         project = open_project(samples / "sample.metagraph.yaml").project
-        registry.write(project, "web", folder, samples / "ada.glb", base=samples)
+        registry.write(project, "web", folder, Contents(samples / "ada.glb", base=samples))
         steps = [
             {"url": "?seed=7&paused&panel", "until": "window.metagraph"},
             {"click": "#panel button:text-is('greeting') >> nth=0"},

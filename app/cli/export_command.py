@@ -139,6 +139,7 @@ def _state(path: Path) -> tuple[int, int] | None:
 
 def _once(options: Namespace) -> None:
     from metagraph.engines.targets import registry
+    from metagraph.engines.targets.target import Contents
     from metagraph.graph.manual.meta import exportable
 
     project, differences = exportable(opened(options.project))
@@ -153,10 +154,14 @@ def _once(options: Namespace) -> None:
         from metagraph.formats.outputs import claim
 
         claim(options.out / tools_name(stem_of(project)))
-    made = registry.write(project, options.target, options.out, character, options.expanded,
-                          base=options.project.resolve().parent, overwrite=options.overwrite,
-                          chosen_by_hand=lambda p: any(is_inside(p, x) for x in options.sounds),
-                          compress=options.compress)  # fmt: skip
+    contents = Contents(
+        character,
+        options.expanded,
+        options.project.resolve().parent,
+        lambda p: any(is_inside(p, x) for x in options.sounds),
+        options.compress,
+    )
+    made = registry.write(project, options.target, options.out, contents, overwrite=options.overwrite)
     files = list(made.files)
     if options.tools:
         from metagraph.engines.tools_file import write_tools

@@ -20,6 +20,7 @@ sys.path.insert(0, str(ROOT))
 
 from app.project.opening import open_whole  # noqa: E402
 from metagraph.engines.targets import registry, web_tools  # noqa: E402
+from metagraph.engines.targets.target import Contents  # noqa: E402
 
 RUNS = 7
 KINDS = ("plain", "packed")
@@ -33,7 +34,9 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         for kind in KINDS:
-            made = registry.write(project, "web", folder / kind, character, compress=kind == "packed")
+            made = registry.write(
+                project, "web", folder / kind, Contents(character, compress=kind == "packed")
+            )
             (glb,) = (p.read_bytes() for p in made.files if p.suffix == ".glb")
             size, zipped = len(glb) / 1e6, len(gzip.compress(glb, 6)) / 1e6
             print(f"{kind}: {made.clips} clips, GLB of {size:.2f} MB, {zipped:.2f} zipped")

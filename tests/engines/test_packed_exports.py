@@ -15,6 +15,7 @@ from metagraph.engines.export import export
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.reading import read_export
 from metagraph.engines.targets import registry, web
+from metagraph.engines.targets.target import Contents
 from metagraph.engines.vectors import check_vectors, every_case, write_vectors
 from metagraph.graph.model import Project
 from tests.browsing import MODULES, Browser
@@ -185,10 +186,10 @@ def test_targets_that_cannot_read_it_refuse_and_the_others_write_it(
     monkeypatch.setattr(web, "at_hand", lambda: False)
     if not registry.target(name).unpacks:
         with pytest.raises(ExportError, match="without --compress"):
-            registry.write(sample, name, tmp_path / "out", compress=True)
+            registry.write(sample, name, tmp_path / "out", Contents(compress=True))
         assert not (tmp_path / "out").exists()
         return
-    made = registry.write(sample, name, tmp_path / "out", compress=True)
+    made = registry.write(sample, name, tmp_path / "out", Contents(compress=True))
     (glb,) = (path for path in made.files if path.suffix == ".glb")
     assert "EXT_meshopt_compression" in parts(glb)[0]["extensionsRequired"]
 
@@ -197,7 +198,7 @@ def test_a_page_shows_it(
     sample: Project, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory, browse: Browser
 ) -> None:
     with kept_web_tools(tmp_path_factory.mktemp("kept")):
-        registry.write(sample, "web", tmp_path, BODY, compress=True)
+        registry.write(sample, "web", tmp_path, Contents(BODY, compress=True))
     seen = """(() => { const { stage, object } = document.querySelector("metagraph-character"); let vertices = 0;
       stage.scene.traverse((one) => (vertices += one.isSkinnedMesh ? one.geometry.attributes.position.count : 0));
       return [vertices, object.missing.length, stage.bounds.max.y]; })()"""

@@ -21,7 +21,7 @@ from metagraph.engines.engine_machine import Machine, machines
 from metagraph.engines.export import stem_of
 from metagraph.engines.targets import godot_tree
 from metagraph.engines.targets.godot_tree import TARGETS, old_name, owned, paths_of
-from metagraph.engines.targets.target import ExportOrder
+from metagraph.engines.targets.target import Contents, ExportOrder
 from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.graph import edits
 from metagraph.graph.anatomy import base_pose
@@ -50,7 +50,7 @@ def folder(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
     shutil.copytree(ADDON, place / "addons")
     (place / "project.godot").write_text('config_version=4\n\n[application]\n\nconfig/name="test"\n')
     shutil.copy(HERE / "run" / "godot_tree.gd", place)
-    made = TARGETS[0].write(ExportOrder(sample, place, stem_of(sample), MANNEQUIN))
+    made = TARGETS[0].write(ExportOrder(sample, place, stem_of(sample), Contents(MANNEQUIN)))
     assert all(path.is_file() and path.stat().st_size for path in made.files)
     return place
 

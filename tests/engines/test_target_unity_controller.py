@@ -16,7 +16,7 @@ import yaml
 from numpy.typing import NDArray
 
 from metagraph.engines.engine_machine import Arrow, Machine, State, animations, machines
-from metagraph.engines.targets.target import ExportOrder, Made
+from metagraph.engines.targets.target import Contents, ExportOrder, Made
 from metagraph.engines.targets.unity_controller import TARGETS
 from metagraph.engines.targets.unity_yaml import text
 from metagraph.graph import edits
@@ -69,8 +69,8 @@ class Objects(dict[str, tuple[str, dict[str, Any]]]):
         return self[reference["fileID"]][1]
 
 
-def write(project: Project, folder: Path, stem: str = "talk", **more: Any) -> Made:
-    return TARGET.write(ExportOrder(project, folder, stem, **more))
+def write(project: Project, folder: Path, stem: str = "talk", body: Path | None = None) -> Made:
+    return TARGET.write(ExportOrder(project, folder, stem, Contents(body)))
 
 
 @pytest.fixture(scope="module")
@@ -447,5 +447,5 @@ def test_clips_whose_names_differ_by_case_alone_have_files_of_their_own(toy: Any
 
 def test_the_mesh_goes_along_where_there_is_one(sample: Project, tmp_path: Path) -> None:
     few = edits.remove_actions(sample, [a.id for a in sample.actions() if a.kind != "stance"])
-    made = write(few, tmp_path, character=Path(__file__).parents[2] / "sample_clips" / "mannequin.glb")
+    made = write(few, tmp_path, body=Path(__file__).parents[2] / "sample_clips" / "mannequin.glb")
     assert made.files[-1].name == "talk.glb" and not made.notes

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from metagraph.engines.targets import registry
+from metagraph.engines.targets.target import Contents
 from metagraph.formats.gltf.reader import read_character, read_gltf_clips
 from metagraph.formats.usd import usda
 from metagraph.formats.usd.writer import joint_paths, write_usd
@@ -67,7 +68,7 @@ def project(still: Clip) -> Project:
 
 @pytest.fixture(scope="module")
 def written(project: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    report = registry.write(project, "usd", tmp_path_factory.mktemp("usd"), SAMPLES / "ada.glb")
+    report = registry.write(project, "usd", tmp_path_factory.mktemp("usd"), Contents(SAMPLES / "ada.glb"))
     return report.files[0]
 
 

@@ -12,6 +12,7 @@ import pytest
 
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets import registry
+from metagraph.engines.targets.target import Contents
 from metagraph.engines.targets.vrm import META
 from metagraph.errors import FileError
 from metagraph.formats.gltf.reader import read_character, read_gltf_clips
@@ -33,7 +34,7 @@ def project() -> Project:
 @pytest.fixture(scope="module")
 def written(project: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("vrm")
-    report = registry.write(project, "vrm", folder, SAMPLES / "ada.glb", base=folder)
+    report = registry.write(project, "vrm", folder, Contents(SAMPLES / "ada.glb", base=folder))
     assert any(META in warning for warning in report.warnings)
     return report.files[0]
 
@@ -97,14 +98,14 @@ def test_its_clips_play_as_they_were(project: Project, written: Path) -> None:
 def test_the_licence_is_what_stands_beside_the_project(project: Project, tmp_path: Path) -> None:
     said = {"authors": ["Ann"], "commercialUsage": "corporation", "allowRedistribution": True}
     (tmp_path / META).write_text(json.dumps(said))
-    report = registry.write(project, "vrm", tmp_path / "out", SAMPLES / "ada.glb", base=tmp_path)
+    report = registry.write(project, "vrm", tmp_path / "out", Contents(SAMPLES / "ada.glb", base=tmp_path))
     meta = gltf(report.files[0])["extensions"]["VRMC_vrm"]["meta"]
     assert meta.items() >= said.items() and meta["creditNotation"] == "required"
     assert not any(META in warning for warning in report.warnings)
     for wrong in ({"commercialUsage": "all"}, {"authors": []}, {"fee": 3}, {"name": 1}):
         (tmp_path / META).write_text(json.dumps(wrong))
         with pytest.raises(FileError, match=next(iter(wrong))):
-            registry.write(project, "vrm", tmp_path / "no", SAMPLES / "ada.glb", base=tmp_path)
+            registry.write(project, "vrm", tmp_path / "no", Contents(SAMPLES / "ada.glb", base=tmp_path))
 
 
 def test_what_is_no_avatar_is_refused(project: Project, tmp_path: Path) -> None:
@@ -112,4 +113,4 @@ def test_what_is_no_avatar_is_refused(project: Project, tmp_path: Path) -> None:
         registry.write(project, "vrm", tmp_path)
     lame = replace(project, roles={"left_foot": ""})
     with pytest.raises(ExportError, match="left_foot"):
-        registry.write(lame, "vrm", tmp_path, SAMPLES / "ada.glb")
+        registry.write(lame, "vrm", tmp_path, Contents(SAMPLES / "ada.glb"))

@@ -16,6 +16,7 @@ from PIL import Image
 
 from metagraph.engines.reading import read_export
 from metagraph.engines.targets import registry, web
+from metagraph.engines.targets.target import Contents
 from metagraph.graph.model import Project
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.extend_performance import hear
@@ -33,7 +34,7 @@ SEED, TIME = 7, 12.3
 def page(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("web")
     with kept_web_tools(tmp_path_factory.mktemp("kept")):
-        report = registry.write(sample, "web", folder, SAMPLES / "ada.glb", base=SAMPLES)
+        report = registry.write(sample, "web", folder, Contents(SAMPLES / "ada.glb", base=SAMPLES))
     assert report.files[0] == folder / "index.html"
     return folder
 
@@ -235,10 +236,10 @@ def test_a_character_is_in_any_page_in_five_lines(page: Path, tmp_path: Path, br
 
 
 def test_lines_that_cannot_be_read_are_left_out_and_told(sample: Project, tmp_path: Path) -> None:
-    report = registry.write(sample, "metagraph", tmp_path, base=tmp_path)
+    report = registry.write(sample, "metagraph", tmp_path, Contents(base=tmp_path))
     assert sum("the sound of line" in words for words in report.warnings) == len(
         [x for x in sample.lines.values() if x.audio]
     )
-    report = registry.write(sample, "metagraph", tmp_path, base=SAMPLES)
+    report = registry.write(sample, "metagraph", tmp_path, Contents(base=SAMPLES))
     lines = json.loads((tmp_path / "sample.json").read_bytes())["lines"]
     assert all((tmp_path / line["audio"]).is_file() for line in lines.values())

@@ -20,7 +20,7 @@ import pytest
 from metagraph.engines.engine_machine import animations, machines
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets import registry
-from metagraph.engines.targets.target import Report
+from metagraph.engines.targets.target import Contents, Report
 from metagraph.formats.bvh.file import read_bvh
 from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.graph import edits
@@ -61,7 +61,7 @@ def written(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Any:
 
     def of(name: str) -> Report:
         if name not in known:
-            known[name] = registry.write(sample, name, tmp_path_factory.mktemp(name), MANNEQUIN)
+            known[name] = registry.write(sample, name, tmp_path_factory.mktemp(name), Contents(MANNEQUIN))
         return known[name]
 
     return of

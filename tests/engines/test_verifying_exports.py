@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 
 from metagraph.engines.targets import registry
 from metagraph.engines.targets.placing import RECORD, STAGED, Record, Staging, read_record
+from metagraph.engines.targets.target import Contents
 from metagraph.engines.verifying_exports import verify
 from metagraph.errors import FileError
 from metagraph.formats.clips import digest
@@ -34,7 +35,7 @@ def game(tmp_path: Path, toy) -> Path:
     """An export with a line's sound."""
     wav(tmp_path / "hello.wav", 8000, bytes(1600))
     project = dataclasses.replace(toy.project(), lines={"hello": Line(audio="hello.wav")})
-    registry.write(project, "metagraph", tmp_path / "game", base=tmp_path)
+    registry.write(project, "metagraph", tmp_path / "game", Contents(base=tmp_path))
     return tmp_path / "game"
 
 

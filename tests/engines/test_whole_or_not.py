@@ -15,6 +15,7 @@ from metagraph.common.file_names import folded
 from metagraph.engines.export import export
 from metagraph.engines.targets import placing, registry
 from metagraph.engines.targets.placing import RECORD, Staging
+from metagraph.engines.targets.target import Contents
 from metagraph.errors import FileError
 from metagraph.formats.store import open_project
 from metagraph.graph import edits
@@ -53,9 +54,8 @@ def test_names_of_any_length_are_exported_whole(small: Project, tmp_path: Path, 
     project = long_named(small)
     if name == "vrm":  # is of a mesh, which has a body's bones
         project = long_named(open_project(SAMPLE).project)
-    made = registry.write(
-        project, name, tmp_path / "out", SAMPLE.with_name("ada.glb") if name == "vrm" else None
-    )
+    contents = Contents(SAMPLE.with_name("ada.glb") if name == "vrm" else None)
+    made = registry.write(project, name, tmp_path / "out", contents)
     assert all(path.is_file() for path in made.files)
     assert all(len(part.encode()) <= 255 for f in files(tmp_path) for part in f.split("/"))
 
@@ -192,7 +192,9 @@ def test_what_is_no_sound_is_never_copied(small: Project, tmp_path: Path) -> Non
         "e": "x" * 5000,
     }
     project = with_lines(small, **names, f="a\0b", g=".")
-    made = registry.write(project, "metagraph", tmp_path / "out", base=base, chosen_by_hand=lambda path: True)
+    made = registry.write(
+        project, "metagraph", tmp_path / "out", Contents(base=base, chosen=lambda path: True)
+    )
     assert not (tmp_path / "out" / "lines").exists()
     assert all(b"root:" not in data and b"PRIVATE" not in data for data in files(tmp_path / "out").values())
     assert sum("is left out" in w for w in made.warnings) == 7
@@ -205,7 +207,7 @@ def test_a_sound_outside_the_project_s_folder_is_copied_where_the_user_chose_it(
     base, outside = tmp_path / "project", wav(tmp_path / "voice" / "hi.wav")
     wav(base / "in" / "ho.wav")
     project = with_lines(small, out="../voice/hi.wav", whole=outside.as_posix(), inner="in/ho.wav")
-    made = registry.write(project, "metagraph", tmp_path / "a", base=base)
+    made = registry.write(project, "metagraph", tmp_path / "a", Contents(base=base))
     assert set(files(tmp_path / "a")) - {RECORD} == {*(p.name for p in made.files[:2]), "lines/ho.wav"}
     assert sum("outside the project's folder" in w for w in made.warnings) == 2
     asked: list[Path] = []
@@ -213,8 +215,7 @@ def test_a_sound_outside_the_project_s_folder_is_copied_where_the_user_chose_it(
         project,
         "metagraph",
         tmp_path / "b",
-        base=base,
-        chosen_by_hand=lambda p: bool(asked.append(p) or True),
+        Contents(base=base, chosen=lambda p: bool(asked.append(p) or True)),
     )
     assert {f for f in files(tmp_path / "b") if f.startswith("lines/")} == {
         "lines/hi.wav",
@@ -231,7 +232,7 @@ def test_a_link_out_of_the_project_s_folder_is_outside(small: Project, tmp_path:
         (base / "hi.wav").symlink_to(wav(tmp_path / "hi.wav"))
     except OSError:
         pytest.skip("links are not to be had here")
-    made = registry.write(with_lines(small, a="hi.wav"), "metagraph", tmp_path / "out", base=base)
+    made = registry.write(with_lines(small, a="hi.wav"), "metagraph", tmp_path / "out", Contents(base=base))
     assert any("outside" in w for w in made.warnings)
 
 

@@ -42,7 +42,7 @@ from app.widgets.making import make_widget
 from app.widgets.tree_items import items_below, top_items
 from metagraph.engines.targets import registry
 from metagraph.engines.targets.placing import ForeignFilesError
-from metagraph.engines.targets.target import ExportTarget, Report
+from metagraph.engines.targets.target import Contents, ExportTarget, Report
 from metagraph.engines.tools_file import write_tools
 from metagraph.engines.vectors import write_vectors
 from metagraph.graph.check import check
@@ -327,9 +327,8 @@ class ExportDialog(QDialog):
         self.progress.show()
 
         def work(job: Job) -> Report:
-            made = registry.write(
-                project, name, folder, character, expanded, job.tell, base, overwrite, was_chosen, compress
-            )
+            contents = Contents(character, expanded, base, was_chosen, compress)
+            made = registry.write(project, name, folder, contents, job.tell, overwrite)
             if vectors:
                 write_vectors(next(path for path in made.files if path.suffix == ".json"))
             if tools:

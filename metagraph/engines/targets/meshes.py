@@ -10,5 +10,5 @@ from metagraph.motion.character_mesh import Character
 def mesh_of(order: ExportOrder) -> tuple[Character | None, tuple[str, ...]]:
     """Return the mesh that goes with an order, and what there is to say about it. Raises FileError."""
     assert order.project.skeleton is not None
-    body, notes = mesh_on(order.project.skeleton, order.character, order.project.hidden)
+    body, notes = mesh_on(order.project.skeleton, order.contents.character, order.project.hidden)
     return body, tuple(notes)

@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from difflib import get_close_matches
 from functools import cache
 from importlib import import_module
 from pathlib import Path
 
 from metagraph.common.wording import told
-from metagraph.engines.export import Chosen, nothing_chosen, sound, stem_of
+from metagraph.engines.export import sound, stem_of
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets.placing import Staging
 from metagraph.engines.targets.placing import place as move
-from metagraph.engines.targets.target import ExportOrder, ExportTarget, Report, Tell
+from metagraph.engines.targets.target import BARE, Contents, ExportOrder, ExportTarget, Report, Tell
 from metagraph.formats.atomic import synced_together
 from metagraph.formats.store import writable
 from metagraph.graph.model import Project
-from metagraph.motion.character_mesh import Character
 
 # Modules of this package that have TARGETS, in the order they are offered.
 MODULES = (
@@ -68,27 +68,19 @@ def write(
     project: Project,
     name: str,
     folder: str | Path,
-    character: Path | Character | None = None,
-    expanded: bool = False,
+    contents: Contents = BARE,
     tell: Tell | None = None,
-    base: Path | None = None,
     overwrite: bool = False,
-    chosen_by_hand: Chosen = nothing_chosen,
-    compress: bool = False,
 ) -> Report:
     """Write a project for a target into a folder, which is made.
 
-    character: the mesh or its file, None to leave it out. expanded: list the state machine in the JSON as
-    well. base: the folder the lines' sounds are relative to, None to leave them where they are. overwrite:
-    also files that are not of an earlier export of the same project for the same target. chosen_by_hand:
-    which sounds outside `base` the user has chosen, not only the project; no others are copied. compress:
-    pack the GLB (EXT_meshopt_compression). All of it is written, or nothing. Raises ExportError where the
-    target is read by what cannot unpack it, and
-    while the project has errors, `ForeignFilesError`, an ExportError, where such files stand in the way,
+    overwrite: also files that are not of an earlier export of the same project for the same target. All of it
+    is written, or nothing. Raises ExportError where the target is read by what cannot unpack a packed GLB,
+    and while the project has errors, `ForeignFilesError`, an ExportError, where such files stand in the way,
     FileError when a file cannot be written.
     """
     chosen = target(name)
-    if compress and not chosen.unpacks:
+    if contents.compress and not chosen.unpacks:
         able = ", ".join(t.name for t in targets().values() if t.unpacks)
         raise ExportError(
             told(
@@ -101,17 +93,9 @@ def write(
     warnings = sound(project)
     place = Path(folder)
     with Staging(place) as staged:
-        order = ExportOrder(
-            project,
-            staged.path,
-            stem_of(project),
-            character,
-            expanded,
-            tell or (lambda done, total, words: None),
-            base,
-            chosen_by_hand,
-            compress,
-        )
+        order = ExportOrder(project, staged.path, stem_of(project), contents)
+        if tell is not None:
+            order = replace(order, tell=tell)
         with synced_together():
             made = chosen.write(order)
         names = tuple(path.relative_to(staged.path).as_posix() for path in made.files)

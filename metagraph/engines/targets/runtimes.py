@@ -22,12 +22,12 @@ def written(order: ExportOrder) -> Made:
     made = write(
         order.project,
         order.folder,
-        order.expanded,
-        order.character,
+        order.contents.expanded,
+        order.contents.character,
         order.tell,
-        order.base,
-        order.chosen,
-        order.compress,
+        order.contents.base,
+        order.contents.chosen,
+        order.contents.compress,
     )
     return Made((made.json, made.glb, *made.sounds), made.warnings)
 

@@ -33,22 +33,33 @@ class Loss:
 
 
 @dataclass(frozen=True)
-class ExportOrder:
-    """What is to be written: a sound project into a folder that is there. stem: what its files are called.
-    character: the mesh, or None to leave it out. expanded: the state machine in the JSON, where there is one.
-    base: the folder the project's own paths are relative to. chosen: which files outside it the user chose.
-    compress: pack the GLB, for targets that read it then.
+class Contents:
+    """What goes into an export, and how. character: the mesh or its file, None to leave it out. expanded: the
+    state machine in the JSON, where there is one. base: the folder the project's own paths are relative to,
+    None to leave the lines' sounds where they are. chosen: which sounds outside `base` the user has chosen,
+    not only the project; no others are copied. compress: pack the GLB (EXT_meshopt_compression), for targets
+    that read it then.
     """
+
+    character: Path | Character | None = None
+    expanded: bool = False
+    base: Path | None = None
+    chosen: Chosen = nothing_chosen
+    compress: bool = False
+
+
+BARE = Contents()
+
+
+@dataclass(frozen=True)
+class ExportOrder:
+    """What is to be written: a sound project into a folder that is there. stem: what its files are called."""
 
     project: Project
     folder: Path
     stem: str
-    character: Path | Character | None = None
-    expanded: bool = False
+    contents: Contents = BARE
     tell: Tell = lambda done, total, words: None
-    base: Path | None = None
-    chosen: Chosen = nothing_chosen
-    compress: bool = False
 
 
 @dataclass(frozen=True)

@@ -184,7 +184,7 @@ def _write(order: ExportOrder) -> Made:
         raise ExportError(told("VRM is a character: choose a mesh that fits the clips, and export with it"))
     order.tell(0, 2, "clips")
     bones = humanoid(skeleton, roles)
-    meta, said = meta_of(project, order.base)
+    meta, said = meta_of(project, order.contents.base)
     mesh = len(skeleton) + (sum(int(p) < 0 for p in skeleton.parents) > 1)
     used = [project.clips[c] for c in project.uses if c in project.clips]
     clips = [worn(project, e.motion) for e in used if e.motion is not None]
