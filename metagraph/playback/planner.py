@@ -7,6 +7,7 @@ nothing and extending a running plan are the same function; `make_plan` extends 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass
 
 from metagraph.graph.model import LAYERS, Layer, Markov, Project
 from metagraph.playback.life.near_life import with_past
@@ -18,6 +19,20 @@ from metagraph.playback.planning.layer_planning import draft
 from metagraph.playback.planning.mood import Moods, mood_at, stirs
 from metagraph.playback.planning.plan_head import head_of, keep_head, shared
 from metagraph.playback.planning.strand import joined
+
+
+@dataclass(frozen=True)
+class Revision:
+    """What else becomes of a plan that is extended. withdrawn: ids of requests that are taken back. leave:
+    layers that are planned to the end already and that nothing new concerns; planning them again would change
+    nothing.
+    """
+
+    withdrawn: frozenset[str] = frozenset()
+    leave: Collection[Layer] = ()
+
+
+NOTHING_ELSE = Revision()
 
 
 def make_plan(
@@ -46,18 +61,16 @@ def extend(
     end: float,
     stances: Mapping[Layer, str] | None = None,
     idle: bool = True,
-    withdrawn: frozenset[str] = frozenset(),
-    leave: Collection[Layer] = (),
+    revision: Revision = NOTHING_ELSE,
 ) -> Plan:
     """Return the plan with new requests worked in, others withdrawn, and the horizon moved to `end`.
 
     What starts before `now` stays exactly as it was. What was planned for later is taken back to its meta
     actions, merged with the new ones and planned again. An extension in many steps gives what one in a single
-    step does. leave: layers that are planned to `end` already and that nothing new concerns; planning them
-    again would change nothing.
+    step does.
     """
     fresh = tuple({r.id: r for r in requests}.values())  # of two with one id the later counts
-    again = {r.id for r in fresh} | withdrawn
+    again = {r.id for r in fresh} | revision.withdrawn
     layers: dict[Layer, LayerPlan] = {}
     reports: list[Report] = []
     moods = moods_of(project.life, plan.track)
@@ -65,7 +78,7 @@ def extend(
     told = plan.reports if head is None else plan.reports[head.reports :]
     for layer in LAYERS:
         old = plan.layers[layer]
-        if layer in leave:
+        if layer in revision.leave:
             layers[layer] = old
             reports += [r for r in told if r.layer == layer and r.request not in again]
             continue

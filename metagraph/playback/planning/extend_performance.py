@@ -10,7 +10,7 @@ from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest
 from metagraph.playback.life.items import StayFrom
 from metagraph.playback.plan import Cue, LayerPlan, Past, Plan, Report
-from metagraph.playback.planner import extend
+from metagraph.playback.planner import Revision, extend
 from metagraph.playback.planning.hearing import heard, owners
 from metagraph.playback.planning.markov import model
 from metagraph.playback.planning.remembering import remember
@@ -48,8 +48,8 @@ def hear(
         else []
     )
     plan = replace(plan, track=found.track)
-    withdrawn = frozenset(found.withdrawn)
-    after = extend(project, plan, fixed, meant.requests, end, stances, idle, withdrawn, leave)
+    revision = Revision(frozenset(found.withdrawn), leave)
+    after = extend(project, plan, fixed, meant.requests, end, stances, idle, revision)
     return replace(after, reports=(*after.reports, *meant.refused)) if meant.refused else after
 
 

@@ -16,7 +16,7 @@ from metagraph.graph.life import Life
 from metagraph.graph.model import Project
 from metagraph.playback import planner
 from metagraph.playback.plan import MetaRequest, Plan
-from metagraph.playback.planner import extend, make_plan
+from metagraph.playback.planner import Revision, extend, make_plan
 from metagraph.playback.planning import plan_head, strand
 from metagraph.playback.planning.strand import Strand
 from tests.posing import pose_at
@@ -93,8 +93,8 @@ def test_whatever_is_asked_meanwhile_and_again(steps: list[Any], seed: int, reme
             for k, (ident, kind, at, length, priority, resume) in enumerate(rows)
         ]  # fmt: skip
         gone = frozenset({"c"} if n % 5 == 4 else ())
-        plan = extend(project, plan, now, wanted, now + 20, withdrawn=gone)
-        whole = from_all(project, whole, now, wanted, now + 20, withdrawn=gone)
+        plan = extend(project, plan, now, wanted, now + 20, revision=Revision(gone))
+        whole = from_all(project, whole, now, wanted, now + 20, revision=Revision(gone))
         assert plan == whole
 
 
@@ -137,8 +137,8 @@ def test_what_is_asked_anew_or_taken_back_long_after_it_played_is_found() -> Non
     while plan.end < 200:
         plan = extend(PROJECT, plan, plan.end - 5, (), plan.end + 20)
     for fresh, gone in (([replace(ask, start=205.0)], frozenset()), ([], frozenset({"long ago"}))):
-        found = extend(PROJECT, plan, 195.0, fresh, 220.0, withdrawn=gone)
-        assert found == from_all(PROJECT, plan, 195.0, fresh, 220.0, withdrawn=gone)
+        found = extend(PROJECT, plan, 195.0, fresh, 220.0, revision=Revision(gone))
+        assert found == from_all(PROJECT, plan, 195.0, fresh, 220.0, revision=Revision(gone))
         assert not any(m.request.id == "long ago" and m.start < 100 for m in found.layers["arms"].metas)
 
 
