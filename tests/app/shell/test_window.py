@@ -324,7 +324,7 @@ def test_a_refused_drop_says_why_and_changes_nothing(drive, folder, monkeypatch)
     monkeypatch.setattr(drive.canvas.acts, "what", noted)
     drive.drag(drive.card("raise"), drive.node("transition"), lambda: bool(seen))
     drive.wait(lambda: drive.canvas._drop is None)
-    assert any(not d.possible and d.words == "choose the stance this transition ends in first" for d in seen)
+    assert any(not d.possible and "ends in" in d.words for d in seen)
     assert drive.document.project is before
     assert count(drive) == steps
     # The same by key, in the status bar.
@@ -417,7 +417,7 @@ def test_many_actions_are_edited_at_once_and_show_what_differs(toys):
     # Transitions: an end that is its own start is refused, and shown as it was.
     drive.session.jump(action=drive.id("rest to up"))
     p._reend(p.ends.findText("rest"))
-    assert "must end in another stance" in drive.told[-1]
+    assert "another stance" in drive.told[-1]
     assert p.ends.currentText() == "up"
 
 
@@ -443,7 +443,7 @@ def test_the_layer_page_sets_weights_rest_and_base_pose(toys):
         drive.library.acts.menu(drive.document.project.clips[wave]), "Use this frame (15) as base pose"
     )
     assert (drive.document.project.base.clip, drive.document.project.base.frame) == (wave, 15)
-    assert drive.preview.base.text() == "Base pose: rest wave rt, frame 15"
+    assert "rest wave rt, frame 15" in drive.preview.base.text()
     assert p.base.currentText() == "rest wave rt"
     assert p.base_frame.value() == 15
     drive.document.undo()

@@ -76,8 +76,7 @@ def test_beside_the_nodes_nothing_can_be_dropped(toy, project, area):
     drop = drop_at(
         project, "arms", toy.id(project, "rest"), None, GraphHit(area), Load(clips=tuple(project.clips)[:1])
     )
-    assert not drop.possible
-    assert drop.words == "drop on one of the nodes"
+    assert not drop.possible and "nodes" in drop.words
 
 
 def test_something_else_than_clips_is_refused_with_what_can_be_dropped(project):
@@ -121,8 +120,7 @@ def test_a_clip_of_another_skeleton_is_refused_by_name(toy, project):
 def test_files_can_be_dropped_before_there_is_any_clip():
     empty, files = Project(), Load(files=("/a/b.bvh", "/a/c.glb"))
     drop = drop_at(empty, "arms", None, None, GraphHit("card"), files)
-    assert drop.possible
-    assert drop.words == "drop 2 files as a new stance"
+    assert drop.possible and "2 files" in drop.words and "new stance" in drop.words
     drop = drop_at(empty, "arms", None, None, NODE["gesture"], files)
     assert not drop.possible
     assert "make a stance first" in drop.words
@@ -133,7 +131,7 @@ def test_actions_move_between_nodes_and_keep_what_was_set(toy, project):
     project = edits.update_actions(project, [beat], tags=("positive",), likelihood=2.0)
     load = Load(actions=(beat,))
     drop = drop_at(project, "arms", rest, up, NODE["fidget"], load)
-    assert drop.words == "drop this action as a fidget of *rest*"
+    assert "fidget" in drop.words and "*rest*" in drop.words
     after = perform(project, "arms", drop, load).action(beat)
     assert (after.kind, after.tags, after.likelihood) == ("fidget", ("positive",), 2.0)
 
@@ -172,7 +170,7 @@ def test_a_transition_cannot_move_to_where_it_ends(toy, project):
         Load(actions=(toy.id(project, "rest to up"),)),
     )
     assert not drop.possible
-    assert "must end in another stance" in drop.words
+    assert "another stance" in drop.words
 
 
 def test_an_action_makes_no_new_stance_but_its_clip_can(toy, project):

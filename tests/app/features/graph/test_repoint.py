@@ -22,11 +22,10 @@ def test_what_letting_go_does_is_said(toy):
     up, far, rest = (toy.id(project, n) for n in ("up", "far", "rest"))
     way = toy.id(project, "rest to up")
     drop = repoint_at(project, [way], GraphHit("chip", far))
-    assert (drop.possible, drop.end, drop.words) == (True, far, "let go and this transition ends in *far*")
+    assert (drop.possible, drop.end) == (True, far) and "*far*" in drop.words
     assert repoint_at(project, [way], GraphHit("chip", up)).words == "already ends in *up*"
-    assert (
-        repoint_at(project, [way], GraphHit("chip", rest)).words == "a transition must end in another stance"
-    )
+    refused = repoint_at(project, [way], GraphHit("chip", rest))
+    assert not refused.possible and "another stance" in refused.words
     assert not repoint_at(project, [way], GraphHit("node", None, "gesture")).possible
     two = [way, toy.id(project, "far to up")]
     assert not repoint_at(project, two, GraphHit("chip", far)).possible, "one of them starts there"
@@ -98,7 +97,7 @@ def test_all_selected_transitions_follow_and_a_stance_that_cannot_be_the_end_is_
     drive.pause(30)
     assert not drive.canvas._drop.possible and drive.canvas._arrow is not None
     QTest.mouseRelease(widget, Qt.MouseButton.LeftButton, pos=drive.chip(drive.id("up"))[1])
-    assert drive.told == ["a transition must end in another stance"]
+    assert len(drive.told) == 1 and "another stance" in drive.told[0]
     assert drive.document.undo_stack.count() == 0
     for way in ways:
         if way not in drive.session.selection.actions:

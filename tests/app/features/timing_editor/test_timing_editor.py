@@ -357,7 +357,7 @@ def kept(editor):
 def test_a_kept_hand_is_dragged_by_its_ends_in_one_step_each(kept):
     count = kept.document.undo_stack.count()
     pull(kept, at(kept, 0.9, "hand 0"), at(kept, 1.1, "hand 0"), ALT, let_go=False)
-    assert kept.view.held == "right hand kept 0.50 to 1.10 s" and kept.contacts()[0].last == 0.9
+    assert "0.50 to 1.10 s" in kept.view.held and kept.contacts()[0].last == 0.9
     QTest.mouseRelease(kept.view, Qt.MouseButton.LeftButton, ALT, at(kept, 1.1, "hand 0"))
     assert kept.contacts()[0].last == pytest.approx(1.1, abs=0.01) and kept.contacts()[0].first == 0.5
     assert kept.view.held == "" and kept.view.stretched is None
