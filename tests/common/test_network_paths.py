@@ -10,7 +10,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from metagraph.common import files, network_paths
+from metagraph.common import network_paths
 from metagraph.common.network_paths import closed, is_closed, leads_away, original, reason
 from metagraph.errors import FileError
 from metagraph.formats.gltf.reader import read_gltf_clips
@@ -86,13 +86,13 @@ def test_a_project_touches_none_of_them_and_saves_them_as_they_were(
 ) -> None:
     path = _project(tmp_path / "a", name)
     touched: list[str] = []
-    handle = files._handle
-    monkeypatch.setattr(files, "_handle", lambda p: touched.append(str(p)) or handle(p))
+    opened = os.open
+    monkeypatch.setattr(os, "open", lambda p, *more, **k: touched.append(str(p)) or opened(p, *more, **k))
     found = open_project(path)
     assert closed_paths(found.project) == (name,)
     assert any("were not opened" in note for note in found.notes)
     assert not any("missing" in note for note in found.notes)
-    assert all(t == str(path) for t in touched)
+    assert touched and all(t == str(path) for t in touched)
     save_project(found.project, path)
     text = path.read_text()
     assert network_paths.FOLDER not in text
@@ -180,8 +180,8 @@ def test_what_climbs_to_another_computer_is_closed_too(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     touched: list[str] = []
-    handle, read_link = files._handle, os.readlink
-    monkeypatch.setattr(files, "_handle", lambda p: touched.append(str(p)) or handle(p))
+    opened, read_link = os.open, os.readlink
+    monkeypatch.setattr(os, "open", lambda p, *more, **k: touched.append(str(p)) or opened(p, *more, **k))
     names = _climbing(tmp_path / "a")
     monkeypatch.setattr(os, "readlink", lambda p: touched.append(str(p)) or read_link(p))
     for name in names:

@@ -228,10 +228,10 @@ def test_a_client_that_stops_reading_is_dropped_and_others_go_on(
             assert len(server.hub.clients) == 1 and server.hub._count == 2
             assert (await say(good, {"do": "nod"}))["state"] in ("planned", "late")
             for _ in range(100):
-                if len(server._sockets) == 1:
+                if server.connections == 1:
                     break
                 await asyncio.sleep(0.02)
-            assert len(server._sockets) == 1
+            assert server.connections == 1
             bad.close()
 
     play(sample, work)

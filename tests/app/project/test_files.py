@@ -599,8 +599,8 @@ def test_recent_projects_are_the_latest_first_and_only_those_that_exist(desk, tm
     places = [tmp_path / f"{n}.metagraph.yaml" for n in range(13)]
     for place in places:
         desk.document.save(place)
-        desk._remember(place)
-    desk._remember(places[5])
+        desk.saver.saved.emit(place, False)
+    desk.saver.saved.emit(places[5], False)
     assert desk.recent()[:2] == [places[5], places[12]]
     assert len(desk.recent()) == 10
     places[12].unlink()
@@ -617,12 +617,12 @@ def test_a_broken_list_of_recent_projects_is_an_empty_one(desk, content):
 def test_a_full_disk_leaves_the_list_of_recent_projects_as_it_was(desk, tmp_path, monkeypatch):
     place = tmp_path / "a.metagraph.yaml"
     desk.document.save(place)
-    desk._remember(place)
+    desk.saver.saved.emit(place, False)
 
     def full(*args):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(os, "fsync", full)
-    desk._remember(tmp_path / "b.metagraph.yaml")
+    desk.saver.saved.emit(tmp_path / "b.metagraph.yaml", False)
     assert desk.recent() == [place]
     assert "could not be written" in desk.words[-1]

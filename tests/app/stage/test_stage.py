@@ -396,7 +396,7 @@ def test_what_was_played_live_is_kept_and_plays_again_as_it_was(live):
     now, played = drive.performance.live.stage.now, drive.performance.shown.plan.layers["arms"].cues
     drive.performance.live.end()
     assert drive.performance.live.last is not None
-    drive.timeline._fill()
+    drive.timeline.more_menu.aboutToShow.emit()
     drive.pick(drive.timeline.more_menu, "Keep what was played live")
     assert drive.timeline.stage.currentText() == "Live session"
     drive.wait(

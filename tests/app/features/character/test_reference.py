@@ -64,12 +64,12 @@ def test_its_offset_is_typed_and_dragged(shown):
 def test_it_stands_behind_the_character_where_that_is_chosen(shown):
     panel = shown.preview
     (beside,) = panel.findChildren(ReferencePicture)
-    assert beside.isVisible() and panel._scene().picture is None
+    assert beside.isVisible() and panel.scene().picture is None
     panel.reference_bar.place.setCurrentIndex(1)
     panel.reference_bar.place.activated.emit(1)
-    assert beside.isHidden() and panel._scene().picture is panel.reference.picture
+    assert beside.isHidden() and panel.scene().picture is panel.reference.picture
     shown.do("no_reference")
-    assert panel._scene().picture is None and panel.reference_bar.isHidden()
+    assert panel.scene().picture is None and panel.reference_bar.isHidden()
 
 
 def test_one_that_is_missing_or_broken_says_so_and_what_to_do(shown, tmp_path):

@@ -63,7 +63,7 @@ def test_an_arrow_dragged_onto_a_stance_ends_there_in_one_step(toys):
     )
     assert drive.document.undo_stack.count() == steps + 1
     assert drive.document.project.action(way).stance == drive.id("rest")
-    assert drive.canvas._arrow is None and drive.canvas._drop is None
+    assert drive.canvas.arrow is None and drive.canvas.drop is None
     drive.document.undo()
     assert drive.document.project.action(way).end_stance == drive.id("up")
 
@@ -95,7 +95,7 @@ def test_all_selected_transitions_follow_and_a_stance_that_cannot_be_the_end_is_
     QTest.mousePress(widget, Qt.MouseButton.LeftButton, pos=start)
     QTest.mouseMove(widget, drive.chip(drive.id("up"))[1])
     drive.pause(30)
-    assert not drive.canvas._drop.possible and drive.canvas._arrow is not None
+    assert not drive.canvas.drop.possible and drive.canvas.arrow is not None
     QTest.mouseRelease(widget, Qt.MouseButton.LeftButton, pos=drive.chip(drive.id("up"))[1])
     assert len(drive.told) == 1 and "another stance" in drive.told[0]
     assert drive.document.undo_stack.count() == 0
@@ -117,9 +117,9 @@ def test_escape_gives_a_drag_up_and_a_click_on_the_arrow_plays(toys):
     QTest.mousePress(widget, Qt.MouseButton.LeftButton, pos=start)
     QTest.mouseMove(widget, drive.chip(drive.id("far"))[1])
     drive.pause(30)
-    assert drive.canvas._drop is not None and "far" in drive.canvas._sentence()
+    assert drive.canvas.drop is not None and "*far*" in drive.canvas.drop.words
     QTest.keyClick(widget, Qt.Key.Key_Escape)
-    assert drive.canvas._drop is None and drive.canvas.hand.gesture is None
+    assert drive.canvas.drop is None and drive.canvas.hand.gesture is None
     QTest.mouseRelease(widget, Qt.MouseButton.LeftButton, pos=drive.chip(drive.id("far"))[1])
     assert drive.document.project.action(way).end_stance == drive.id("up")
     drive.click(head(drive, way))

@@ -10,6 +10,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
+from app.project import watching
 from app.project.autosave import state_folder
 from app.project.kept_maps import keep_map, kept_maps
 from metagraph.motion.joint_map import JointMap, JointPair, fingerprint
@@ -149,7 +150,9 @@ def test_a_map_of_the_user_is_offered_in_another_project(own, folder):
     press(again.leave)
 
 
-def test_saved_and_opened_again_they_are_retargeted_and_followed_when_exported_anew(own, folder, sample):
+def test_saved_and_opened_again_they_are_retargeted_and_followed_when_exported_anew(
+    own, folder, sample, monkeypatch
+):
     from metagraph.formats.gltf.writer import write_glb
 
     drive = own
@@ -163,7 +166,8 @@ def test_saved_and_opened_again_they_are_retargeted_and_followed_when_exported_a
         entry.motion.skeleton == drive.document.project.skeleton
         and entry.motion.brought_from == entry.brought_from
     )
-    drive.watcher._timer.setInterval(100)
+    monkeypatch.setattr(watching, "EVERY", 100)
+    drive.watcher.look()
     drive.pause(500)
     motion = next(iter(sample.clips.values())).motion
     write_glb(folder / "other0.glb", [motion.trimmed(0, 31).renamed("other0")])

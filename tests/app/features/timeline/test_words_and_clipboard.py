@@ -51,7 +51,7 @@ def test_words_stand_under_their_times_with_the_voice(spoken):
     assert "words" in view.sizes.names and spoken.timeline.voices.of("1").wave is not None
     view.each, view.first = 100.0, 0.0
     lane = lanes(view.height(), view.sizes)["words"]
-    assert view._tip(QPointF(view.scale().x(2.4), lane.center().y())) == "'so', 2.20 to 2.60 s"
+    assert view.tip(QPointF(view.scale().x(2.4), lane.center().y())) == "'so', 2.20 to 2.60 s"
     picture = view.grab().toImage()
     at = lambda seconds: picture.pixelColor(int(view.scale().x(seconds)), int(lane.top() + 6))  # noqa: E731
     assert at(2.5) != at(1.5), "where it is said its waveform is seen"

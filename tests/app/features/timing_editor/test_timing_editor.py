@@ -240,9 +240,9 @@ def test_onion_skin_shows_start_stroke_and_end(editor):
     assert sorted(moments) == pytest.approx(sorted([0.1, 1.5, shown.handle("stroke").at]))
     editor.session.transport.scrub(shown.action.clip, 0.7)
     editor.wait(lambda: editor.performance.shown.clip is not None)
-    assert len(editor.preview._scene().actors) == 4
+    assert len(editor.preview.scene().actors) == 4
     editor.panel.onion.click()
-    assert editor.session.onion.skin is None and len(editor.preview._scene().actors) == 1
+    assert editor.session.onion.skin is None and len(editor.preview.scene().actors) == 1
 
 
 def test_many_actions_stand_below_each_other_and_are_moved_by_the_same(editor, toy):
