@@ -258,8 +258,7 @@ def test_what_was_found_is_kept_as_long_as_the_clip(toy: Any) -> None:
     first = of(clip)
     assert of(clip) is first
     assert traits(toy.skeleton, {"hips": 0}, clip) is not first  # other roles, other traits
-    kept = weakref.ref(first)
-    del first
+    kept = weakref.ref(of(clip))
     gc.collect()
     assert kept() is not None and of(clip) is kept()
     del clip

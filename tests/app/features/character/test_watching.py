@@ -245,7 +245,9 @@ def test_each_view_has_its_own_camera_side_and_commands(shown):
     panel = shown.preview
     shown.do("two_views")
     (pane,) = panel.panes.others
-    shown.wait(lambda: pane.view.isVisible() and pane.view.camera.yaw != 0)
+    shown.wait(pane.view.isVisible)
+    panel.view.grab()
+    pane.view.grab()
     first = panel.view.camera
     QTest.mouseClick(pane.view, Qt.MouseButton.LeftButton)
     shown.do("see_back")
