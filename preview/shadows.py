@@ -97,7 +97,7 @@ class Shadows:
         map, 0..1. Near by, what is in the picture has a map of its own.
         """
         axes, (centre, radius) = frame.theme.lamp, _lit(frame)
-        pixels, low, high = _window(frame, axes)
+        pixels, low, high = seen_window(frame, axes)
         if pixels * 2 * radius < NEAR * self._whole.size:
             small = pixels * 2 * radius < SMALL * self._low.size
             self._used = self._low if small else self._whole
@@ -220,7 +220,7 @@ def _lit(frame: Frame) -> tuple[Array, float]:
     return (low + high) / 2, max(0.05, math.dist(low, high) / 2)
 
 
-def _window(frame: Frame, axes: Array) -> tuple[float, Array, Array]:
+def seen_window(frame: Frame, axes: Array) -> tuple[float, Array, Array]:
     """Return how many pixels a metre has where what is seen is nearest, and the part of the lamp's picture
     `[2], [2]`, metres, that shades what is seen. No pixels where nothing is.
     """

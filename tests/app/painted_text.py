@@ -85,12 +85,12 @@ class _Engine(QPaintEngine):
         seen = placed if clip.isNull() else placed.intersected(painter.combinedTransform().mapRect(clip))
         self.found.append(Painted(words.strip(), placed, seen))
 
-    def _nothing(self, *_: Any) -> None:
+    def nothing(self, *_: Any) -> None:
         pass
 
 
 for _name in ["Pixmap", "Image", "Path", "Rects", "Lines", "Ellipse", "Polygon", "Points", "TiledPixmap"]:
-    setattr(_Engine, f"draw{_name}", _Engine._nothing)
+    setattr(_Engine, f"draw{_name}", _Engine.nothing)
 
 
 class _Device(QPaintDevice):

@@ -143,11 +143,11 @@ def settle(window: Any) -> None:
         return [t for t in soon if isValid(t) and t.isActive()]
 
     QTest.qWait(1)
-    while jobs.running or jobs._alive or waiting():
+    while jobs.at_work or waiting():
         for timer in waiting():
             timer.start(0)
         QTest.qWait(1)
-        assert time.monotonic() < deadline, f"at work: {[j.title for j in (*jobs.running, *jobs._alive)]}"
+        assert time.monotonic() < deadline, f"at work: {[j.title for j in jobs.at_work]}"
     for timer, pause in soon.items():
         if isValid(timer):
             timer.setInterval(pause)
@@ -249,8 +249,10 @@ def reset_panels(window: Any) -> None:
     library.chips["all"].click()
     library.narrow()
     canvas.focus = None
-    preview._set_loop(True)
-    preview._set_bones(False)
+    if not preview.session.transport.loop:
+        preview.toggle_loop()
+    if preview.bones:
+        preview.toggle_bones()
     preview.frame_all()
     normal = SPEEDS.index(1.0)
     preview.speed_box.setCurrentIndex(normal)

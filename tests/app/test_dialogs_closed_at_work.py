@@ -30,7 +30,7 @@ WAYS: dict[str, Callable[[QDialog], object]] = {
 
 def _export(dialog, folder: Path) -> None:
     dialog.folder.setText(str(folder / "out"))
-    dialog._name_folder(str(folder / "out"))
+    dialog.folder.textEdited.emit(str(folder / "out"))
     dialog.go.click()
 
 
@@ -93,7 +93,7 @@ def test_a_dialog_is_closed_at_once(toys, told: list[str], tmp_path: Path, name:
     WAYS[way](dialog)
     QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
     drive.wait(lambda: not opened(), 10)
-    drive.wait(lambda: not drive.window.shell.jobs.running and not drive.window.shell.jobs._alive, 90)
+    drive.wait(lambda: not drive.window.shell.jobs.at_work, 90)
     assert not told
     if name == "export":
         drive.wait(lambda: (tmp_path / "out").is_dir(), 10)

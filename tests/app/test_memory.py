@@ -76,8 +76,7 @@ def test_a_dialog_that_was_closed_is_gone_and_hears_nothing_more(drive, tmp_path
             seen += [ref(dialog) for dialog in opened()]
             while opened():
                 opened()[-1].reject()
-        drive.wait(lambda: not drive.jobs.running)  # what they began ends by itself
-        drive.wait(lambda: not drive.jobs._alive)
+        drive.wait(lambda: not drive.jobs.at_work)  # what they began ends by itself
         settled()
         assert len(seen) >= TIMES
         assert not [dialog for dialog in (r() for r in seen) if dialog is not None], name

@@ -199,7 +199,7 @@ class NodeRunner:
                 stderr=subprocess.DEVNULL,
             )
         assert self.process.stdin is not None and self.process.stdout is not None
-        asked = {"runtime": str(folder), "folders": [str(f) for f in _folders()]}
+        asked = {"runtime": str(folder), "folders": [str(f) for f in vector_folders()]}
         self.process.stdin.write(json.dumps(asked).encode() + b"\n")
         self.process.stdin.flush()
         ready, _, _ = select.select([self.process.stdout], [], [], SECONDS)
@@ -249,7 +249,7 @@ class CommandRunner:
                 (self.runtime / edit.path).write_text(before, encoding="utf-8")
 
     def _commands(self) -> list[list[str]]:
-        folders = [str(f) for f in _folders()]
+        folders = [str(f) for f in vector_folders()]
         if self.language == "csharp":
             sources = [
                 str(p) for part in ("Core", "Conformance") for p in (self.runtime / part).rglob("*.cs")
@@ -284,7 +284,7 @@ class CommandRunner:
         pass
 
 
-def _folders() -> list[Path]:
+def vector_folders() -> list[Path]:
     return sorted(p for p in VECTORS.iterdir() if p.is_dir())
 
 

@@ -365,7 +365,7 @@ def test_a_mesh_on_another_skeleton_is_bound_where_joints_match(sample: Project,
     strange = replace(read_character(ROOT / "sample_clips" / "mannequin.glb"), name="strange")
     strange = replace(strange, skeleton=replace(strange.skeleton, names=tuple(names)))
     made = export(project, tmp_path / "left", character=strange)
-    assert any("'strange' is left out" in w and "none of the skeleton's joints" in w for w in made.warnings)
+    assert any("'strange'" in w and "joints" in w for w in made.warnings)
     assert "meshes" not in gltf(made.glb)
 
 

@@ -43,8 +43,8 @@ def test_every_runtime_has_hundreds_of_places_to_change() -> None:
 def test_vectors_notice_a_rule_that_is_changed_and_nothing_else(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    sparse = [f for f in generated_mutants._folders() if f.name == "sparse"]
-    monkeypatch.setattr(generated_mutants, "_folders", lambda: sparse)
+    sparse = [f for f in generated_mutants.vector_folders() if f.name == "sparse"]
+    monkeypatch.setattr(generated_mutants, "vector_folders", lambda: sparse)
     found = [e for e in edits(JS, RUNTIMES / "javascript") if e.path == "replan.js" and e.old == "<="]
     running = runner("javascript", tmp_path)
     try:

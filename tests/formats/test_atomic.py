@@ -12,7 +12,6 @@ from pathlib import Path
 import pytest
 
 from metagraph.errors import FileError
-from metagraph.formats import atomic
 from metagraph.formats.atomic import FORSAKEN, append_line, sweep, synced_together, write_atomically
 from metagraph.formats.locking import process_mark
 from tests.processes import started
@@ -79,8 +78,7 @@ def test_folders_and_links_of_that_name_stay(tmp_path: Path) -> None:
     assert sweep(tmp_path / "nowhere") == []
 
 
-def test_the_first_writing_into_a_folder_sweeps_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(atomic, "_SWEPT", set())
+def test_the_first_writing_into_a_folder_sweeps_it(tmp_path: Path) -> None:
     left = made(tmp_path, left_by(ended()))
     write_atomically(tmp_path / "file", b"x")
     assert not left.exists()

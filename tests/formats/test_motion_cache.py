@@ -116,7 +116,8 @@ def test_what_is_broken_is_read_anew_and_mended(harm: str, folder: Path) -> None
     first = read(CLIP)
     finish()
     (place,) = files(folder)
-    content = bytearray(place.read_bytes())
+    good = place.read_bytes()
+    content = bytearray(good)
     if harm == "a folder":
         place.unlink()
         place.mkdir()
@@ -128,7 +129,7 @@ def test_what_is_broken_is_read_anew_and_mended(harm: str, folder: Path) -> None
     assert_same(first, read(CLIP))
     finish()
     if harm != "a folder":
-        assert_same(first, motion_cache._decoded(place.read_bytes()))
+        assert place.read_bytes() == good
 
 
 def test_a_file_that_names_others_is_never_kept(tmp_path: Path, folder: Path) -> None:

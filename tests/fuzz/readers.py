@@ -202,7 +202,7 @@ def _keypoints() -> dict[str, bytes]:
     return {"a.json": json.dumps(rows).encode(), "b.json": json.dumps(people).encode()}
 
 
-def _readers() -> dict[str, Fuzzed]:
+def every_reader() -> dict[str, Fuzzed]:
     from app.features.lines.line_files import read_lines
     from app.project.pattern_files import read_patterns
     from metagraph.common.pictures import picture_size
@@ -323,7 +323,7 @@ def survives(read: Callable[[Path], object], path: Path) -> None:
 
 def fuzz(name: str, count: int, seed: int, folder: Path) -> Iterator[tuple[bytes, str]]:
     """Yield each of `count` broken files that a reader tripped over, and how."""
-    one = _readers()[name]
+    one = every_reader()[name]
     seeds = one.seeds()
     chance = random.Random(f"{name} {seed}")
     for n in range(count):
@@ -345,7 +345,7 @@ def main(names: str, count: int = 1_000_000, seed: int = 0) -> int:
     files.strict = True
     warnings.simplefilter("error")
     found = 0
-    for name in _readers() if names == "all" else names.split(","):
+    for name in every_reader() if names == "all" else names.split(","):
         begin, own, seen = time.perf_counter(), 0, set[str]()
         with tempfile.TemporaryDirectory() as folder, fbx_readers.batch():
             for data, why in fuzz(name, count, seed, Path(folder)):

@@ -63,7 +63,7 @@ def grid(end: float, intervals: list[tuple[float, float]]) -> str:
 @pytest.mark.parametrize("end", [1e5, 9_999_999])
 def test_a_textgrid_of_a_day_is_no_line(tmp_path: Path, end: float) -> None:
     (tmp_path / "a.TextGrid").write_text(grid(end, [(0, end)]))
-    assert "a line at most 1800 s" in refused(voice_from_phones, tmp_path / "a.TextGrid").cause
+    assert "1800 s" in refused(voice_from_phones, tmp_path / "a.TextGrid").cause
 
 
 def test_intervals_over_each_other_cost_no_more_than_in_turn(tmp_path: Path) -> None:

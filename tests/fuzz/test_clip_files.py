@@ -276,7 +276,7 @@ def test_takes_that_are_too_long_together_are_refused_before_any_is_made(
     document["buffers"] = [{"byteLength": len(body)}]
     path = tmp_path / "bomb.glb"
     path.write_bytes(packed(document, body))
-    with pytest.raises(FileError, match="far more memory than its size warrants"):
+    with pytest.raises(FileError, match="memory"):
         read_gltf_clips(path)
 
 

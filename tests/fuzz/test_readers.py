@@ -13,7 +13,7 @@ from metagraph.formats.fbx import processes as fbx_readers
 from tests.fuzz import readers
 from tests.thorough import THOROUGH
 
-NAMES = tuple(readers._readers())
+NAMES = tuple(readers.every_reader())
 COUNT = 2000 if THOROUGH else 100  # of each reader
 
 
@@ -26,7 +26,7 @@ def test_broken_files_are_read_or_refused_in_words(name: str, tmp_path: Path) ->
 
 @pytest.mark.parametrize("name", NAMES)
 def test_what_was_found_before_is_mended(name: str, tmp_path: Path) -> None:
-    one = readers._readers()[name]
+    one = readers.every_reader()[name]
     for place in sorted((readers.KEPT / name).glob("*")):
         for seed in one.seeds():
             path = tmp_path / f"kept{''.join(Path(seed).suffixes[-2:])}"
@@ -42,11 +42,11 @@ def test_what_a_reader_trips_over_is_found_and_not_hidden(
             raise KeyError("x")
 
     one = readers.Fuzzed(trips, lambda: {"a.x": b"sound"})
-    monkeypatch.setattr(readers, "_readers", lambda: {"broken": one})
+    monkeypatch.setattr(readers, "every_reader", lambda: {"broken": one})
     assert len(list(readers.fuzz("broken", 20, 1, tmp_path))) > 10
 
 
 def test_the_same_seed_makes_the_same_files(tmp_path: Path) -> None:
-    one = readers._readers()["bvh"]
+    one = readers.every_reader()["bvh"]
     made = [readers.mutated(readers.random.Random("x"), list(one.seeds().values()), one) for _ in range(2)]
     assert made[0] == made[1]

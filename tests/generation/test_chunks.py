@@ -28,7 +28,7 @@ def test_components_tell_most_of_what_varies_together():
 
 
 def test_components_of_too_few_rows_are_refused():
-    with pytest.raises(ValueError, match="3 stretches are too few for 3 components"):
+    with pytest.raises(ValueError, match=r"3 stretches .*3 components"):
         vae.principal(np.zeros((3, 9)), 3, "code")
     assert np.isfinite(vae.principal(np.ones((9, 4)), 2, "code")["code.deviation"]).all()
 

@@ -124,5 +124,5 @@ def test_a_layer_adds_a_sum_over_dilated_neighbours_to_what_it_reads(dilation):
 
 def test_too_few_frames_for_a_convolution_are_told():
     w = shaken(tiny("flow-vae"))
-    with pytest.raises(ValueError, match="4 frames are too few for a convolution over 5"):
+    with pytest.raises(ValueError, match=r"4 frames .*5"):
         encoder.encode_all(w, Control(width=8), np.zeros((6, 31), np.float32))

@@ -54,7 +54,7 @@ def test_what_is_unlike_the_model_is_less_likely():
 
 
 def test_models_without_a_flow_and_takes_that_do_not_fit_are_told():
-    with pytest.raises(ValueError, match="matching model has no likelihood"):
+    with pytest.raises(ValueError, match="matching"):
         noise_of(untrained("matching"), np.zeros((3, 78)), HEARD[:3])
     with pytest.raises(ValueError, match="4 poses cannot go with 3"):
         noise_of(untrained(), np.zeros((4, 78)), HEARD[:3])

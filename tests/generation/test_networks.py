@@ -42,11 +42,11 @@ def test_few_joints_have_sizes_too(joints):
 
 
 def test_sizes_that_cannot_be_are_told():
-    with pytest.raises(ValueError, match="read 7 frames, but the window has 31"):
+    with pytest.raises(ValueError, match=r"7 frames.*31"):
         Control(dilations=(1, 2))
     with pytest.raises(ValueError, match="on 78 numbers, not on 35"):
         FlowSizes(code="none", dims=35)
-    with pytest.raises(ValueError, match="cannot be shared by 5 heads"):
+    with pytest.raises(ValueError, match="5 heads"):
         MatchingSizes(heads=5)
     with pytest.raises(ValueError, match="24 numbers have no 32 components"):
         MatchingSizes(pose=6)

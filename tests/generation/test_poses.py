@@ -104,7 +104,7 @@ def test_what_turns_between_two_joints_is_not_lost():
 
 
 def test_a_skeleton_without_hands_is_refused_in_words():
-    with pytest.raises(PoseError, match=r"has no spine, no head, no left upper arm.*Correct its roles"):
+    with pytest.raises(PoseError, match=r"no spine.*Correct"):
         rig_of(column(), {})
 
 
@@ -155,7 +155,7 @@ def test_a_quarter_turn_is_half_way_at_half_time():
 def test_another_skeletons_clip_is_refused():
     other = column()
     clip = Clip("x", other, 30, np.repeat(other.rest_rotations[None], 2, 0), np.zeros((2, 1, 3)))
-    with pytest.raises(PoseError, match=r"'x' has another skeleton: retarget it"):
+    with pytest.raises(PoseError, match=r"'x' .*retarget it"):
         poses_of(rig(), clip, 25.0)
 
 

@@ -185,7 +185,7 @@ def test_one_voice_alone_will_do():
 
 def test_what_cannot_be_sampled_is_told():
     model = MODELS["flow-vae"]
-    with pytest.raises(ValueError, match=r"a temperature is 0 to 1\.2, not 2"):
+    with pytest.raises(ValueError, match=r"1\.2, not 2"):
         Sampler(model, temperature=2)
     with pytest.raises(ValueError, match="whole numbers from 0"):
         Sampler(model, -1)

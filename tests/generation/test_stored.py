@@ -206,7 +206,7 @@ def test_other_members_are_refused(kept, tmp_path, name):
 
 
 def test_a_missing_weight_and_a_missing_card_are_told(kept, tmp_path):
-    with pytest.raises(FileError, match=r"'encode\.0\.bias': a weight is missing"):
+    with pytest.raises(FileError, match=r"'encode\.0\.bias'"):
         read_model(_changed(kept, tmp_path / "x.mgmodel", without=("weights/encode.0.bias.npy",)))
     with pytest.raises(FileError, match=r"holds no model\.json"):
         read_model(_changed(kept, tmp_path / "y.mgmodel", without=("model.json",)))

@@ -43,7 +43,7 @@ def test_a_take_is_as_long_as_the_shorter_of_motion_and_sound():
     assert take.notes == ()
     short = _take(8, samples=np.stack([babble(5, 1), babble(5, 2)]))
     assert len(short.poses) == len(short.features) == 126
-    assert "motion lasts 8.0 s, sound 5.0 s" in short.notes[0]
+    assert "8.0 s" in short.notes[0] and "5.0 s" in short.notes[0]
 
 
 def test_marks_are_what_one_side_moves_with():
@@ -86,7 +86,7 @@ def test_another_skeleton_and_one_that_does_not_move_are_refused():
 
 def test_what_can_be_learned_from_all_the_same_is_told():
     assert "one voice only" in " ".join(_take(samples=babble(12, 1), talk=False).notes)
-    assert "both voices are in one channel" in " ".join(_take(samples=babble(12, 1)).notes)
+    assert "one channel" in " ".join(_take(samples=babble(12, 1)).notes)
     assert "no words" in " ".join(_take(talk=False).notes)
     deaf = np.stack([babble(12, 1), np.zeros(12 * RATE)])
     assert "partner's channel is silent" in " ".join(_take(samples=deaf).notes)
@@ -118,7 +118,7 @@ def test_one_recording_gives_a_block_with_six_seconds_cut_away():
     assert held[0].seconds == pytest.approx(12, abs=0.1)
     gap = held[0].source.start - (learned[0].source.start + learned[0].seconds)
     assert gap == pytest.approx(6, abs=0.05)
-    with pytest.raises(SplitError, match="too short to hold a part of it out"):
+    with pytest.raises(SplitError, match="too short"):
         split([_take(12)])
 
 
@@ -148,7 +148,7 @@ def test_a_mirror_twin_in_the_other_half_fails():
         check_split([take], [twin])
     # Also as another file: it sounds and moves alike.
     stranger = replace(twin, source=Source("flipped", ("other", "files"), mirrored=True))
-    with pytest.raises(SplitError, match="'flipped' is held out, but its mirror twin"):
+    with pytest.raises(SplitError, match=r"'flipped' .*mirror twin"):
         check_split([take], [stranger])
 
 

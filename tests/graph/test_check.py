@@ -112,7 +112,7 @@ def test_base_missing(healthy: Project) -> None:
 
 def test_base_frame(healthy: Project) -> None:
     problem = only(replace(healthy, base=BasePose(healthy.base.clip, 61)), "base-frame")
-    assert "frame 61 of 'rest loop', which ends at 60" in problem.message
+    assert "frame 61 of 'rest loop'" in problem.message and "60" in problem.message
     assert "base-frame" not in codes(replace(healthy, base=BasePose(healthy.base.clip, 60)))
 
 
@@ -144,10 +144,8 @@ def test_base_floats(healthy: Project, toy: Any, up: float, way: str) -> None:
 def test_base_twisted(healthy: Project, toy: Any) -> None:
     project = edits.add_stance(healthy, "body", "stand", [healthy.base.clip])
     project = edits.add_clips(project, [("base.glb", 0, "", lying(toy, 0, 0, np.radians(90)))])
-    assert (
-        "turned 90 degrees from stance 'stand'"
-        in only(edits.set_base(project, entry(project, "base")), "base-twisted").message
-    )
+    problem = only(edits.set_base(project, entry(project, "base")), "base-twisted")
+    assert "90 degrees" in problem.message and "'stand'" in problem.message
 
 
 def test_no_part(healthy: Project) -> None:
@@ -190,7 +188,7 @@ def test_no_start(healthy: Project) -> None:
 @pytest.mark.parametrize("weight", [-0.1, 2.1, float("nan")])
 def test_weight(healthy: Project, weight: float) -> None:
     problem = only(healthy.with_graph(healthy.graphs["arms"].but(weights={"spine": weight})), "weight")
-    assert "arms layer's weight on spine" in problem.message
+    assert "arms layer" in problem.message and "spine" in problem.message
 
 
 def test_lost_stance(healthy: Project, toy: Any) -> None:

@@ -140,12 +140,12 @@ def test_names_of_stances_are_made_different_and_never_empty(toy: Any) -> None:
     "edit", [edits.remove_stance, edits.set_start, lambda p, s: edits.rename_stance(p, s, "x")]
 )
 def test_a_stance_that_is_gone_is_said_to_be_gone(edit: Any, toy: Any) -> None:
-    with pytest.raises(EditError, match="no longer in the project"):
+    with pytest.raises(EditError, match="no longer"):
         edit(toy.project(), "s999")
 
 
 def test_a_clip_that_is_gone_is_said_to_be_gone(toy: Any) -> None:
-    with pytest.raises(EditError, match="no longer in the project"):
+    with pytest.raises(EditError, match="no longer"):
         edits.rename_clip(toy.project(), "c999", "x")
     with pytest.raises(EditError, match="not in this project"):
         edits.set_base(toy.project(), "c999")
@@ -164,23 +164,14 @@ def test_refusals_say_what_to_do(toy: Any) -> None:
     project = toy.project()
     rest, up = toy.id(project, "rest"), toy.id(project, "up")
     assert edits.refusal(project, [], "arms", "gesture", rest) == "nothing to place"
-    assert edits.refusal(project, ["c999"], "arms", "gesture", rest) == "a clip that is not in this project"
-    assert (
-        edits.refusal(project, ["c1"], "head", "gesture", None)
-        == "make a stance first: drop a clip on the middle of the head layer"
-    )
-    assert (
-        edits.refusal(project, ["c1"], "head", "gesture", rest)
-        == "make a stance first: drop a clip on the middle of the head layer"
-    )
-    assert (
-        edits.refusal(project, ["c1"], "arms", "transition", rest)
-        == "choose the stance this transition ends in first"
-    )
-    assert (
-        edits.refusal(project, ["c1"], "arms", "transition", rest, rest)
-        == "a transition must end in another stance"
-    )
+    for clip, layer, kind, stance, end, piece in (
+        ("c999", "arms", "gesture", rest, None, "not in this project"),
+        ("c1", "head", "gesture", None, None, "the head layer"),
+        ("c1", "head", "gesture", rest, None, "the head layer"),
+        ("c1", "arms", "transition", rest, None, "ends in"),
+        ("c1", "arms", "transition", rest, rest, "another stance"),
+    ):
+        assert piece in (edits.refusal(project, [clip], layer, kind, stance, end) or ""), (clip, kind, end)
     assert edits.refusal(project, ["c1"], "arms", "transition", rest, up) is None
     assert edits.refusal(project, ["c1"], "arms", "stance", None) is None
     with pytest.raises(EditError, match="choose the stance"):
@@ -197,7 +188,7 @@ def test_a_clip_of_another_skeleton_is_refused(toy: Any) -> None:
     clip = replace(toy.clip("big"), skeleton=other)
     project = edits.add_clips(toy.project(), [("big.glb", 0, "", clip)])
     words = edits.refusal(project, [list(project.clips)[-1]], "arms", "gesture", toy.id(project, "rest"))
-    assert words == "'big' has another skeleton than this project"
+    assert "'big'" in words and "skeleton" in words
 
 
 def test_a_dropped_clip_gets_blends_of_at_most_a_quarter_and_its_limb_from_its_name(toy: Any) -> None:
@@ -285,7 +276,7 @@ def test_actions_go_to_another_stance_each_keeping_its_kind_and_end(toy: Any) ->
     assert [(a.kind, a.stance, a.end_stance) for n in names if (a := after.action(toy.id(project, n)))] == [
         ("gesture", far, None), ("fidget", far, None), ("transition", far, toy.id(project, "up")),
     ]  # fmt: skip
-    with pytest.raises(EditError, match="must end in another stance"):
+    with pytest.raises(EditError, match="another stance"):
         edits.to_stance(project, [toy.id(project, "rest to up")], toy.id(project, "up"))
 
 
@@ -297,7 +288,7 @@ def test_transitions_get_another_end_and_other_kinds_stay(toy: Any) -> None:
         after.action(toy.id(project, "rest to up")).end_stance == far
         and after.action(toy.id(project, "up yawn")).end_stance is None
     )
-    with pytest.raises(EditError, match="must end in another stance"):
+    with pytest.raises(EditError, match="another stance"):
         edits.set_ends(project, [toy.id(project, "up to far"), toy.id(project, "rest to up")], up)
     assert (
         edits.set_ends(project, [toy.id(project, "up to far")], rest)
@@ -356,7 +347,7 @@ def test_weights_and_frames_are_kept_in_range(toy: Any) -> None:
     assert edits.set_base(project, "c1", 999).base == BasePose("c1", 60)
     assert edits.set_base(project, "c1", -5).base == BasePose("c1", 0)
     assert edits.set_base(project, None, 5).base == BasePose(None, 0)
-    with pytest.raises(EditError, match="no body part 'tail'; there are legs, spine"):
+    with pytest.raises(EditError, match=r"'tail'.*legs, spine"):
         edits.set_weight(project, "arms", "tail", 1)  # type: ignore[arg-type]
 
 

@@ -160,10 +160,8 @@ def test_poses_a_line_cannot_carry_are_refused() -> None:
     number = hub.open(wire, 0.0)
     hub.message(number, '{"do":"hello","id":"h","poses":{"format":"binary"}}')
     hub.give(answered(hub.take()))
-    assert json.loads(wire.texts[0]) == {
-        "id": "h",
-        "error": "poses: this line carries them as json, not as binary",
-    }
+    answer = json.loads(wire.texts[0])
+    assert answer["id"] == "h" and answer["error"].startswith("poses: ")
 
 
 # --- tokens

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from metagraph.graph import edits
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Project
-from metagraph.live import limits
+from metagraph.live import limits, live_session
 from metagraph.live.live_session import LiveSession
 from metagraph.live.messages import Event, Reply, encode
 from metagraph.live.tick_work import Out
@@ -98,8 +98,8 @@ def test_seconds_from_now_count_from_the_tick(session: LiveSession) -> None:
 
 def test_a_reply_says_why_not(session: LiveSession) -> None:
     assert "has no nonsense gesture" in one(session, {"do": "gesture", "tags": ["nonsense"]})["why"]
-    assert "did you mean 'arms crossed'" in one(session, {"do": "stance", "stance": "arms crosed"})["why"]
-    assert "did you mean 'shrug_bt_01'" in one(session, {"do": "action", "action": "shrug_bt_1"})["why"]
+    assert "'arms crossed'" in one(session, {"do": "stance", "stance": "arms crosed"})["why"]
+    assert "'shrug_bt_01'" in one(session, {"do": "action", "action": "shrug_bt_1"})["why"]
     assert one(session, {"do": "say", "line": "nobodys"})["why"].startswith(
         "there is no line 'nobodys'; there are "
     )
@@ -135,7 +135,7 @@ def test_the_same_id_again_replaces_what_was_asked(session: LiveSession) -> None
     one(session, {"do": "nod", "id": "x", "at": 8})
     assert [c.start for c in session.plan.layers["head"].cues] == [8.0]
     first, second = ask(session, {"do": "nod", "id": "x", "at": 5}, {"do": "nod", "id": "x", "at": 6})
-    assert first == {"id": "x", "state": "refused", "why": "asked again under the same id"}
+    assert (first["id"], first["state"]) == ("x", "refused") and "same id" in first["why"]
     assert second["at"] == 6.0
     assert [c.start for c in session.plan.layers["head"].cues] == [6.0]
 
@@ -174,7 +174,7 @@ def test_withdrawing_all_takes_back_ones_own_alone(session: LiveSession) -> None
     assert [c.start for c in session.plan.layers["head"].cues] == [9.0]
     assert not session.plan.track.speeches and not session.plan.track.looks
     assert one(session, {"do": "withdraw"}, client=1) == {"id": "#5", "state": "done", "why": "nothing waits"}
-    assert one(session, {"do": "withdraw", "what": "q"}, client=1)["why"] == "nothing waits under that id"
+    assert one(session, {"do": "withdraw", "what": "q"}, client=1)["why"].startswith("nothing waits under")
 
 
 def test_a_look_without_an_end_can_be_withdrawn_long_after_it_began(session: LiveSession) -> None:
@@ -302,7 +302,7 @@ BLOCK = (
 
 def test_a_block_is_answered_as_a_whole_and_by_behaviour(session: LiveSession) -> None:
     reply = one(session, {"do": "bml", "id": "b", "bml": BLOCK})
-    assert reply["state"] == "planned" and "the character stays where it is" in reply["notes"][0]
+    assert reply["state"] == "planned" and "stays" in reply["notes"][0]
     assert [(p["id"], p["do"], p["state"]) for p in reply["parts"]] == [
         ("s1", "say", "planned"), ("g", "gesture", "planned"), ("h", "shake", "planned"),
     ]  # fmt: skip
@@ -314,10 +314,10 @@ def test_a_block_is_answered_as_a_whole_and_by_behaviour(session: LiveSession) -
 
 def test_a_block_that_cannot_be_read_is_told_with_its_line(session: LiveSession) -> None:
     assert (
-        "line 1: a block has no <!DOCTYPE"
+        "line 1: a block"
         in one(session, {"do": "bml", "bml": '<!DOCTYPE b [<!ENTITY a "x">]><bml/>'})["error"]
     )
-    assert one(session, {"do": "bml", "bml": "<bml/>"})["why"] == "nothing in it was understood"
+    assert "understood" in one(session, {"do": "bml", "bml": "<bml/>"})["why"]
 
 
 def test_one_behaviour_that_cannot_be_met_does_not_spoil_the_others(session: LiveSession) -> None:
@@ -430,7 +430,7 @@ def test_who_asked_far_ahead_is_told_when_the_action_is_chosen(session: LiveSess
 
 
 def test_what_lies_too_far_ahead_is_refused(session: LiveSession) -> None:
-    assert "at: at most 3600 s ahead" in one(session, {"do": "nod", "at": 5000})["why"]
+    assert "at: at most 3600 s" in one(session, {"do": "nod", "at": 5000})["why"]
     assert "duration: at most 3600 s" in one(session, {"do": "gesture", "duration": 9000})["why"]
     assert "in pieces" in one(session, {"do": "say", "text": "x" * 3000})["why"]
 
@@ -439,7 +439,7 @@ def test_a_layer_takes_only_so_many_waiting_requests(session: LiveSession) -> No
     replies = ask(session, *({"do": "gesture"} for _ in range(30)))
     states = [r["state"] for r in replies]
     assert states[:2] == ["planned", "late"] and states.count("refused") > 20
-    assert "as important wait for the arms layer" in replies[-1]["why"]
+    assert "the arms layer" in replies[-1]["why"]
     more = one(session, {"do": "gesture", "priority": 5})
     assert more["state"] in ("planned", "late")
 
@@ -540,7 +540,7 @@ def test_of_a_session_too_long_to_be_kept_the_beginning_is_and_that_is_said(sess
     kept = session.performance("x")
     assert 1 <= len(kept.asks) < 40
     assert max(ask.told or 0 for ask in kept.asks) < kept.length < session.now
-    assert "of 1 are kept: more was asked than is kept of a session" in session.kept_words()
+    assert "of 1 are kept" in session.kept_words()
 
 
 def test_a_session_longer_than_any_performance_is_kept_as_far_as_one_goes(session: LiveSession) -> None:
@@ -548,20 +548,23 @@ def test_a_session_longer_than_any_performance_is_kept_as_far_as_one_goes(sessio
     session.now = a.LONGEST_PERFORMANCE + 600.0
     kept = session.performance("x")
     assert kept.length == a.LONGEST_PERFORMANCE and len(kept.asks) == 1
-    assert session.kept_words() == "only the first 600 minutes of 610 are kept: no performance is longer"
+    assert "600 minutes of 610" in session.kept_words()
     read = msgspec.json.decode(msgspec.json.encode(kept), type=a.Performance)
     assert read == kept
 
 
-def test_gestures_are_looked_at_beforehand_one_a_tick(sample: Project) -> None:
+def test_gestures_are_looked_at_beforehand_one_a_tick(
+    sample: Project, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looked: list[str] = []
+    monkeypatch.setattr(live_session, "phases", lambda _, action: looked.append(action.id))
     session = LiveSession(sample)
-    count = len(session._cold)
-    assert count == sum(x.kind == "gesture" for x in sample.actions())
     events(session, 1.0)
-    assert count - 62 <= len(session._cold) <= count - 58
+    assert 58 <= len(looked) <= 62
     session.warm()
-    assert not session._cold
+    assert sorted(looked) == sorted(x.id for x in sample.actions() if x.kind == "gesture")
     events(session, 1.1)
+    assert len(looked) == len({*looked}), "none twice"
 
 
 def test_an_edited_project_is_played_on(sample: Project) -> None:

@@ -22,7 +22,7 @@ def test_five_hundred_half_open_lines_lock_nobody_out() -> None:
                 async with connect(ready.websocket, open_timeout=2):
                     assert len(server.hub.clients) == 1
                 await asyncio.sleep(0.05)
-            assert len(server._sockets) <= CLIENTS + 3
+            assert server.connections <= CLIENTS + 3
         finally:
             for _, writer in silent:
                 writer.transport.abort()

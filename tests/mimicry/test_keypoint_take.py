@@ -81,7 +81,7 @@ def test_flat_or_single_keypoints_are_refused_with_what_to_do(sample: Project) -
         take_of(one, clip.skeleton, "x")
     blind = whole.confidence.copy()
     blind[:, POINTS.index("left_wrist")] = 0
-    with pytest.raises(KeypointTakeError, match="left wrist was never seen"):
+    with pytest.raises(KeypointTakeError, match="left wrist"):
         take_of(replace(whole, confidence=blind), clip.skeleton, "x")
     ball = Skeleton(("root",), np.array([-1]), np.array([[0, 0, 0, 1.0]]), np.zeros((1, 3)))
     with pytest.raises(KeypointTakeError, match="no hips"):

@@ -62,7 +62,7 @@ def named(project: Project, asks: list[Any]) -> list[tuple[str, str]]:
 def test_without_a_character_or_stances_nothing_can_be_mimicked(somebody: Project) -> None:
     with pytest.raises(ValueError, match="no clips"):
         Mimic(Project())
-    with pytest.raises(ValueError, match="no stance that could be mimicked"):
+    with pytest.raises(ValueError, match="no stance"):
         Mimic(somebody, layers=["body"])
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -70,7 +71,7 @@ def test_bones_as_the_clip_has_them_are_kept() -> None:
 
 @pytest.mark.parametrize("scale", [100.0, 0.01, 1.5])
 def test_another_scale_is_named(scale: float) -> None:
-    with pytest.raises(SkeletonMismatchError, match=r"bones are .* times as long"):
+    with pytest.raises(SkeletonMismatchError, match="times as long"):
         adopt(clip(skeleton(scale=scale)), skeleton())
 
 
@@ -81,26 +82,19 @@ def test_a_joint_of_its_own_is_named() -> None:
         np.tile([0.0, 0, 0, 1], (7, 1)),
         np.concatenate([OFFSETS, [[0, 0, -0.3]]]),
     )
-    assert difference(more, skeleton()) == "the project's skeleton has no joint 'tail'"
+    assert "'tail'" in difference(more, skeleton())
 
 
 def test_other_names_are_said_to_be_other_names() -> None:
     strange = skeleton(tuple(f"bone{i}" for i in range(6)))
-    assert (
-        difference(strange, skeleton())
-        == "its joints have other names (it has 'bone0', the project has 'hips')"
-    )
+    assert re.search("'bone0'.*'hips'", difference(strange, skeleton()))
 
 
 def test_another_hierarchy_is_said_with_both_parents() -> None:
-    assert (
-        difference(skeleton(parents=[-1, 0, 1, 1, 2, 0]), skeleton())
-        == "joint 'hand' hangs on 'head' instead of 'arm'"
-    )
-    assert (
-        difference(skeleton(), skeleton(parents=[-1, 0, 1, 1, -1, 0]))
-        == "joint 'hand' hangs on 'arm' instead of 'nothing'"
-    )
+    found = difference(skeleton(parents=[-1, 0, 1, 1, 2, 0]), skeleton())
+    assert re.search("'hand'.*'head'.*'arm'", found)
+    found = difference(skeleton(), skeleton(parents=[-1, 0, 1, 1, -1, 0]))
+    assert re.search("'hand'.*'arm'.*nothing", found)
 
 
 def test_one_joint_can_be_adopted_by_one_joint() -> None:

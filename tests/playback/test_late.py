@@ -48,8 +48,8 @@ def test_on_time_or_not_at_all_is_refused_with_by_how_much_and_what_it_waits_for
     running = cue_of(plan, "a")
     assert report.outcome == "too-late" and not report.played
     assert report.late > 0.1
-    assert f"would come {report.late:.2f} s late" in report.message
-    assert f"'{running.action.name}', which plays until {running.end:.2f} s" in report.message
+    assert f"{report.late:.2f} s late" in report.message
+    assert f"'{running.action.name}'" in report.message and f"{running.end:.2f} s" in report.message
     assert answers(plan, ["b"])["b"].state == "refused"
 
 
@@ -66,7 +66,7 @@ def test_a_little_late_plays_and_tells_how_late(sample: Project) -> None:
 
 def test_a_stroke_that_its_own_preparation_makes_late_says_so(sample: Project) -> None:
     plan = planned(sample, beat("a", 0.05))
-    assert "it waits for its own preparation" in told(plan, "a")[0].message
+    assert "its own preparation" in told(plan, "a")[0].message
     assert not plan.layers["arms"].cues
 
 

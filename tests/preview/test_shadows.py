@@ -87,11 +87,11 @@ def test_near_by_an_edge_has_no_saw_teeth(offscreen, monkeypatch):
 def test_the_map_near_by_is_of_what_is_seen_alone(offscreen):
     axes = np.stack(np.eye(3)[[0, 2, 1]] * [[1], [1], [-1]])
     close, far = (frame_of(shelf(), c, offscreen) for c in (near(), replace(near(), distance=8.0)))
-    pixels, low, high = shadows._window(close, axes)
-    assert pixels > 10 * shadows._window(far, axes)[0] > 0
+    pixels, low, high = shadows.seen_window(close, axes)
+    assert pixels > 10 * shadows.seen_window(far, axes)[0] > 0
     assert (high - low < 0.6).all() and (low < [-0.13, -0.20]).all() and (high > [-0.13, -0.20]).all()
     away = frame_of(shelf(), replace(near(), target=(9.0, 0.9, 9.0)), offscreen)
-    assert shadows._window(away, axes)[0] == 0, "nothing of it is in the picture"
+    assert shadows.seen_window(away, axes)[0] == 0, "nothing of it is in the picture"
 
 
 @pytest.mark.parametrize("distance", [0.6, 1.5, 2.2, 5.0])
@@ -111,7 +111,7 @@ def test_a_window_keeps_its_size_while_a_body_sways_a_little(offscreen):
     sizes = set()
     for x in np.linspace(0, 0.004, 5):
         frame = frame_of(shelf(), replace(near(), target=(-0.13 + x, 0.9, -0.2)), offscreen)
-        _, low, high = shadows._window(frame, axes)
+        _, low, high = shadows.seen_window(frame, axes)
         sizes.add(tuple((high - low).round(9)))
     assert len(sizes) == 1
 
@@ -141,7 +141,7 @@ def test_who_stands_behind_the_eye_or_round_it_is_no_trouble(offscreen, mannequi
         picture = offscreen.render(Scene((ahead, behind)), camera, NOON, SIZE)
         assert picture.shape == (*SIZE, 4)
     away = frame_of(Scene((behind,)), Camera((0.0, 1.4, 0.0), 0.0, 0.0, 0.5), offscreen)
-    assert shadows._window(away, np.stack(np.eye(3)))[0] == 0
+    assert shadows.seen_window(away, np.stack(np.eye(3)))[0] == 0
 
 
 def test_in_small_pictures_a_body_does_not_shade_itself_in_stripes(

@@ -87,5 +87,5 @@ def test_a_large_video_comes_smaller_and_a_picture_is_a_video_that_stands(tmp_pa
     assert still.at(0.0).shape == (40, 60, 3) and abs(float(still.at(100.0).mean()) - 200) < 4
     still.close()
     (tmp_path / "no.mp4").write_bytes(b"nothing")
-    with pytest.raises(FileError, match="no video that can be read"):
+    with pytest.raises(FileError, match=r"no\.mp4"):
         VideoPictures(tmp_path / "no.mp4")

@@ -102,9 +102,7 @@ def test_a_clip_of_the_face_is_of_the_head_and_masked_to_what_moves(toy: Any) ->
     found = propose(project, sources=("motion",))
     masks = {project.clips[c].name: p.details["mask"] for c, p in found.proposals.items()}
     assert (
-        masks["talk"].value == ("Jaw",)
-        and "only 1 joint of the face moves" in masks["talk"].reason
-        and masks["wave"].value == ()
+        masks["talk"].value == ("Jaw",) and "1 joint of" in masks["talk"].reason and masks["wave"].value == ()
     )
     taken = accept(project, found)
     assert [

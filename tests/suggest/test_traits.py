@@ -5,6 +5,7 @@ clips.
 from __future__ import annotations
 
 import gc
+import weakref
 from pathlib import Path
 from typing import Any
 
@@ -257,10 +258,12 @@ def test_what_was_found_is_kept_as_long_as_the_clip(toy: Any) -> None:
     first = of(clip)
     assert of(clip) is first
     assert traits(toy.skeleton, {"hips": 0}, clip) is not first  # other roles, other traits
-    before = len(module._KNOWN)
+    kept = weakref.ref(of(clip))
+    gc.collect()
+    assert kept() is not None and of(clip) is kept()
     del clip
     gc.collect()
-    assert len(module._KNOWN) < before
+    assert kept() is None
 
 
 def test_many_at_once_are_as_one_by_one(sample: Project) -> None:

@@ -181,7 +181,7 @@ def test_what_is_kept_is_the_largest_set_in_which_every_state_reaches_every_othe
     sets = {frozenset(t for t in out[s] if s in out[t]) for s in range(60)}
     largest = max(len(s) for s in sets)
     if largest < 2:
-        with pytest.raises(SynthesisError, match="raise k or the level"):
+        with pytest.raises(SynthesisError, match="the level"):
             build(states, of_limit(limit), keys)
         return
     kept = build(states, of_limit(limit), keys)

@@ -61,7 +61,7 @@ def test_where_all_is_in_time_or_nothing_may_change_nothing_is_retimed() -> None
     assert retime(np.arange(150), NONE, spoken, want, np.ones(150, bool), 0.0) is None
     assert retime(np.arange(150), NONE, spoken, wanted([], 5.0), np.ones(150, bool)) is None
     for most in (-0.1, 0.51):
-        with pytest.raises(SynthesisError, match="speed may change by 0 to 50%"):
+        with pytest.raises(SynthesisError, match="0 to 50%"):
             retime(np.arange(150), NONE, spoken, want, np.ones(150, bool), most)
         with pytest.raises(SynthesisError, match="speed may change"):
             SoftWish(retime=most)

@@ -106,7 +106,7 @@ def test_words_and_speed_are_told_and_what_is_paid(studio: Studio) -> None:
         "rate",
     ]
     missed = [w for w in report.words if w.known and not w.met]
-    assert report.words and bool(missed) == ("that all words are met" in found.given_up)
+    assert report.words and bool(missed) == any("words" in given_up for given_up in found.given_up)
     assert found.retiming is not None and report.off is not None and report.was is not None
     assert report.off < report.was and "at another speed" in report.told()
     assert report.data()["off"] == report.off
@@ -132,7 +132,7 @@ def test_what_cannot_be_compared_is_told(studio: Studio) -> None:
     for wish, words in ((SoftWish(loudness=1), "sounds"), (SoftWish(rate=1), "transcripts with words")):
         with pytest.raises(SynthesisError, match=f"the takes was said is not known.*{words}"):
             SoftMaterial(wish, studio.states, studio.clips, deaf, 1.0)
-        with pytest.raises(SynthesisError, match="the new speech was said is not known"):
+        with pytest.raises(SynthesisError, match="the new speech was"):
             studio.material(wish).constraints(deaf[0], 0.0, 5.0)
         studio.material(wish).constraints(SpokenTake(()), 0.0, 5.0)  # who says nothing says nothing loudly
     for wrong in ({"loudness": -1.0}, {"rate": float("nan")}, {"price": 1e9}):

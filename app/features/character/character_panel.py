@@ -87,7 +87,7 @@ class PreviewPanel(QWidget):
 
     def _make_view(self, choose: Callable[[], object], may_choose: Callable[[], bool]) -> None:
         """Make the view and what lies over it."""
-        self.view = make_view(self._scene, self)
+        self.view = make_view(self.scene, self)
         self.view.frame_wanted.connect(self.frame_all)
         self.view.setToolTip(MOUSE)
         self.bare = False
@@ -227,7 +227,7 @@ class PreviewPanel(QWidget):
 
     # --- drawing
 
-    def _scene(self) -> Scene:
+    def scene(self) -> Scene:
         """Return what is drawn now; called by the view when it paints."""
         shown, seconds, actors = self.performance.shown, self.session.transport.seconds, []
         for one in shown.everyone:

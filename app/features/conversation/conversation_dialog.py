@@ -212,6 +212,11 @@ class ImportDialog(QDialog):
 
     # --- reading
 
+    @property
+    def busy(self) -> bool:
+        """Whether it reads, or is about to."""
+        return self.job is not None or self._soon.isActive()
+
     def start(self) -> None:
         """Read everything, by the lists as they are; what was being read is not waited for."""
         self._soon.stop()

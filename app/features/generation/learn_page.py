@@ -277,8 +277,13 @@ class LearnPage(Page):
         self.begun.show_begun(begun(folder / FOLDER) if folder is not None and self.run is None else ())
         self._enable()
 
+    @property
+    def busy(self) -> bool:
+        """Whether takes are looked through or a training is prepared."""
+        return self._job is not None
+
     def _enable(self) -> None:
-        busy, training = self._job is not None, self.run is not None
+        busy, training = self.busy, self.run is not None
         ready = self.listing.batch is not None and missing() is None
         for widget in (self.add, self.clear, self.kind, self.how_large, self.minutes, self.name):
             widget.setEnabled(not busy and not training)

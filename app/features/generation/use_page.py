@@ -241,6 +241,10 @@ class UsePage(Page):
 
     # --- jobs
 
+    @property
+    def busy(self) -> bool:
+        return self._job is not None
+
     def _enable(self) -> None:
         free = self._job is None and self.model.currentData() is not None
         self.move_button.setEnabled(free and self.side.count() > 0)

@@ -86,14 +86,14 @@ class Canvas(QWidget):
         self.hand = Hand()
         self.first_rows: dict[Kind, int] = {}  # in sight of scrolled nodes
         self.row_actions: list[QAction] = []  # the window's commands that go into an action's menu
-        self.hover = Hover(session, lambda: self._drop_hit if self._drop is not None else None, self)
+        self.hover = Hover(session, lambda: self._drop_hit if self.drop is not None else None, self)
         self.focus: str | None = None
         self.fresh: tuple[str, ...] = ()  # actions just made by a key
         self.misfits: dict[str, str] = {}
-        self._drop: Drop | None = None
+        self.drop: Drop | None = None  # what letting go of what is dragged would do
         self._drop_hit = NOWHERE
         self._drop_at: QPointF | None = None  # where something is held over it
-        self._arrow: tuple[QPointF, QPointF] | None = None  # of a transition, being dragged
+        self.arrow: tuple[QPointF, QPointF] | None = None  # of a transition, being dragged
         self._layout: Layout | None = None
         self._counted: Once[str] = Once()  # the sentence about the graphs
         self._played: frozenset[str] = frozenset()  # as last drawn
@@ -177,17 +177,17 @@ class Canvas(QWidget):
             chip_pictures=pictures.chips,
             row_pictures=pictures.rows,
             other=self.session.place.other(),
-            drop=self._drop,
+            drop=self.drop,
             drop_hit=self._drop_hit,
             drop_at=self._drop_at,
-            arrow=self._arrow,
+            arrow=self.arrow,
             sentence=self._sentence(),
         )
 
     def _sentence(self) -> str:
         """What a drop outside the nodes would do, else how large the machine is."""
-        if self._drop is not None and self._drop_hit.area in ("chip", "add", "nothing"):
-            words = self._drop.words.replace("*", "")
+        if self.drop is not None and self._drop_hit.area in ("chip", "add", "nothing"):
+            words = self.drop.words.replace("*", "")
             return words[:1].upper() + words[1:]
         project = self.document.project
         return self._counted.of((), (project.graphs,), lambda: sentence(project))
@@ -209,7 +209,7 @@ class Canvas(QWidget):
 
     def point(self, drop: Drop | None, hit: GraphHit, arrow: tuple[QPointF, QPointF] | None) -> None:
         """Show an arrow that is being dragged, and what letting it go would do; or none any more."""
-        self._drop, self._drop_hit, self._arrow = drop, hit, arrow
+        self.drop, self._drop_hit, self.arrow = drop, hit, arrow
         self.update()
 
     def stop(self) -> None:
@@ -336,8 +336,8 @@ class Canvas(QWidget):
         if hit != self._drop_hit and hit.area == "chip":
             self.hover.timer.start()
         self._drop_hit, self._drop_at = hit, at
-        self._drop = self.acts.what(hit, load_of(event.mimeData()))
-        if self._drop.possible:
+        self.drop = self.acts.what(hit, load_of(event.mimeData()))
+        if self.drop.possible:
             move, copy = Qt.DropAction.MoveAction, Qt.DropAction.CopyAction
             event.setDropAction(move if event.possibleActions() & move else copy)
             event.accept()
@@ -349,7 +349,7 @@ class Canvas(QWidget):
         self._end_drag()
 
     def _end_drag(self) -> None:
-        self._drop, self._drop_hit, self._drop_at = None, NOWHERE, None
+        self.drop, self._drop_hit, self._drop_at = None, NOWHERE, None
         self.hover.timer.stop()
         self.update()
 

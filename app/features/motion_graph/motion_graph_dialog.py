@@ -201,6 +201,11 @@ class MotionGraphDialog(QDialog):
             row.addWidget(widget)
         return row
 
+    @property
+    def busy(self) -> bool:
+        """Whether something is worked out, or is about to be."""
+        return self._job is not None or self._soon.isActive()
+
     def _leave(self) -> None:
         """Another project comes: what is being made for the one before is not for it."""
         if self._job is not None:

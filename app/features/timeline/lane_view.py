@@ -411,7 +411,7 @@ class Lanes(LaneSpan):
 
     def event(self, event: QEvent) -> bool:
         if isinstance(event, QHelpEvent):
-            QToolTip.showText(event.globalPos(), self._tip(QPointF(event.pos())), self)
+            QToolTip.showText(event.globalPos(), self.tip(QPointF(event.pos())), self)
             return True
         asked = event.type() == QKeyEvent.Type.ShortcutOverride
         if asked and isinstance(event, QKeyEvent) and self.keys.wants(event):
@@ -419,5 +419,5 @@ class Lanes(LaneSpan):
             return True
         return super().event(event)
 
-    def _tip(self, at: QPointF) -> str:
+    def tip(self, at: QPointF) -> str:
         return tip_at(self, at)

@@ -19,7 +19,7 @@ AT_ONCE = 1 << 18  # numbers that are worked on together: short clips by themsel
 # Which frames to keep is most of the time of an export, and the same when it is written again, or for another
 # engine.
 _KNOWN: dict[tuple[bytes, tuple[int, ...], float, bool], list[Array]] = {}
-_MOST = 1000  # tracks of clips that are remembered, some 10 kB each
+MOST = 1000  # tracks of clips that are remembered, some 10 kB each
 
 
 def kept_frames(many: Sequence[Array], tolerance: float, turning: bool) -> list[list[Array]]:
@@ -38,7 +38,7 @@ def kept_frames(many: Sequence[Array], tolerance: float, turning: bool) -> list[
         made = _thinned([missing[key] for key in some], tolerance, turning)
         found.update(zip(some, made, strict=True))
     _KNOWN.update(found)  # the last used last
-    while len(_KNOWN) > _MOST:
+    while len(_KNOWN) > MOST:
         _KNOWN.pop(next(iter(_KNOWN)), None)
     return [found[key] for key in keys]
 

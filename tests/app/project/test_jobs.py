@@ -7,6 +7,7 @@ import threading
 import weakref
 
 import pytest
+from PySide6.QtCore import QThreadPool
 
 from app.project.jobs import Jobs
 
@@ -92,7 +93,8 @@ def test_a_result_already_on_its_way_is_not_delivered_after_cancelling(jobs, qtb
 
     job = jobs.start("work", work, seen.append)
     assert finished.wait(10)
-    jobs._pool.waitForDone(5000)  # the result waits in this thread's queue
+    for pool in jobs.findChildren(QThreadPool):
+        pool.waitForDone(5000)  # the result waits in this thread's queue
     job.cancel()
     qtbot.waitUntil(lambda: not jobs.running)
     assert seen == []

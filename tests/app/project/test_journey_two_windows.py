@@ -157,8 +157,8 @@ def test_the_second_window_says_who_has_it_and_takes_over_what_a_killed_one_left
 
         second = start()
         question = second.tells("asks")
-        assert "show.metagraph.yaml is open in another window" in question
-        assert f"By {getpass.getuser()} on {os.uname().nodename}, since" in question
+        assert "show.metagraph.yaml" in question
+        assert f"{getpass.getuser()} on {os.uname().nodename}" in question
         second.do("click Open read-only")
         assert second.tells("opened") == "show[*] (read-only) - Metagraph 1"
         second.do("edit 6")

@@ -116,7 +116,7 @@ def test_a_file_that_was_destroyed_offers_its_edits_at_once(desk, saved, qtbot, 
     crashed(desk, saved, qtbot)
     saved.write_bytes(content)
     assert recovered(desk, qtbot, lambda: desk.open(saved)) == 8
-    assert "cannot be read any more" in desk.asked[0]
+    assert saved.name in desk.asked[0]
 
 
 def test_a_renamed_file_finds_its_edits(desk, saved, qtbot):
@@ -168,7 +168,7 @@ def test_a_folder_that_is_gone_leaves_nothing_to_offer_and_no_error(desk, saved,
     shutil.rmtree(saved.parent)
     desk.recover()
     qtbot.waitUntil(lambda: desk.idle() and bool(desk.words))
-    assert desk.words[-1] == "There is nothing to recover."
+    assert "nothing to recover" in desk.words[-1]
 
 
 # --- damage

@@ -22,11 +22,11 @@ def opened(drive, toy, tmp_path, monkeypatch):
     from metagraph.graph import edits
 
     monkeypatch.setattr(watching, "EVERY", 100)
-    drive.watcher._timer.setInterval(100)
     for name, swing in (("rest", 0.05), ("wave", 0.6)):
         write_glb(tmp_path / f"{name}.glb", [toy.clip(name, 1.0, swing=swing)])
     drive.importing.import_paths([str(tmp_path)])
     drive.wait(lambda: len(drive.document.project.clips) == 2)
+    drive.watcher.look()  # and every tenth of a second from now on
     ids = {clip.name: clip.id for clip in drive.document.project.clips.values()}
     drive.document.edit("Stance", lambda p: edits.add_stance(p, "arms", "rest", [ids["rest"]]))
     stance = next(iter(drive.document.project.graphs["arms"].stances))

@@ -16,6 +16,7 @@ from PySide6.QtWidgets import (
     QInputDialog,
     QLineEdit,
     QMessageBox,
+    QPushButton,
     QSlider,
     QSpinBox,
     QToolButton,
@@ -50,6 +51,12 @@ def folder(toy, tmp_path):
         )
         write_bvh(clip, place / f"{name}.bvh")
     return place
+
+
+def activate(box: QComboBox, place: int) -> None:
+    """Choose an entry as a user does."""
+    box.setCurrentIndex(place)
+    box.activated.emit(place)
 
 
 def count(drive) -> int:
@@ -323,8 +330,8 @@ def test_a_refused_drop_says_why_and_changes_nothing(drive, folder, monkeypatch)
 
     monkeypatch.setattr(drive.canvas.acts, "what", noted)
     drive.drag(drive.card("raise"), drive.node("transition"), lambda: bool(seen))
-    drive.wait(lambda: drive.canvas._drop is None)
-    assert any(not d.possible and d.words == "choose the stance this transition ends in first" for d in seen)
+    drive.wait(lambda: drive.canvas.drop is None)
+    assert any(not d.possible and "ends in" in d.words for d in seen)
     assert drive.document.project is before
     assert count(drive) == steps
     # The same by key, in the status bar.
@@ -401,7 +408,7 @@ def test_many_actions_are_edited_at_once_and_show_what_differs(toys):
     assert both(lambda a: a.tags) == [("greeting", "positive")] * 2
     p.likelihood.stepBy(-1)
     assert both(lambda a: a.likelihood) == [0.9, 0.9]
-    p._restance(p.stance.findText("up"))
+    activate(p.stance, p.stance.findText("up"))
     assert both(lambda a: a.stance) == [drive.id("up")] * 2
     assert drive.session.place.stance() == drive.id("up")
     # One alone: numbers out of the clip are kept in it, and said.
@@ -416,8 +423,8 @@ def test_many_actions_are_edited_at_once_and_show_what_differs(toys):
     assert p.blend_out.text() == "0.00 s"
     # Transitions: an end that is its own start is refused, and shown as it was.
     drive.session.jump(action=drive.id("rest to up"))
-    p._reend(p.ends.findText("rest"))
-    assert "must end in another stance" in drive.told[-1]
+    activate(p.ends, p.ends.findText("rest"))
+    assert "another stance" in drive.told[-1]
     assert p.ends.currentText() == "up"
 
 
@@ -431,7 +438,7 @@ def test_the_layer_page_sets_weights_rest_and_base_pose(toys):
     assert p.weights["head"].text() == "0.00"
     p.gap.setValue(4.0)
     assert drive.document.project.markov["arms"].gap == 4.0
-    p._set_base(0)
+    activate(p.base, 0)
     assert drive.document.project.base.clip is None
     assert not p.base_frame.isEnabled()
     # From the clip being looked at, this frame.
@@ -443,7 +450,7 @@ def test_the_layer_page_sets_weights_rest_and_base_pose(toys):
         drive.library.acts.menu(drive.document.project.clips[wave]), "Use this frame (15) as base pose"
     )
     assert (drive.document.project.base.clip, drive.document.project.base.frame) == (wave, 15)
-    assert drive.preview.base.text() == "Base pose: rest wave rt, frame 15"
+    assert "rest wave rt, frame 15" in drive.preview.base.text()
     assert p.base.currentText() == "rest wave rt"
     assert p.base_frame.value() == 15
     drive.document.undo()
@@ -607,7 +614,7 @@ def test_an_actions_joints_are_ticked_in_a_tree(toys):
     drive.session.jump(action=drive.id("rest beat lf"))
     drive.properties.action.joints.click()
     dialog = drive.window.findChild(MaskDialog)
-    dialog._all(False)
+    next(b for b in dialog.findChildren(QPushButton) if b.text() == "&None").click()
     dialog.accept()
     assert "at least one joint" in drive.told[-1]
     dialog.items["LeftUpperArm"].setCheckState(0, Qt.CheckState.Checked)

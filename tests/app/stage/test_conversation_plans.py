@@ -73,10 +73,10 @@ def staged(drive, talking):
 
 
 def test_both_are_seen_each_on_its_place_and_the_camera_sees_both(staged):
-    staged.wait(lambda: len(staged.preview._scene().actors) == 2)
-    low, high = staged.preview._scene().bounds()
+    staged.wait(lambda: len(staged.preview.scene().actors) == 2)
+    low, high = staged.preview.scene().bounds()
     assert high[0] - low[0] > 1.3
-    scene = staged.preview._scene()
+    scene = staged.preview.scene()
     assert scene.actors[0].positions[..., 0].mean() < 0 < scene.actors[1].positions[..., 0].mean()
 
 
@@ -89,7 +89,7 @@ def test_the_timeline_shows_one_sides_plan_and_the_other_when_it_is_chosen(stage
     QTest.keyClick(staged.timeline.stage, Qt.Key.Key_Down)
     staged.wait(lambda: staged.performance.shown.side == 1)
     assert [a.stroke for a in staged.performance.asks if isinstance(a, Gesture)] == [5.0]
-    assert staged.preview._scene().actors[0].positions[..., 0].mean() < 0, "nobody moves to another place"
+    assert staged.preview.scene().actors[0].positions[..., 0].mean() < 0, "nobody moves to another place"
 
 
 def test_improvised_takes_the_conversation_off_stage(staged):
@@ -196,7 +196,7 @@ def test_the_characters_of_both_are_drawn(staged):
     )
 
     def drawn() -> set[str]:
-        figures = [a.figure for a in staged.preview._scene().actors]
+        figures = [a.figure for a in staged.preview.scene().actors]
         return {mesh for f in figures if isinstance(f, SkinnedFigure) for mesh in f.meshes}
 
     staged.wait(lambda: drawn() == {"Ada", "Mannequin"})

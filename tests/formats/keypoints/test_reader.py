@@ -83,26 +83,26 @@ def upright(found: Keypoints) -> None:
 @pytest.mark.parametrize(
     ("data", "words"),
     [
-        (b"", "it is not JSON"),
-        (b"nonsense", "it is not JSON"),
-        (b"\xff\xfe\x00", "it is not JSON"),
+        (b"", "not JSON"),
+        (b"nonsense", "not JSON"),
+        (b"\xff\xfe\x00", "not JSON"),
         (b"[" * 100000, "nests too deep"),
-        ("12", "neither an object nor a list"),
-        ("[]", "there are no frames in it"),
-        ("{}", "it holds no keypoints; it has nothing"),
-        ({"cats": 1, "dogs": 2}, "it holds no keypoints; it has cats, dogs"),
-        ([1, 2, 3], "frame 0: it is no frame"),
-        ({"people": 3}, "'people' is not a list of people"),
-        ({"people": [4]}, "'people' is not a list of people"),
-        ({"people": []}, "1 frame: nobody is in any of its frames"),
-        (openpose([[1.0, 2.0, 0.5]] * 7), "7 points are none of the layouts that are known: 17 (coco)"),
+        ("12", "neither an object"),
+        ("[]", "no frames"),
+        ("{}", "it has nothing"),
+        ({"cats": 1, "dogs": 2}, "cats, dogs"),
+        ([1, 2, 3], "frame 0: "),
+        ({"people": 3}, "'people' is not a list"),
+        ({"people": [4]}, "'people' is not a list"),
+        ({"people": []}, "1 frame: nobody"),
+        (openpose([[1.0, 2.0, 0.5]] * 7), "7 points "),
         ({"landmarks": [{"x": 1, "y": 2}] * 21}, "21 points are none"),
         ({"landmarks": 5}, "not a list"),
         ({"landmarks": "x" * 33}, "not a list"),
         ({"landmarks": [["a", "b", "c"]] * 33}, "33 points are none"),
-        ({"landmarks": [[1, "b", 2]] * 33}, "which are not all numbers"),
-        ({"landmarks": [{"x": True, "y": 1}] * 33}, "which are not all numbers"),
-        ([{"t": "soon", "landmarks": []}], "its time is 'soon', not a number"),
+        ({"landmarks": [[1, "b", 2]] * 33}, "not all numbers"),
+        ({"landmarks": [{"x": True, "y": 1}] * 33}, "not all numbers"),
+        ([{"t": "soon", "landmarks": []}], "'soon', not a number"),
         ({"fps": "many", "frames": []}, "fps is 'many'"),
         ({"fps": 0, "frames": []}, "fps is '0'"),
         ({"width": -3, "frames": []}, "width is '-3'"),
@@ -117,7 +117,7 @@ def test_what_cannot_be_read_says_where_why_and_what_to_do(read: Any, data: Any,
 
 
 def test_a_file_that_is_not_there_says_so(tmp_path: Path) -> None:
-    with pytest.raises(FileError, match=r"cannot be read \(No such file"):
+    with pytest.raises(FileError, match=r"none\.json"):
         read_keypoints(tmp_path / "none.json")
 
 
@@ -167,14 +167,13 @@ def test_a_folder_is_read_in_the_order_of_its_numbers_with_gaps(tmp_path: Path) 
     assert found.times == pytest.approx([0, 0.2, 9.3])
     nose = found.points[:, 0, 0]
     assert nose.tolist() == [7, 9, 100]
-    assert read_keypoints(tmp_path).notes == (
-        "how many frames a second there are is not said; 30 were taken",
-    )
+    (note,) = read_keypoints(tmp_path).notes
+    assert "frames a second" in note and "30" in note
 
 
 def test_a_broken_frame_in_a_folder_is_named(tmp_path: Path) -> None:
     (tmp_path / "a_0_keypoints.json").write_text("{")
-    with pytest.raises(FileError, match=r"a_0_keypoints\.json: it is not JSON"):
+    with pytest.raises(FileError, match=r"a_0_keypoints\.json: "):
         read_keypoints(tmp_path)
 
 
@@ -197,7 +196,9 @@ def test_three_dimensions_are_read_where_they_are_and_turned_to_the_camera(read:
     assert found.points[0] == pytest.approx(figure("openpose body_25"))
     up = {"people": [{"pose_keypoints_3d": flat([[*p, 0.8] for p in figure("openpose body_25")])}]}
     other = read([up])
-    assert other.points[0] == pytest.approx(found.points[0]) and "y grows upwards in it" in other.notes
+    assert other.points[0] == pytest.approx(found.points[0]) and any(
+        "upwards" in note for note in other.notes
+    )
 
 
 def test_frames_in_which_nobody_is_are_kept_with_nobody_in_them(read: Any) -> None:
@@ -270,7 +271,7 @@ def test_times_are_seconds_whatever_they_are_counted_in(read: Any, unit: float, 
 def test_times_that_do_not_ascend_are_left_out_with_a_note(read: Any) -> None:
     found = read([{"t": t, "worldLandmarks": marks()} for t in (0, 0.1, 0.1, 0.05, 0.2)])
     assert found.times == pytest.approx([0, 0.1, 0.2])
-    assert "2 frames left out that came no later than the one before" in found.notes
+    assert any(note.startswith("2 frames left out") for note in found.notes)
 
 
 def test_what_is_null_was_not_found(read: Any) -> None:

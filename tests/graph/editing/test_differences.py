@@ -57,9 +57,8 @@ def test_timing_is_told_by_its_own_fields(toy) -> None:
     before = toy.project()
     action = before.action(beat(toy, before))
     after = edits.update_actions(before, [action.id], timing=replace(action.timing, start=0.1, end=0.5))
-    assert differences(before, after) == [
-        "Gesture 'rest beat lf' (arms) changed: start 0 → 0.1, end none → 0.5"
-    ]
+    (line,) = differences(before, after)
+    assert all(piece in line for piece in ("'rest beat lf' (arms)", "start 0 → 0.1, end none → 0.5"))
 
 
 def test_clips_that_came_and_went_are_named(toy) -> None:

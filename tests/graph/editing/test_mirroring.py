@@ -44,9 +44,9 @@ def test_nothing_to_mirror_is_said(toy: Any) -> None:
 
 def test_an_action_that_is_gone_is_said(toy: Any) -> None:
     project = toy.project()
-    with pytest.raises(EditError, match="no longer in the project"):
+    with pytest.raises(EditError, match="no longer"):
         twin_clips(project, ["a999"])
-    with pytest.raises(EditError, match="no longer in the project"):
+    with pytest.raises(EditError, match="no longer"):
         place_twins(project, {"a999": "c1"})
 
 
@@ -60,9 +60,7 @@ def test_a_motion_that_is_the_same_on_both_sides_has_no_twin(toy: Any) -> None:
     action = project.action(ident)
     assert action is not None
     project = edits.with_motions(project, {action.clip: still})
-    with pytest.raises(
-        EditError, match=r"'rest beat lf' has no side: it is within 0.0 cm of its mirror image"
-    ):
+    with pytest.raises(EditError, match=r"'rest beat lf' .*0\.0 cm"):
         twin_clips(project, [ident])
 
 
@@ -71,7 +69,7 @@ def test_a_clip_whose_file_is_missing_is_said(toy: Any) -> None:
     ident = toy.id(project, "rest wave rt")
     clip = project.action(ident).clip  # type: ignore[union-attr]
     project = replace(project, clips={**project.clips, clip: replace(project.clips[clip], motion=None)})
-    with pytest.raises(EditError, match="'rest wave rt' cannot be mirrored: its clip's file is missing"):
+    with pytest.raises(EditError, match=r"'rest wave rt' .*missing"):
         twin_clips(project, [ident])
 
 

@@ -138,7 +138,7 @@ def test_a_state_behind_another_belongs_to_the_same_stance() -> None:
 def test_what_nothing_joins_to_a_loop_is_left_out_and_that_is_said() -> None:
     project, _ = drawn(("stand",), "stand>wave", "wave>stand!", "nod>look!")
     assert set(kinds(as_meta(project)[0])) == {"stand", "wave"}
-    assert "2 states that no link joins to a loop: left out" in differences(project)
+    assert any(words.startswith("2 states ") for words in differences(project))
 
 
 def test_without_any_loop_the_start_is_the_stance() -> None:

@@ -287,7 +287,7 @@ def test_rests_are_what_lies_between_and_overlaps_are_none() -> None:
 
 
 def test_nothing_annotated_is_told() -> None:
-    with pytest.raises(ValueError, match="nothing of the body layer was annotated"):
+    with pytest.raises(ValueError, match="the body layer"):
         learn("body", [[], []])
 
 

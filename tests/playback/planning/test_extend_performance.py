@@ -183,9 +183,9 @@ def test_words_nobody_knows_are_refused_with_a_hint(sample: Project) -> None:
         [a.Go(id="g", stance="arms crosed"), a.Play(id="p", action="shrug"), a.Say(id="s", line="279")],
         5,
     )
-    assert "did you mean 'arms crossed'" in answer(plan, "g").why
+    assert "'arms crossed'" in answer(plan, "g").why
     assert "shrug" in answer(plan, "p").why
-    assert answer(plan, "s").why == "there is no line '279'; there are hello, happy, maybe, you_first"
+    assert "'279'" in answer(plan, "s").why and "hello, happy, maybe, you_first" in answer(plan, "s").why
 
 
 def test_going_where_one_is_is_done_already(sample: Project) -> None:

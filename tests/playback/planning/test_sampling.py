@@ -86,15 +86,12 @@ def test_what_is_not_there_is_reported_with_where_there_is_one(project: Project,
     project = edits.update_actions(project, [toy.id(project, "up beat")], tags=("rare",))
     plan, whole = arms(project, ask("r", 1, tags=("rare",)))
     assert not plan.cues and whole.reports[0].outcome == "no-candidate"
-    assert whole.reports[0].message == "stance 'rest' has no rare gesture; there is one in 'up'"
-    assert (
-        arms(project, ask("r", 1, tags=("none",)))[1].reports[0].message
-        == "stance 'rest' has no none gesture"
-    )
-    assert (
-        arms(project, ask("r", 1, limb="right", kind="fidget"))[1].reports[0].message
-        == "stance 'rest' has no right fidget; another will do"
-    )
+    words = whole.reports[0].message
+    assert all(piece in words for piece in ("'rest'", "rare gesture", "'up'"))
+    words = arms(project, ask("r", 1, tags=("none",)))[1].reports[0].message
+    assert "'rest'" in words and "none gesture" in words and "'up'" not in words
+    words = arms(project, ask("r", 1, limb="right", kind="fidget"))[1].reports[0].message
+    assert "'rest'" in words and "right fidget" in words
     made, told = arms(project, ask("r", 1, limb="right", kind="fidget"))
     assert [c.action.kind for c in made.cues] == ["fidget"] and told.reports[0].played
 
@@ -185,7 +182,7 @@ def test_case_2_only_what_fits_before_something_more_important_is_drawn(project:
 def test_case_2_where_nothing_fits_the_meta_action_is_discarded_and_reported(project: Project) -> None:
     plan, whole = arms(project, ask("a", 1, 0.5), ask("king", 1.5, priority=2))
     assert [c.meta for c in plan.cues] == ["king"] and outcomes(whole) == {"a": "no-room"}
-    assert whole.reports[0].message == "nothing fits into the 0.50 s before something more important"
+    assert "0.50 s" in whole.reports[0].message
 
 
 def test_case_3_what_the_clip_covers_wholly_is_discarded_and_reported(project: Project, toy: Any) -> None:
@@ -413,7 +410,7 @@ def test_what_is_wanted_once_waits_for_a_longer_action_and_what_is_wanted_then_i
     )
     assert [(c.meta, round(c.start, 3)) for c in plan.cues] == [("a", 1.0), ("once", 3.4)]
     assert outcomes(whole)["once"] == "queued" and outcomes(whole)["then"] == "covered"
-    assert "waits 2.00 s for 'rest long'" in next(r.message for r in whole.reports if r.outcome == "queued")
+    assert "2.00 s for 'rest long'" in next(r.message for r in whole.reports if r.outcome == "queued")
 
 
 def test_what_would_wait_too_long_behind_an_action_is_dropped(project: Project, toy: Any) -> None:

@@ -46,7 +46,7 @@ def test_an_exhibit_is_found_by_its_name_and_by_its_paper() -> None:
     assert [e.name for e in chosen(["ratings", "growth"])] == ["growth", "ratings"]
     assert {e.paper for e in chosen(["generator"])} == {"generator"}
     assert len(chosen(["growth", "meta-graph", "growth"])) == len(chosen(["meta-graph"]))
-    with pytest.raises(ValueError, match="there is no exhibit 'grwth'"):
+    with pytest.raises(ValueError, match="'grwth'"):
         chosen(["grwth"])
 
 
@@ -84,7 +84,7 @@ def test_clips_that_are_used_twice_are_wired_once_and_that_is_told(few: Path) ->
     twice = place(project, [clip], "arms", "fidget", stance, None)
     assert len(list(once(twice).actions())) == len(list(project.actions()))
     shown = hours(Material(twice))
-    assert "1 further uses of the same clips left out" in shown.material and shown.says
+    assert "1 further uses" in shown.material and shown.says
 
 
 @pytest.mark.parametrize("exhibit", EXHIBITS, ids=lambda e: e.name)
@@ -106,7 +106,7 @@ def test_of_somebodys_takes_each_exhibit_is_made(
         monkeypatch.setattr(searching, "SCARCE", (Scarcity("few", 2, 20.0),))
     shown = exhibit.make(Material(sample, talks, "two talks"))
     if exhibit.needs == "model":
-        assert "there is no learned generator" in shown.missing
+        assert "generator" in shown.missing
         return
     assert shown.says and shown.parts and not shown.missing
     assert "two talks" in shown.material or exhibit.needs != "takes" or exhibit.name == "competing"
@@ -129,10 +129,10 @@ def test_a_side_nobody_recorded_and_one_take_alone_spoil_nothing(
     )  # fmt: skip
     assert [a.name for a in Material(sample, named).actors] == ["side 1", "Speaker 2"]
     none = Material(sample, (replace(talks[0], clips=(None, None)),))
-    with pytest.raises(ValueError, match="none of these conversations has motion"):
+    with pytest.raises(ValueError, match="motion"):
         _ = none.actors
     alone = Material(sample, talks[:1])
-    assert "nothing can be held out" in searching.success(alone).missing
+    assert "be held out" in searching.success(alone).missing
     assert "cannot be held out" in searching.search(alone).missing
 
 
@@ -149,7 +149,8 @@ def test_takes_of_another_figure_are_retargeted_before_a_model_is_judged_on_them
     material = Material(sample, (talk,), "one talk", SHIPPED)
     shown = generated.distance(material)
     assert not shown.missing and shown.numbers["wrists"]["recorded"] > 0
-    assert material.notes == ["1 takes were retargeted onto the model's figure to be judged"]
+    (note,) = material.notes
+    assert note.startswith("1 takes ") and "retargeted" in note
     plain = generated.distance(Material(sample, (replace(talk, clips=(clip, None)),), "one talk", SHIPPED))
     assert shown.numbers["wrists"]["recorded"] == pytest.approx(plain.numbers["wrists"]["recorded"], rel=0.05)
 

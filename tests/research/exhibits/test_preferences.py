@@ -9,9 +9,9 @@ from metagraph.research.exhibits.preferences import binomial, preferences, two_s
 
 def test_no_answers_and_more_than_all_are_refused() -> None:
     for chosen, n in ((0, 0), (-1, 5), (6, 5)):
-        with pytest.raises(ValueError, match="of one answer or more"):
+        with pytest.raises(ValueError, match="one answer"):
             binomial(chosen, n)
-        with pytest.raises(ValueError, match="of one answer or more"):
+        with pytest.raises(ValueError, match="one answer"):
             two_samples(chosen, 0, n)
 
 

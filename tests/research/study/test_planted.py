@@ -72,9 +72,7 @@ def test_one_person_with_other_sizes_is_left_out_and_the_unit_stays(study: Path)
     found = analyse(collect(study, jumps=False))
     assert before.time is not None and found.time is not None
     assert (found.time.unit, found.time.ratio.n, found.time.left_out) == ("task", 15, ("P05",))
-    assert "P05 finished other tasks in the one condition than in the other and is left out" in " ".join(
-        found.time.cautions
-    )
+    assert any("P05" in words for words in found.time.cautions)
     assert found.time.means["meta"].value == pytest.approx(before.time.means["meta"].value, rel=0.1)
     columns, rows = participants(found)
     assert "meta_seconds" in columns and rows[4][columns.index("meta_seconds")] is None
@@ -96,12 +94,8 @@ def test_a_sitting_of_63_minutes_under_a_limit_of_40_is_told(study: Path) -> Non
     found = analyse(collect(study, jumps=False))
     assert found.sensitivity is not None
     odd = " ".join(found.sensitivity.odd)
-    assert (
-        "P03, large (" in odd
-        and "longer than the limit of 40" in odd
-        and "far from what the others took" in odd
-    )
-    assert "longer than the limit of 40" in page(found)
+    assert "P03, large (" in odd and "limit of 40" in odd and "others" in odd
+    assert "limit of 40" in page(found)
 
 
 def stretched(events: list[dict[str, Any]], later: dict[int, float]) -> None:
@@ -123,12 +117,8 @@ def test_a_swapped_reference_and_a_changed_clip_are_told(study: Path) -> None:
     clip = next((study / "clips").iterdir())
     clip.write_bytes(clip.read_bytes() + b"\n")
     told = collect(study, jumps=False).missing
-    assert any(
-        "the reference 'large.metagraph.yaml' is not the one that was worked with; mistakes are counted"
-        in words
-        for words in told
-    )
-    assert any(f"'clips/{clip.name}' is not the one that was worked with" in words for words in told)
+    for name in ("large.metagraph.yaml", f"clips/{clip.name}"):
+        assert any(f"'{name}'" in words for words in told), name
 
 
 def test_another_consent_and_other_questions_are_told(study: Path) -> None:
@@ -136,9 +126,9 @@ def test_another_consent_and_other_questions_are_told(study: Path) -> None:
     path.write_text(
         path.read_text().replace("questionnaires: [sus, tlx]", "questionnaires: [sus]\nconsent: Else.")
     )
-    told = " ".join(collect(study, jumps=False).missing)
-    assert "everybody: what the study file says of consent is not" in told
-    assert "everybody: what the study file says of questions is not" in told
+    told = collect(study, jumps=False).missing
+    for what in ("consent", "questions"):
+        assert any(words.startswith("everybody: ") and what in words for words in told), what
 
 
 def test_halved_seconds_of_the_program_are_told(study: Path) -> None:

@@ -76,7 +76,7 @@ def test_a_condition_that_is_come_back_to_is_trained_and_asked_about_once(tiny):
 
 
 def test_a_stranger_takes_no_part(tiny):
-    with pytest.raises(ValueError, match="'P09' does not take part; there are P01, P02, P03, P04"):
+    with pytest.raises(ValueError, match=r"'P09'.*P01, P02, P03, P04"):
         Sitting(read_study(tiny), "P09")
 
 
@@ -173,9 +173,7 @@ def test_the_log_of_another_course_is_refused(tiny):
     through(sitting, 3)
     sitting.close()
     tiny.write_text(tiny.read_text().replace("consent: You take part of your own free will.\n", ""))
-    with pytest.raises(
-        SittingError, match=r"event 1 \(consent begin\) does not fit the study: was the study file changed"
-    ):
+    with pytest.raises(SittingError, match=r"event 1 \(consent begin\)"):
         Sitting(read_study(tiny), "P01")
     tiny.write_text(tiny.read_text().replace("A tiny study", "Another title") + "consent: Other words.\n")
     Sitting(read_study(tiny), "P01").close()  # words may be corrected
@@ -185,7 +183,7 @@ def test_a_clip_that_cannot_be_read_stops_the_task_for_everybody(tiny):
     (tiny.parent / "bad.glb").write_bytes(b"glTF nonsense")
     tiny.write_text(tiny.read_text().replace("tasks:", "tasks:\n- {id: bad, clips: [bad.glb]}"))
     study = read_study(tiny)
-    with pytest.raises(FileError, match=r"study\.yaml, clips: a clip cannot be worked with: bad\.glb"):
+    with pytest.raises(FileError, match=r"study\.yaml, clips: .*bad\.glb"):
         make(study, study.plan.task("bad").clips, "bad")
 
 

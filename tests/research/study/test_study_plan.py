@@ -171,20 +171,21 @@ def test_orders_are_latin_fixed_or_given() -> None:
     )
     assert given.blocks("P01") == (("manual", ("ten", "twenty")), ("meta", ("ten", "twenty")))
     assert given.blocks("P02") == (("meta", ("twenty", "ten")), ("manual", ("ten",)))
-    with pytest.raises(ValueError, match="'P03' does not take part"):
+    with pytest.raises(ValueError, match="'P03'"):
         given.blocks("P03")
 
 
 def test_clips_that_are_not_there_are_told(tmp_path: Path) -> None:
     (tmp_path / "study.yaml").write_text(SMALL)
     study = read_study(tmp_path)
-    assert "task 'ten': study.yaml, clips: there are no clips in 'clips'." in study.problems()[0]
+    assert study.problems()[0].startswith("task 'ten': ") and "'clips'" in study.problems()[0]
     with pytest.raises(FileError, match="there is no clip"):
         study.clips(("a.glb",))
 
 
 def test_a_task_without_a_reference_is_told(tiny: Path) -> None:
-    assert read_study(tiny).problems() == ["task 'nods' has no reference: its mistakes cannot be counted"]
+    (problem,) = read_study(tiny).problems()
+    assert "'nods'" in problem and "reference" in problem
 
 
 def test_the_published_schema_is_this_one_and_accepts_what_is_read(tiny: Path) -> None:

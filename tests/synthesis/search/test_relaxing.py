@@ -49,7 +49,7 @@ def test_what_no_take_has_ever_heard_is_given_up_alone() -> None:
 
 def test_takes_too_short_for_what_is_asked_are_the_only_thing_refused() -> None:
     graph = graph_of(30, [0, 30], {})
-    with pytest.raises(SynthesisError, match="cannot go on for 3 s without a jump"):
+    with pytest.raises(SynthesisError, match="for 3 s"):
         answer(graph, heard(graph.states, [[]]), [CLAUSE], 3.0)
 
 
@@ -73,7 +73,7 @@ def test_words_that_have_to_be_met_are_given_up_last_but_one() -> None:
     tried = list(steps(Constraints(words=True)))
     assert [c.words for c in tried] == [True] * (len(tried) - 2) + [False] * 2
     assert tried[-2].use == ("clause",) and tried[-1].use == ()
-    assert "that all words are met" in given_up(tried[0], tried[-1])
+    assert any("words" in what for what in given_up(tried[0], tried[-1]))
 
 
 def test_what_was_not_asked_for_is_not_missed() -> None:

@@ -30,7 +30,7 @@ def dialog_of(drive: Any) -> ImportDialog:
 
 
 def wait_read(drive: Any, dialog: ImportDialog) -> None:
-    drive.wait(lambda: dialog.job is None and not dialog._soon.isActive(), 240)
+    drive.wait(lambda: not dialog.busy, 240)
 
 
 def test_two_who_talk_are_dropped_edited_saved_reopened_and_exported(

@@ -69,7 +69,7 @@ def test_dropped_seen_heard_and_written(drive: Any, tmp_path: Path) -> None:
     drive.session.transport.set_playing(True)
     drive.wait(lambda: drive.preview.frames > frames + 5 and drive.session.transport.seconds > 1.3)
     drive.session.transport.set_playing(False)
-    assert len(drive.preview._scene().actors) == 2
+    assert len(drive.preview.scene().actors) == 2
 
     drive.actions["render"].trigger()
     writer = next(d for d in drive.window.findChildren(RenderDialog) if d.isVisible())

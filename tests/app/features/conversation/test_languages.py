@@ -41,7 +41,7 @@ def imported(drive: Any, files: tuple[Path, Path]) -> ImportDialog:
 
 
 def wait(drive: Any, dialog: ImportDialog) -> None:
-    drive.wait(lambda: dialog.job is None and not dialog._soon.isActive(), 240)
+    drive.wait(lambda: not dialog.busy, 240)
 
 
 def choose(box: Any, code: str) -> None:

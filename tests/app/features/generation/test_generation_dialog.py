@@ -119,7 +119,7 @@ def test_takes_are_made_cut_and_dropped_on_the_graph_in_one_step(shown, tmp_path
     use.minutes.setValue(0.6)
     use.temperature.setValue(1.2)
     press(use.cut_button)
-    drive.wait(lambda: use._job is None, 120)
+    drive.wait(lambda: not use.busy, 120)
     if not use.table.pieces:  # a model that learned nothing need not come back to anything
         from app.features.generation.generation_jobs import Piece
         from metagraph.generation.performing import on_project
@@ -186,7 +186,7 @@ def test_takes_are_listed_with_what_is_wrong_with_them_in_words(shown, tmp_path)
     dialog.tabs.setCurrentWidget(dialog.learn)
     learn = dialog.learn
     learn.look_through([takes(tmp_path / "takes"), tmp_path / "gone"])
-    drive.wait(lambda: learn._job is None and learn.table.rowCount() > 0, 60)
+    drive.wait(lambda: not learn.busy and learn.table.rowCount() > 0, 60)
     rows = [[learn.table.item(r, c).text() for c in range(4)] for r in range(learn.table.rowCount())]
     bad = [r for r in rows if r[1] == "left out"]
     assert len(bad) == 3 and {"gone", "talk4.glb", "talk3"} == {r[0] for r in bad}, bad
@@ -244,7 +244,7 @@ def training(shown, tmp_path):
 
     learn.begin = begin
     learn.look_through([takes(tmp_path / "takes")])
-    drive.wait(lambda: learn._job is None and learn.table.rowCount() > 0, 60)
+    drive.wait(lambda: not learn.busy and learn.table.rowCount() > 0, 60)
     if learn_page.missing():
         pytest.skip("torch is not installed")
     learn.name.setText("mine")
@@ -318,7 +318,7 @@ def test_a_training_that_was_cut_short_is_offered_and_not_written_over(shown, tm
     shot(dialog, "begun")
     learn.name.setText("mine")
     learn.look_through([takes(tmp_path / "takes")])
-    drive.wait(lambda: learn._job is None and learn.table.rowCount() > 0, 60)
+    drive.wait(lambda: not learn.busy and learn.table.rowCount() > 0, 60)
     learn.start()
     assert "begun before" in dialog.said.text() and learn.run is None
     dialog.close()
@@ -347,7 +347,7 @@ def test_a_model_that_is_there_is_not_written_over(shown, tmp_path):
     drive, dialog = shown
     learn = dialog.learn
     learn.look_through([takes(tmp_path / "takes")])
-    drive.wait(lambda: learn._job is None and learn.table.rowCount() > 0, 60)
+    drive.wait(lambda: not learn.busy and learn.table.rowCount() > 0, 60)
     learn.name.setText("tiny")
     learn.start()
     assert "already" in dialog.said.text() and learn.run is None
@@ -389,9 +389,9 @@ def test_without_a_sound_making_clips_asks_for_one_first(shown, tmp_path, monkey
     drive.document.edit("No talk", lambda p: replace(p, conversations={}))
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: asked.append(1) or ("", ""))
     press(use.cut_button)
-    assert asked == [1] and use._job is None, "nothing was chosen"
+    assert asked == [1] and not use.busy, "nothing was chosen"
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(tmp_path / "talk.wav"), ""))
     use.minutes.setValue(0.2)
     press(use.cut_button)
-    assert use._job is not None and use.speech.currentText() == "talk.wav"
-    drive.wait(lambda: use._job is None)
+    assert use.busy and use.speech.currentText() == "talk.wav"
+    drive.wait(lambda: not use.busy)

@@ -103,7 +103,7 @@ def test_from_training_to_an_export_that_says_what_was_generated(drive, tmp_path
     use.temperature.setValue(0.0)
     use.minutes.setValue(0.3)
     press(use.cut_button)
-    drive.wait(lambda: use._job is None, 120)
+    drive.wait(lambda: not use.busy, 120)
     assert "pieces, not kept yet" in dialog.said.text(), dialog.said.text()
     pieces = list(use.table.pieces)
     assert len(pieces) >= 3 and len({p.clip.name for p in pieces}) == len(pieces)

@@ -39,6 +39,11 @@ def shown(dialog: PatternsDialog) -> list[tuple[str, ...]]:
     ]
 
 
+def selected(dialog: PatternsDialog) -> list[tuple[str, ...]]:
+    rows = shown(dialog)
+    return [rows[index.row()] for index in dialog.table.selectionModel().selectedRows()]
+
+
 def test_rows_are_own_ones_learned_ones_and_what_is_built_in_and_unchanged() -> None:
     patterns = learn(
         Patterns().with_pattern("kinds", "nod", "fidget"), "idle_arms_wobble", "kind", "gesture", NAMES
@@ -199,12 +204,12 @@ def test_rows_are_sorted_by_any_column_either_way_and_what_is_selected_stays_so(
     header = dialog.table.horizontalHeader()
     for order in (Qt.SortOrder.AscendingOrder, Qt.SortOrder.DescendingOrder):
         dialog.table.selectRow(3)
-        (kept,) = dialog._selected()
+        (kept,) = selected(dialog)
         header.setSortIndicator(column, order)
         said = [row[column].lower() for row in shown(dialog)]
         assert len(said) > 1000
         assert said == sorted(said, reverse=order == Qt.SortOrder.DescendingOrder)
-        assert dialog._selected() == [kept]
+        assert selected(dialog) == [kept]
     few = len(said)
     dialog.search.setText("WAVE")
     found = [row[column].lower() for row in shown(dialog)]

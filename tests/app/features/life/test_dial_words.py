@@ -16,7 +16,8 @@ def test_every_dial_can_be_said_in_german() -> None:
     assert {DIALS[0].label, DIALS[0].tip} <= words.keys()
 
 
-def test_a_label_is_small_in_an_english_sentence_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_label_is_small_in_an_english_sentence_alone(request: pytest.FixtureRequest) -> None:
     assert in_sentence(DIALS[0]) == "stillness"
-    monkeypatch.setattr(translation, "_words", translation.words_of("de"))
+    request.addfinalizer(lambda: translation.choose("en"))
+    translation.choose("de")
     assert in_sentence(DIALS[0]) == "Ruhe"

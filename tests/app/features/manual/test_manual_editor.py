@@ -352,7 +352,7 @@ def test_problems_are_marked_and_a_click_on_one_goes_to_its_state(drawn: Hand) -
     drive.wait(lambda: ident in drawn.canvas.troubles)
     row = next(n for n in range(drive.problems_panel.tree.topLevelItemCount())
                if "rest long" in drive.problems_panel.tree.topLevelItem(n).text(0))  # fmt: skip
-    drive.problems_panel._go(drive.problems_panel.tree.topLevelItem(row))
+    drive.problems_panel.tree.itemActivated.emit(drive.problems_panel.tree.topLevelItem(row), 0)
     assert drive.session.selection.states == (ident,)
     assert (
         "cannot be reached" in drawn.inspector.state_trouble.text()

@@ -145,7 +145,8 @@ def test_a_table_is_imported_pasted_and_copied_and_its_bad_rows_are_told(hand: H
     path.write_text("from,to,when\nrest*,up beat,request\nup beat,nobody,\n")
     manual_many.import_table(hand.canvas, path)
     assert len(hand.machine.links) == 1 and len(hand.machine.ways) == 3
-    assert "1 link drawn from links.csv; 1 row left out: line 3: 'to' names 'nobody'" in hand.told[-1]
+    for piece in ("1 link ", "links.csv", "1 row", "line 3", "'nobody'"):
+        assert piece in hand.told[-1], piece
     manual_many.copy_table(hand.canvas)
     hand.drive.document.undo()
     assert not hand.machine.links
@@ -156,7 +157,7 @@ def test_a_table_is_imported_pasted_and_copied_and_its_bad_rows_are_told(hand: H
     )
     QApplication.clipboard().setText("hello")
     manual_many.paste_table(hand.canvas)
-    assert "is no table of links" in hand.told[-1]
+    assert "no table" in hand.told[-1]
     QApplication.clipboard().setText("from\tto\nrest loop\tup beat\n")
     manual_many.paste_table(hand.canvas)
     assert hand.pairs() == ["rest loop>up beat"]

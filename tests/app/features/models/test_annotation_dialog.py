@@ -75,7 +75,7 @@ def test_the_sample_is_read_without_a_word(open_dialog, document):
     }  # fmt: skip
     assert all(box.isChecked() for box in dialog.learn.values())
     assert dialog.called.text() == "talk" and dialog.go.isEnabled() and dialog.as_states.isEnabled()
-    assert dialog.doubts.text() == "Only 12 actions of the body: its model will be a rough one."
+    assert "12 actions" in dialog.doubts.text()
     dialog.as_states.setChecked(True)
     told = []
     dialog.imported.connect(lambda observed, kept: told.append((observed, kept)))
@@ -100,7 +100,7 @@ def test_cancelling_changes_and_remembers_nothing(open_dialog, document):
 def test_nothing_that_is_read_is_said_and_cannot_be_imported(open_dialog):
     dialog = open_dialog(Annotation((tier("speech", "hello"),)))
     assert not dialog.go.isEnabled()
-    assert "choose what the tiers stand for" in dialog.doubts.text()
+    assert "tiers" in dialog.doubts.text()
     assert not any(box.isEnabled() for box in dialog.learn.values()) and not dialog.as_shares.isEnabled()
     assert dialog.labels.topLevelItem(0).text(0).startswith("Say what the tiers stand for")
     dialog.tiers.chosen.emit(0, "left arm")
@@ -119,7 +119,7 @@ def test_nothing_that_is_read_is_said_and_cannot_be_imported(open_dialog):
 
 def test_an_annotation_without_tiers_opens_too(open_dialog):
     dialog = open_dialog(Annotation())
-    assert dialog.tiers.topLevelItem(0).text(0) == "There is no tier in this annotation."
+    assert dialog.tiers.topLevelItemCount() == 1 and "no tier" in dialog.tiers.topLevelItem(0).text(0)
     assert not dialog.go.isEnabled()
 
 
@@ -134,7 +134,7 @@ def test_what_a_label_means_is_said_otherwise(open_dialog, monkeypatch):
         QInputDialog, "getText", lambda *a, **k: (asked.append(a[2]), (" Calm, slow ", True))[1]
     )
     dialog.labels.chosen.emit(0, "other")
-    assert asked == ["'cup' is a gesture that is"]
+    assert len(asked) == 1 and "'cup'" in asked[0]
     assert rows(dialog.labels)[0][-1] == "▲ gesture, calm, slow"
     monkeypatch.setattr(QInputDialog, "getText", lambda *a, **k: ("x", False))
     dialog.labels.chosen.emit(0, "other")
@@ -173,4 +173,4 @@ def test_of_several_people_it_is_told_who_is_read(open_dialog):
     dialog = open_dialog(
         Annotation((tier("LH", "beat", participant="A"), tier("LH 2", "beat", "beat", participant="B")))
     )
-    assert "2 people, B of them read" in dialog.facts.text()
+    assert "2 people, B " in dialog.facts.text()

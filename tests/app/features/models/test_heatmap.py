@@ -53,19 +53,21 @@ def test_numbers_are_short_and_nothing_is_a_dot():
 
 
 def test_a_cell_is_said_in_a_sentence():
-    assert sentence(ARMS, "arms", 0, 4) == "After a left gesture, a right fidget never follows."
-    assert sentence(ARMS, "arms", 0, 3) == "After a left gesture, a right gesture follows in 12.5 % of cases."
-    assert sentence(ARMS, "arms", 0, 0) == "After a left gesture, the same follows again in 25 % of cases."
-    assert (
-        sentence(ARMS, "arms", 8, 8)
-        == "After a transition of both arms, the same follows again in 60 % of cases."
-    )
-    assert sentence(ARMS, "arms", 5, 2) == "After a right transition, a left transition always follows."
     tagged = Markov(
         "head", (("both", "gesture"), ("both", "gesture")), ((0.5, 0.5), (1, 0)), tags=("", "positive")
     )
-    assert sentence(tagged, "head", 0, 1) == "After a gesture, a positive gesture follows in 50 % of cases."
-    assert sentence(tagged, "head", 1, 1) == "After a positive gesture, the same never follows again."
+    for model, layer, row, column, *pieces in (
+        (ARMS, "arms", 0, 4, "left gesture", "right fidget", "never"),
+        (ARMS, "arms", 0, 3, "left gesture", "right gesture", "12.5 %"),
+        (ARMS, "arms", 0, 0, "left gesture", "the same", "25 %"),
+        (ARMS, "arms", 8, 8, "transition of both arms", "the same", "60 %"),
+        (ARMS, "arms", 5, 2, "right transition", "left transition", "always"),
+        (tagged, "head", 0, 1, "a gesture", "a positive gesture", "50 %"),
+        (tagged, "head", 1, 1, "a positive gesture", "the same", "never"),
+    ):
+        words = sentence(model, layer, row, column)
+        places = [words.find(piece) for piece in pieces]
+        assert -1 not in places and places[0] < places[1], words
 
 
 @pytest.mark.parametrize("look", [DARK, LIGHT], ids=lambda t: t.name)
@@ -188,10 +190,10 @@ def test_the_pointer_says_what_it_points_at(heat):
     QTest.mouseMove(heat, at(heat, 0, 3))
     assert heat.said[-1] == sentence(ARMS, "arms", 0, 3)
     QTest.mouseMove(heat, QPoint(20, round(heat.grid().cell(1, 0).center().y())))
-    assert heat.said[-1] == "A left fidget lasts 1 to 3 s."
+    assert "left fidget" in heat.said[-1] and "1 to 3 s" in heat.said[-1]
     heat.show_model(DEFAULTS["head"], "head", "light", frozenset({1}))
     QTest.mouseMove(heat, QPoint(21, round(heat.grid().cell(1, 0).center().y())))
-    assert heat.said[-1] == "A fidget lasts 1 to 3 s. It is passed over: the graph has no such action yet."
+    assert "1 to 3 s" in heat.said[-1] and "passed over" in heat.said[-1]
 
 
 def test_another_model_of_fewer_states_leaves_no_cell_outside_of_it(heat):

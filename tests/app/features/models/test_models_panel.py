@@ -58,9 +58,9 @@ def pick(menu, *texts):
 
 def test_the_default_is_shown_and_an_empty_comparison_teaches(panel):
     assert panel.heat.model is ARMS
-    assert panel.origin.text() == "default, from the paper · 9 states"
+    assert "default" in panel.origin.text() and "9 states" in panel.origin.text()
     assert not panel.back.isEnabled() and not panel.chooser.isVisible()
-    assert panel.teach.isVisible() and "default model of the arms" in panel.teach.text()
+    assert panel.teach.isVisible() and "arms" in panel.teach.text()
     panel.session.place.set_layer("head")
     assert panel.heat.model is DEFAULTS["head"] and panel.title.text() == "Head: what follows what"
 

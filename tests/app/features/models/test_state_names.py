@@ -23,9 +23,10 @@ def test_a_sentence_has_tags_before_and_both_arms_behind() -> None:
     assert a_state(("both", "fidget", ""), "head") == "a fidget"
 
 
-def test_no_state_is_left_in_english(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_state_is_left_in_english(request: pytest.FixtureRequest) -> None:
     words = translation.words_of("de")
     assert {f"{limb} {kind}" for limb, kind in product(LIMBS, KINDS)} | {*KINDS, *LIMBS} <= words.keys()
-    monkeypatch.setattr(translation, "_words", words)
+    request.addfinalizer(lambda: translation.choose("en"))
+    translation.choose("de")
     assert a_state(("left", "gesture", "positive"), "arms") == "„Geste links, positiv“"
     assert state_name(("both", "fidget", "negative"), "head") == "Fidget, negativ"

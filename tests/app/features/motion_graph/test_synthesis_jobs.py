@@ -101,10 +101,9 @@ def test_clips_that_cannot_be_takes_are_told_with_the_reason(sample: Project) ->
     odd = replace(sample.clips[c], motion=replace(own, skeleton=longer))
     project = replace(sample, clips={**sample.clips, a: still, b: lost, c: odd})
     assert left_out(sample) == ""
-    assert (
-        left_out(project)
-        == "Left out: 1 clip of one frame, 1 clip of another skeleton, 1 clip whose file is missing."
-    )
+    told = left_out(project)
+    for reason in ("one frame", "another skeleton", "missing"):
+        assert told.count("1 clip ") == 3 and reason in told, told
     assert not {a, b, c} & set(usable(project))
 
 
@@ -137,7 +136,7 @@ def test_where_speech_does_not_constrain_nothing_is_said_of_it(
 
     takes = takes_of(sample, stances(sample)[:2])
     monkeypatch.setattr(searches, search, stuck)
-    with pytest.raises(SynthesisError, match="cannot go on for 9 s without a jump: choose more takes"):
+    with pytest.raises(SynthesisError, match=r"for 9 s .*takes"):
         synthesise(
             build(states_of(takes.clips)), takes, Wish(9.0, (Segment("clause", 0.5, 1.5, 1.0),), exact), "new"
         )

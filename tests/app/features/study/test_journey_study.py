@@ -9,6 +9,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -16,6 +17,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QMessageBox, QToolBar
 
+from app.features.study import study_guide
 from app.features.study.reserved_window import ReservedWindow
 from app.shell.actions import Command
 from metagraph.formats.store import open_project, read_project
@@ -122,9 +124,9 @@ def test_a_whole_sitting(drive, takes_part, tiny, tmp_path):
     one, other = d.document.project.manual["head"].states
     d.document.edit("Add link", lambda q: manual_edits.add_link(q, "head", one, other))
     assert not d.actions["label_stance"].isEnabled()
-    p.guide._elapsed += 3000  # the time is up
-    p.guide._tick()
-    p.titled("Time is up")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(study_guide, "monotonic", lambda: time.monotonic() + 3000)
+        p.titled("Time is up")
     p.go()
     p.titled("System Usability Scale")
     for question in p.page.questions:
@@ -237,7 +239,7 @@ def test_who_declines_leaves_a_word_and_may_still_agree(drive, takes_part, tiny)
     assert [e["type"] for e in events(tiny, "declined", "phase")] == ["phase", "declined"]
     study = read_study(tiny)
     assert standing(study, "P01") == "declined"
-    assert any(words == "P01: declined to take part." for words in collect(tiny, jumps=False).missing)
+    assert any(words.startswith("P01: declined") for words in collect(tiny, jumps=False).missing)
     again = Sitting(study, "P01")
     again.begin()
     again.end()
@@ -266,7 +268,7 @@ def test_a_sitting_is_open_once(drive, takes_part, tiny, monkeypatch):
     monkeypatch.setattr(QMessageBox, "warning", lambda *words: told.append(words[2]))
     assert begin(drive.shell, read_study(tiny), "P01") is None
     assert begin(drive.shell, read_study(tiny), "nobody") is None
-    assert "another window has this sitting open" in told[0] and "'nobody' does not take part" in told[1]
+    assert "another window" in told[0] and "'nobody'" in told[1]
 
 
 def test_clips_that_cannot_be_read_are_told_and_can_be_tried_again(drive, takes_part, tiny):
@@ -277,7 +279,7 @@ def test_clips_that_cannot_be_read_are_told_and_can_be_tried_again(drive, takes_
     p.titled("Practice: Meta-graph")
     p.go()
     p.titled("This cannot go on")
-    assert "there is no clip 'missing.glb'" in p.page.text.text()
+    assert "'missing.glb'" in p.page.text.text()
 
 
 def test_who_takes_part_is_chosen_from_a_list_that_tells_how_far_each_is(drive, takes_part, tiny):

@@ -20,7 +20,7 @@ def test_actions_are_asked_for_one_after_the_other(toy, project):
     beat, cough = toy.id(project, "rest beat lf"), toy.id(project, "rest cough")
     load = Load(actions=(beat, cough))
     drop = lane_drop(project, "arms", project.action(beat).stance, 2.0, load)
-    assert drop.possible and drop.words == "ask for 2 actions at 2.00 s"
+    assert drop.possible and "2 actions" in drop.words and "2.00 s" in drop.words
     same, asked = asked_for(project, drop, load)
     start, end = project.span(project.action(beat))
     assert same is project and [a.action for a in asked] == [beat, cough]
@@ -36,7 +36,11 @@ def test_a_clip_that_nothing_plays_is_placed_first(toy, project):
     made = after.action(ask.action)
     assert (made.clip, made.kind, made.stance, ask.at) == (clip, "gesture", stance, 1.5)
     again = lane_drop(after, "arms", stance, 1.5, Load(clips=(clip,)))
-    assert again.words == "ask for x at 1.50 s" and asked_for(after, again, Load(clips=(clip,)))[0] is after
+    assert (
+        again.words.endswith(" x at 1.50 s")
+        and "gesture" not in again.words
+        and asked_for(after, again, Load(clips=(clip,)))[0] is after
+    )
 
 
 def test_what_cannot_be_is_said(toy, project):

@@ -78,6 +78,6 @@ def test_the_title_s_menu_and_tip_say_what_a_click_does(stage):
     ]
     menu.actions()[1].trigger()
     assert stage.performance.muted == {"body", "head"}
-    assert "rests" in view._tip(title(view, "body")) and "is seen" in view._tip(title(view, "arms"))
+    assert "rests" in view.tip(title(view, "body")) and "is seen" in view.tip(title(view, "arms"))
     view.titles.menu("arms").actions()[-1].trigger()
     assert stage.performance.muted == set()

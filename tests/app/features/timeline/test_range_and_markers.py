@@ -136,7 +136,7 @@ def test_markers_are_added_named_moved_gone_to_and_removed(stage, monkeypatch):
     assert transport.seconds == 0.5 and timeline.selected.at == 0.5
     stage.do("delete")
     assert [m.name for m in timeline.now.markers] == ["Punch line"]
-    assert "double-click renames" in view._tip(QPointF(x(view, 5.5)))
+    assert "double-click renames" in view.tip(QPointF(x(view, 5.5)))
 
 
 def test_a_clip_alone_has_no_markers_and_no_range_and_says_so(stage):
@@ -222,7 +222,7 @@ def test_what_is_on_a_locked_layer_stays_and_the_padlock_opens_it(stage):
     view, requests = stage.timeline.lanes, stage.performance.requests
     lock = QPoint(LEFT - 8, round(lanes(view.height(), view.sizes)["arms"].center().y()))
     QTest.mouseClick(view, LEFT_BUTTON, NONE, lock)
-    assert stage.performance.timeline.now.locked == ("arms",) and "is locked" in view._tip(QPointF(lock))
+    assert stage.performance.timeline.now.locked == ("arms",) and "is locked" in view.tip(QPointF(lock))
     gesture = next(m for m in view.marks() if m.at == 2.0)
     start = QPoint(round(gesture.rect.left()) + 4, round(gesture.rect.center().y()))
     before = stage.performance.asks

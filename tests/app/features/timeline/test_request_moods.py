@@ -32,7 +32,7 @@ def test_a_request_and_its_performance_are_given_moods_and_taken_back(drive: Any
     drive.document.undo()
     assert next(x for x in drive.performance.asks if x.id == ident).intensity is None
     editor.accept()
-    drive.timeline._fill()
+    drive.timeline.more_menu.aboutToShow.emit()
     moods = next(x.menu() for x in drive.timeline.more_menu.actions() if x.text() == "Mood")
     next(x for x in moods.actions() if x.text() == "Sad").trigger()
     assert drive.performance.requests.kept.mood == "sad"

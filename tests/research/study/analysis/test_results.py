@@ -33,14 +33,16 @@ NOBODY = Data("Empty", ("meta", "manual"), {"a": "A"}, ("P1",))
 def test_nobody_has_begun() -> None:
     found = analyse(NOBODY)
     assert found.time is None and not found.curves and not found.mistakes
-    assert summary(found) == ["Nobody has begun a task yet."]
+    (words,) = summary(found)
+    assert "Nobody" in words
     assert "0 of 1 people have begun" in page(found)
 
 
 def test_one_condition_cannot_be_compared() -> None:
     found = analyse(replace(NOBODY, rows=(row("P1", "meta", "a", 10.0, 0),)))
     assert found.time is None
-    assert summary(found) == ["There is nothing to compare yet: only meta-graph was brought to an end."]
+    (words,) = summary(found)
+    assert "meta-graph" in words and "manual" not in words
 
 
 def test_one_person_has_a_ratio_without_an_interval() -> None:
@@ -53,7 +55,8 @@ def test_one_person_has_a_ratio_without_an_interval() -> None:
         None,
         None,
     )
-    assert found.time.cautions == ("One person's ratio has no interval: it says nothing about other people.",)
+    (caution,) = found.time.cautions
+    assert "no interval" in caution
     assert "no interval, 1 person" in page(found)
 
 
@@ -85,16 +88,13 @@ def test_what_the_time_limit_ended_counts_and_is_told() -> None:
     ]
     found = compare(rows)
     assert found is not None and found.ratio.value == pytest.approx(6.0)
-    assert (
-        "1 of 2 tasks were ended by the time limit: their true times are longer than those used here."
-        in found.cautions
-    )
+    assert any("1 of 2 tasks" in words for words in found.cautions)
 
 
 def test_people_who_did_only_one_are_left_out_and_told() -> None:
     found = compare([*four().rows, row("P9", "meta", "a", 1.0, 0)])
     assert found is not None and found.ratio.n == 4
-    assert "1 did only one of the two and is left out of the ratio." in found.cautions
+    assert any(words.startswith("1 ") and "left out" in words for words in found.cautions)
 
 
 def test_people_who_did_one_each_are_compared_as_groups() -> None:
@@ -107,11 +107,9 @@ def test_people_who_did_one_each_are_compared_as_groups() -> None:
     # 2 doublings of spread apart by 3: error sqrt(0.5 / 2 + 0.5 / 2), 2 degrees of freedom.
     half = 4.302652729911275 * sqrt(0.5)
     assert (found.ratio.value, found.ratio.low) == (pytest.approx(8.0), pytest.approx(2 ** (3 - half)))
-    assert "The interval of the ratio includes 1" in found.cautions[-1]
+    assert "includes 1" in found.cautions[-1]
     alone = compare(rows[1:3])
-    assert alone is not None and alone.cautions == (
-        "A group of one has no interval: this says nothing about other people.",
-    )
+    assert alone is not None and len(alone.cautions) == 1 and "no interval" in alone.cautions[0]
 
 
 def test_other_tasks_in_each_condition_are_compared_by_clips() -> None:
@@ -210,7 +208,7 @@ def test_the_published_example_has_no_interval() -> None:
     assert found.ratio.value == pytest.approx(7.875) and found.ratio.low is None
     assert found.minutes == (pytest.approx(480 / 152), pytest.approx(3780 / 152))
     assert found.needed == {0.25: 3, 0.5: 3, 1.0: 5}
-    assert "says nothing about other people" in told(found) and "24.87" in told(found)
+    assert "no interval" in told(found) and "24.87" in told(found)
 
 
 # --- through files
@@ -286,7 +284,7 @@ def test_whatever_is_missing_or_odd_is_told_and_the_rest_is_used(study: Path) ->
 def test_a_changed_plan_is_told(study: Path) -> None:
     path = study / FILE
     path.write_text(path.read_text() + "# a remark\n")
-    assert "P01: worked with another version of the study file." in collect(study).missing
+    assert any(words.startswith("P01: ") and "version" in words for words in collect(study).missing)
 
 
 def test_a_task_without_a_reference_has_no_score(study: Path) -> None:
@@ -294,7 +292,7 @@ def test_a_task_without_a_reference_has_no_score(study: Path) -> None:
     path.write_text(path.read_text().replace("  reference: small.metagraph.yaml\n", ""))
     (study / "large.metagraph.yaml").write_text("no project")
     found = collect(study)
-    assert "small: has no reference, so mistakes are not counted." in found.missing
+    assert any(words.startswith("small: ") and "reference" in words for words in found.missing)
     assert any(words.startswith("large: its reference cannot be used") for words in found.missing)
     assert all(r.score is None for r in found.rows)
 
@@ -306,4 +304,4 @@ def test_questionnaires_that_cannot_be_scored_are_told(study: Path) -> None:
         if e["type"] == "answer" and e["item"] == "sus3":
             e["value"] = 9
     log.write_text("".join(json.dumps(e) + "\n" for e in events))
-    assert any("P01: System Usability Scale cannot be scored" in words for words in collect(study).missing)
+    assert any("P01: System Usability Scale" in words for words in collect(study).missing)

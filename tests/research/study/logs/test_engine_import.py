@@ -53,9 +53,9 @@ def written(path: Path, who: str, seconds: float, engine: str = "unity", task: s
 
 
 def test_what_is_no_engines_log_is_refused(study: Study, tmp_path: Path) -> None:
-    with pytest.raises(FileError, match="no log of Unreal, Unity or Godot"):
+    with pytest.raises(FileError, match="Unreal, Unity or Godot"):
         import_engine(study, "P01", study.log("P01"))
-    with pytest.raises(FileError, match="is of 'P02', not of 'P01'"):
+    with pytest.raises(FileError, match=r"'P02'.*'P01'"):
         import_engine(study, "P01", written(tmp_path / "a.jsonl", "P02", 100))
     with pytest.raises(ValueError, match="does not take part"):
         import_engine(study, "nobody", tmp_path / "a.jsonl")

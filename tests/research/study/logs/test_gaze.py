@@ -76,7 +76,7 @@ def test_tobii(log: Log, tmp_path: Path) -> None:
     path = tmp_path / "tobii.tsv"
     path.write_text("\n".join(lines), encoding="utf-8-sig")
     check(dwelt(log, read_gaze(path), clap=3.5)[1])
-    with pytest.raises(ValueError, match="when the recording shows the first clap"):
+    with pytest.raises(ValueError, match="clap"):
         dwelt(log, read_gaze(path))
 
 
@@ -106,7 +106,7 @@ def test_pupil_cloud_has_the_time_of_day(log: Log, tmp_path: Path) -> None:
 def test_what_is_no_recording_is_told(tmp_path: Path, log: Log) -> None:
     path = tmp_path / "else.csv"
     path.write_text("a,b\n1,2\n")
-    with pytest.raises(FileError, match="no export of gaze that is known"):
+    with pytest.raises(FileError, match=r"else\.csv"):
         read_gaze(path)
     path.write_text("")
     with pytest.raises(FileError, match="no export"):

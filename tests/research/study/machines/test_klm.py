@@ -30,5 +30,5 @@ def test_other_people_have_other_times() -> None:
 
 
 def test_an_operator_that_there_is_not_is_named() -> None:
-    with pytest.raises(ValueError, match="'D' is no operator; there are K, P, B, H, M, S, R, L"):
+    with pytest.raises(ValueError, match=r"'D'.*K, P, B, H"):
         predicted({"D": 1})

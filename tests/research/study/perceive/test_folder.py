@@ -38,10 +38,8 @@ def test_what_was_changed_or_removed_since_is_named(tmp_path: Path) -> None:
     first, second = sorted((made.show / "videos").iterdir())
     first.write_bytes(b"other")
     second.unlink()
-    assert made.differences() == [
-        f"show/videos/{first.name} is not as it was frozen",
-        f"show/videos/{second.name} is not there any more",
-    ]
+    named = [words.split(" ")[0] for words in made.differences()]
+    assert named == [f"show/videos/{first.name}", f"show/videos/{second.name}"]
     (made.folder / LOCK).write_text((made.folder / LOCK).read_text().replace('"digests"', '"digest"'))
     with pytest.raises(FileError, match="changed by hand"):
         made.differences()

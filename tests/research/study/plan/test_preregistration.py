@@ -31,25 +31,27 @@ def test_both_forms_are_filled_in_and_frozen(tiny: Path) -> None:
         "Statistical models",
     ):
         assert f"### {heading}" in text, heading
-    assert "No data have been collected" in text and "Two nods (limit 5 minutes)" in text
+    assert "No data " in text and "Two nods (limit 5 minutes)" in text
     assert predicted.read_text().count("### ") == 9
     assert unlike(study) == []
     osf.write_text(text + "And one more hypothesis.")
-    assert unlike(study) == [f"the form '{FOLDER}/osf.md' is not as it was written"]
+    (words,) = unlike(study)
+    assert f"'{FOLDER}/osf.md'" in words
     other = Aims(FOUND, sample_size(FOUND, 1.5), 1.5, 1.25, 0.8)
-    with pytest.raises(FileError, match="there is a preregistration already"):
+    with pytest.raises(FileError, match="preregistration already"):
         preregister(study, other, None)
     preregister(study, other, None, force=True)
     assert unlike(study) == []
     tiny.write_text(tiny.read_text().replace("own free will", "own will"))
-    assert unlike(read_study(tiny)) == ["the study is not as it was preregistered"]
+    (words,) = unlike(read_study(tiny))
+    assert "study" in words and FOLDER not in words
 
 
 def test_data_that_are_there_are_told(tiny: Path) -> None:
     study = read_study(tiny)
     study.log("P01").parent.mkdir(parents=True)
     study.log("P01").touch()
-    assert "Data of 1 participants exist already" in preregister(study, AIMS, None)[1].read_text()
+    assert "Data of 1 " in preregister(study, AIMS, None)[1].read_text()
 
 
 def test_a_concealed_study_is_planned_allocated_and_checked(
@@ -66,12 +68,12 @@ def test_a_concealed_study_is_planned_allocated_and_checked(
     assert "drawn when they begin" in shown and "preregistered" not in shown
     tiny.write_text(tiny.read_text().replace("own free will", "own will"))
     main(["study", "check", str(tiny)])
-    assert "problem: the study is not as it was preregistered" in capsys.readouterr().out
+    assert "preregistered" in capsys.readouterr().out
 
 
 def test_what_is_not_assumed_is_asked_for(tiny: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["study", "plan", "--ratio", "2"]) == 1
-    assert "assume both --ratio and --spread" in capsys.readouterr().err
+    assert "--spread" in capsys.readouterr().err
     assert main(["study", "plan", "--ratio", "2", "--spread", "0.5", "--preregister"]) == 1
     assert main(["study", "plan", "--ratio", "2", "--spread", "0.5", "--dropouts", "1"]) == 1
     assert main(["study", "plan", "--pilot", str(tiny)]) == 1

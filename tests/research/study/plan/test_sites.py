@@ -41,11 +41,11 @@ def test_people_are_told_apart_and_sites_are_a_random_effect(folders: list[Path]
 
 
 def test_what_does_not_belong_together_is_refused_or_told(folders: list[Path], tmp_path: Path) -> None:
-    with pytest.raises(FileError, match="two sites are called 'Ulm'"):
+    with pytest.raises(FileError, match="'Ulm'"):
         merge([folders[0], folders[0]])
     text = (folders[0] / FILE).read_text()
     (tmp_path / FILE).write_text(text.replace("id: small", "id: tiny"))
-    with pytest.raises(FileError, match="its tasks or conditions are not those"):
+    with pytest.raises(FileError, match="tasks or conditions"):
         merge([folders[0], tmp_path])
     (tmp_path / FILE).write_text(
         text.replace("questionnaires: [sus, tlx]", "questionnaires: [sus]\nsite: Jena")

@@ -124,17 +124,13 @@ def test_order_is_told_from_the_condition() -> None:
 
 
 def test_words_say_when_people_are_too_few() -> None:
-    assert s.cautions(s.ratio([8.0], [1.0]), None) == [
-        "One person's ratio has no interval: it says nothing about other people."
-    ]
+    (one,) = s.cautions(s.ratio([8.0], [1.0]), None)
+    assert "no interval" in one
     few = s.cautions(s.ratio([8.0, 9.0, 7.0], [1.0, 1.0, 1.0]), 5.0)
-    assert len(few) == 1 and "With 3 pairs there is no interval by ranks" in few[0]
+    assert len(few) == 1 and "3 pairs" in few[0]
     vague = s.cautions(s.Estimate(1.2, 0.9, 1.6, 12), 0.5)
-    assert vague == [
-        "The interval of the ratio includes 1: these people do not show that either way is faster. "
-        "If the effect is as large as it was here, about 34 people give an 80 % chance to show it."
-    ]
-    assert "would not be shown by 10,000 people" in s.cautions(s.Estimate(1.0, 0.9, 1.1, 12), 0.001)[0]
+    assert len(vague) == 1 and "includes 1" in vague[0] and "34 people" in vague[0] and "80 %" in vague[0]
+    assert "10,000 people" in s.cautions(s.Estimate(1.0, 0.9, 1.1, 12), 0.001)[0]
     assert s.cautions(s.Estimate(2.0, 1.5, 2.5, 12), 3.0) == []
 
 
