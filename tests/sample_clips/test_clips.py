@@ -15,6 +15,9 @@ from sample_clips.make.catalogue import BASE, RECIPES, Entry, catalogue
 from sample_clips.make.mannequin_rig import FPS, REACH, SKELETON, at
 from sample_clips.make.measure import Measures, measure
 from sample_clips.make.recipe import animate
+from tests.sample_clips.unchanged import only_when_changed
+
+pytestmark = only_when_changed()
 
 FOLDER = Path(__file__).resolve().parents[2] / "sample_clips" / "clips"
 ENTRIES = {entry.name: entry for entry in catalogue()}
