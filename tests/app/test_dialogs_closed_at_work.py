@@ -77,6 +77,7 @@ def told(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return out
 
 
+@pytest.mark.nightly
 @pytest.mark.gl
 @pytest.mark.parametrize("way", list(WAYS))
 @pytest.mark.parametrize("name", list(AT_WORK))

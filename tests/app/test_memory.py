@@ -64,6 +64,7 @@ def all_kept() -> Iterator[Callable[[], None]]:
     gc.unfreeze()
 
 
+@pytest.mark.nightly
 def test_a_dialog_that_was_closed_is_gone_and_hears_nothing_more(drive, tmp_path, all_kept):
     open_sample(drive, drive.wait)
     drive.session.transport.set_playing(False)
@@ -83,6 +84,7 @@ def test_a_dialog_that_was_closed_is_gone_and_hears_nothing_more(drive, tmp_path
         tell_all(drive)  # an exception in a slot fails the test
 
 
+@pytest.mark.nightly
 def test_a_menu_that_was_closed_is_gone(drive):
     open_sample(drive, drive.wait)
     project = drive.document.project

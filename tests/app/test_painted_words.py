@@ -52,6 +52,7 @@ def studio(project):
     return edits.update_each(project, names)
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(("size", "theme", "names"), WALKS, ids=str)
 def test_every_word_is_whole_or_told_and_none_lies_on_another(drive, sample, size, theme, names):
     drive.session.look.choose(theme)
@@ -86,6 +87,7 @@ def test_panels_that_are_opened_keep_to_it_too(drive, sample, size):
     assert not any(found.values()), told(found)
 
 
+@pytest.mark.nightly
 def test_every_dialog_keeps_to_it_too(drive, tmp_path):
     """In the theme in which they are opened least while they are made."""
     drive.session.look.choose("light")

@@ -30,6 +30,7 @@ def test_a_task_of_few_clips_is_whole(sample):
     assert kinds.count("stance") >= 1 and len(kinds) == 10
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     "condition",
     [each for each in CONDITIONS if THOROUGH or each != "manual"],  # which is part of the others
@@ -84,6 +85,7 @@ def test_an_expert_draws_the_reference_in_the_window_as_was_counted_without_it(d
         assert abs(count - counted.operators[name]) <= 2 + 0.2 * counted.operators[name], name
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("look", [False, True])
 @pytest.mark.parametrize("named", [True, False])
 def test_an_expert_goes_through_proposals_without_a_mistake(drive, sample, look, named):

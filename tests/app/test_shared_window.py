@@ -71,6 +71,7 @@ def reserved(drive):
 DONE = (edited, arranged, narrowed, played, chosen, asked, reserved)
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("done", [DONE, DONE[::-1]], ids=["forward", "backward"])
 def test_a_window_that_was_reset_is_like_one_that_was_just_made(toys, done):
     drive, project = toys, toys.document.project
@@ -124,6 +125,7 @@ def test_docks_that_a_test_has_moved_do_not_stand_as_they_did_and_are_put_back(t
     assert toys.workspaces.places.workspace.id == stood[2]
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("do", DONE, ids=lambda do: do.__name__)
 def test_what_is_done_in_a_window_is_seen_in_its_state(toys, do):
     before = state_of(toys.window)
@@ -139,6 +141,7 @@ def test_nothing_of_a_test_is_in_the_folders_of_the_next(toys, tmp_path, monkeyp
     assert tmp_path / "next" in Path(place).parents and place.is_file()
 
 
+@pytest.mark.nightly
 def test_a_window_is_made_anew_where_a_test_failed_closed_it_or_left_something(qapp, drive):
     own = SharedWindow()
     drive.window.hide()

@@ -201,6 +201,7 @@ def without_words(said: str, known: Collection[str]) -> Iterator[str]:
                 yield from without_words(value, known)
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", ["sample", "practice"])
 def test_why_clips_are_taken_for_what_they_are_is_said_in_the_language(english: None, name: str) -> None:
     project = open_project(SAMPLES / f"{name}.metagraph.yaml").project

@@ -398,6 +398,7 @@ def wanted(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFact
     return export, in_python(export, script(), folder)
 
 
+@pytest.mark.nightly
 def test_the_script_has_something_of_everything(wanted: Made) -> None:
     _, found = wanted
     states = {state for shown in found["shown"] for state, *_ in shown["answers"]}
@@ -424,6 +425,7 @@ needs_godot = pytest.mark.skipif(
 )
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     "play",
     [

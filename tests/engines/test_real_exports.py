@@ -62,6 +62,7 @@ ZOO = ["biped", "japanese", "bare"]
 SHARE = many(16, 3)
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(("folder", "pattern"), REAL)
 def test_vectors_of_real_clips_hold(shared_data: Path, tmp_path: Path, folder: str, pattern: str) -> None:
     files = [path for path in gather([shared_data / folder]) if pattern in path.as_posix()]

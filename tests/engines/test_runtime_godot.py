@@ -21,6 +21,7 @@ from tests.engines.mutants import PLAYED, broken, folders_to_try, share_of
 from tests.thorough import many, some
 
 
+@pytest.mark.nightly
 @needs_godot
 @pytest.mark.parametrize("folder", PLAYED, ids=lambda folder: folder.name)
 def test_shipped_vectors_pass_on_the_engine(game: Path, folder: Path, tmp_path: Path) -> None:
@@ -31,6 +32,7 @@ def test_shipped_vectors_pass_on_the_engine(game: Path, folder: Path, tmp_path: 
     assert f"{len(cases)} passed, 0 failed" in told
 
 
+@pytest.mark.nightly
 @needs_godot
 def test_vectors_of_the_sample_pass_on_the_engine(game: Path, sample_export: Path) -> None:
     """They are of the shipped vectors' kinds, which all pass here, on sixty joints with a face."""
@@ -196,6 +198,7 @@ def _without(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]
         yield from _without(value[0], (*path, 0))
 
 
+@pytest.mark.nightly
 @needs_godot
 def test_an_export_that_lacks_a_field_is_refused_or_played(game: Path, tmp_path: Path) -> None:
     """Whatever is missing: an error that names the place, or a character that plays on."""

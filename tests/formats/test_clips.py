@@ -148,6 +148,7 @@ def test_units_axes_rests_and_bind_poses_of_the_zoo_are_seen_through(
             assert np.abs(found - zoo.places(name, joint, take)).max() < 1e-3, joint
 
 
+@pytest.mark.nightly
 def test_all_real_files_are_read_or_refused_in_words(shared_data: Path) -> None:
     files = [
         f

@@ -36,6 +36,7 @@ def share(takes: list[Clip], make: Callable[[Clip], Iterator[made.Case]]) -> dic
     return {name: float(np.mean(right)) for name, right in out.items()}
 
 
+@pytest.mark.nightly
 def test_every_bind_pose_put_into_the_sample_clips_goes_and_nothing_else(takes: list[Clip]) -> None:
     shares = share(takes, made.with_stray_poses)
     assert len(shares) > 30
@@ -49,6 +50,7 @@ def test_sample_clips_that_start_fast_or_from_a_bind_pose_stay_whole(takes: list
     assert not {name: part for name, part in shares.items() if part < 1 and "rests as it is cut" not in name}
 
 
+@pytest.mark.nightly
 def test_real_clips_lose_the_bind_poses_they_have_and_no_frame_more(shared_data: Path) -> None:
     from metagraph.errors import FileError
     from metagraph.formats.clips import find_clip_files, read_clips

@@ -471,6 +471,7 @@ def test_points_have_only_so_many_names(session: LiveSession) -> None:
     assert one(session, {"do": "place", "name": "p3", "point": [1, 1, 1]})["state"] == "planned"
 
 
+@pytest.mark.nightly
 def test_a_point_may_move_with_every_tick_for_minutes(session: LiveSession) -> None:
     for n in range(60 * 60):
         replies = ask(session, {"do": "place", "id": "head", "name": "user", "point": [n / 1000, 1.6, 2]})
@@ -583,6 +584,7 @@ def test_an_edited_project_is_played_on(sample: Project) -> None:
 # --- for long
 
 
+@pytest.mark.nightly
 def test_minutes_of_anything_are_answered_and_forgotten(sample: Project) -> None:
     session = LiveSession(sample)
     r = random.Random(7)
@@ -616,6 +618,7 @@ def test_minutes_of_anything_are_answered_and_forgotten(sample: Project) -> None
     assert all(len(lane.metas) < 500 for lane in session.plan.layers.values())
 
 
+@pytest.mark.nightly
 def test_nothing_grows_while_agents_ask_on_and_on(sample: Project) -> None:
     session = LiveSession(sample, history=5.0)
     r = random.Random(3)

@@ -179,6 +179,7 @@ def only(plan: Plan, layer: Layer) -> Plan:
     )
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("layer", LAYERS)
 def test_at_cue_boundaries_no_joint_is_faster_than_in_the_clips(
     performances: list[Performance], sample: Project, layer: Layer

@@ -105,6 +105,7 @@ def test_a_sculpted_ball_is_closed_even_and_on_its_surface():
     assert length.max() < 2.5 * length.min()
 
 
+@pytest.mark.nightly
 def test_the_same_is_sculpted_every_time():
     part = next(p for p in shapes.PARTS if p.name == "shoe")
     first, second = mannequin.sculpted(part), mannequin.sculpted(part)

@@ -69,6 +69,7 @@ def test_of_two_hands_on_each_other_one_carries_the_other() -> None:
                 assert not (both and a.start < b.end and b.start < a.end), action.name
 
 
+@pytest.mark.nightly
 def test_spans_lie_in_their_action_in_order_with_keys_in_order() -> None:
     for action in sample().actions():
         start, end = sample().span(action)

@@ -147,6 +147,7 @@ class Heavy:
     """Stands for a project."""
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("quick", [False, True])
 @pytest.mark.parametrize("way", ["done", "failed", "cancelled"])
 def test_a_job_that_is_over_is_freed_with_all_it_holds(jobs, qtbot, quick, way):

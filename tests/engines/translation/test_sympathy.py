@@ -58,6 +58,7 @@ for (const m of found) console.log(m.id, ...[m.start, m.valence, m.arousal, m.en
     assert done.stdout.splitlines() == said()
 
 
+@pytest.mark.nightly
 def test_cpp_takes_up_the_same(tmp_path: Path) -> None:
     if shutil.which("g++") is None:
         pytest.skip("needs g++")

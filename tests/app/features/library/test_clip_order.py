@@ -31,6 +31,7 @@ def test_any_names_can_be_compared(names):
     assert all(natural(a) <= natural(b) for a, b in pairwise(found))
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("order", [order for order in ORDERS if order != GIVEN])
 def test_clips_are_listed_in_the_order_that_is_chosen_and_back(toys, order):
     panel = toys.library

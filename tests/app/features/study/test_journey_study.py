@@ -190,6 +190,7 @@ def test_a_whole_sitting(drive, takes_part, tiny, tmp_path):
     assert log.events[0]["machine"].keys() == {"os", "python", "screen"}
 
 
+@pytest.mark.nightly
 def test_a_sitting_that_was_broken_off_goes_on_with_the_work_as_it_was(drive, takes_part, tiny):
     d = drive
     p = takes_part()
@@ -386,6 +387,7 @@ app.exec()
 """
 
 
+@pytest.mark.nightly
 def test_a_window_that_is_killed_loses_nothing(tiny, tmp_path, qapp):
     env = {
         **os.environ,

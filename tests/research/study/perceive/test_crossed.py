@@ -98,6 +98,7 @@ def test_what_has_no_end_or_says_the_same_twice_has_no_model() -> None:
     assert fit([1, 0] * 4, divided, [0, 0, 1, 1, 2, 2, 3, 3], [0, 1] * 4) is None
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(("people", "items", "spread"), [(24, 10, (0.6, 0.3)), (20, 16, (0.0, 0.0))])
 def test_of_studies_without_a_preference_about_one_in_twenty_finds_one(
     people: int, items: int, spread: tuple[float, float]
