@@ -24,7 +24,6 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMenu, QMessageBox, QWidget
 
 from app.main import prepare
-from app.stage import playback_source
 from tests.app.handles import Handles
 from tests.app.shared_window import SharedWindow, close, settle
 from tests.run_notes import NOTES
@@ -32,7 +31,6 @@ from tests.run_notes import NOTES
 # Off Linux windows are driven unseen: what needs a real pointer or OpenGL is left out there, and nothing else.
 if not sys.platform.startswith("linux"):
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
-playback_source.WATCHED = 10**9  # tests that compile beside others would be slow
 UNSEEN = os.environ.get("QT_QPA_PLATFORM") == "offscreen"
 
 
