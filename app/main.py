@@ -10,7 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QCoreApplication, QLibraryInfo, QSettings, Qt, QTimer, QTranslator
+from PySide6.QtCore import QCoreApplication, QLibraryInfo, QLocale, QSettings, Qt, QTimer, QTranslator
 from PySide6.QtGui import QSurfaceFormat
 from PySide6.QtWidgets import QApplication
 
@@ -49,13 +49,25 @@ def _application() -> QApplication:
     QCoreApplication.setApplicationName("Metagraph")
     QCoreApplication.setOrganizationName("Metagraph")
     app = QApplication(sys.argv[:1])
-    translation.choose_as_told(QSettings())  # before anything is imported that says a word
-    if translation.language() != translation.ENGLISH:
-        translator = QTranslator(app)  # what Qt itself says
-        place = QLibraryInfo.path(QLibraryInfo.LibraryPath.TranslationsPath)
-        if translator.load(f"qtbase_{translation.language()}", place):
-            app.installTranslator(translator)
+    translation.choose_language(QSettings(), QLocale.system().uiLanguages())
+    follow_language(app)
     return app
+
+
+def follow_language(app: QApplication) -> None:
+    """Let Qt's own texts, and numbers and dates in fields, follow the chosen language."""
+    from app.translation import ENGLISH, current_language
+
+    code = current_language()
+    QLocale.setDefault(QLocale(code))
+    for translator in app.findChildren(QTranslator):
+        app.removeTranslator(translator)
+        translator.deleteLater()
+    if code != ENGLISH:
+        translator = QTranslator(app)
+        place = QLibraryInfo.path(QLibraryInfo.LibraryPath.TranslationsPath)
+        if translator.load(f"qtbase_{code}", place):
+            app.installTranslator(translator)
 
 
 def make_window() -> Window:
@@ -123,8 +135,41 @@ def run_window(path: Path | None, sample: bool = False, clip: str | None = None)
     gc.disable()  # what is made until the window is there lives as long as it; else 0.08 s later
     app = prepare()
     faults.install(folder())
-    window = open_window(path, sample, clip)  # lives as long as the program
+    keeper = WindowKeeper(open_window(path, sample, clip))
     gc.freeze()
     gc.enable()
-    window.shell.faults.offer_left()
+    keeper.window.shell.faults.offer_left()
     return app.exec()
+
+
+class WindowKeeper:
+    """Keeps the window as long as the program runs, and replaces it when the user chooses a language: the new
+    one goes on with the same project, undo steps and place.
+    """
+
+    def __init__(self, window: Window) -> None:
+        self.window = window
+        self._follow()
+
+    def _follow(self) -> None:
+        # Later: the menu that was clicked goes with its window.
+        self.window.language_chosen.connect(self.change_language, Qt.ConnectionType.QueuedConnection)
+
+    def change_language(self, code: str) -> None:
+        """Show the window in a language. While something runs that would end with the window, say so."""
+        from app import translation
+        from app.shell.handing_over import hand_over, why_not_now
+
+        old, before = self.window, translation.current_language()
+        if code == before:
+            return
+        why = why_not_now(old)
+        if why:
+            old.shell.tell(why)
+            return
+        translation.choose(code)
+        follow_language(prepare())
+        old.workspaces.save()
+        self.window = make_window()
+        self._follow()
+        hand_over(old, self.window)

@@ -1,128 +1,224 @@
-"""The window's words in another language.
+"""The texts of the window in the language that the user chose.
 
-English stands in the code, inside `tr`; a language is a file of English texts and what stands in their place
-(`languages/de.json`), the form that translation services call flat JSON. What a language lacks is shown in
-English. It is chosen once, before the window is made. What the domain says of files and graphs knows its
-templates (`metagraph.common.wording`) and is translated where it is shown.
+English stands in the code, inside `tr` and its kin; other languages are gettext catalogues
+(`app/languages/de/LC_MESSAGES/metagraph.po`). `python -m app.languages` collects the texts and compiles the
+catalogues. A text without a translation is shown in English. The domain's phrases
+(`metagraph.common.wording`) are translated where they are shown.
 """
 
 from __future__ import annotations
 
+import gettext
 import os
-from collections import OrderedDict
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar, cast
 
-from metagraph.common.wording import Told, reworded
+from metagraph.common.wording import Phrase, fill, translate_phrase
 from metagraph.errors import error_words
 
+T = TypeVar("T")
 ENGLISH = "en"
-NAMES = {"en": "English", "de": "Deutsch"}  # languages by what they call themselves
+NAMES = {"en": "English", "de": "Deutsch", "pl": "Polski"}  # each language as it calls itself
+# The Polish catalogue covers the first screens only, so it is chosen by hand, never because of the system.
+COMPLETE = ("en", "de")
+FOLDER = Path(__file__).parent / "languages"
 
-REMEMBERED = 2048  # texts
-# Between thousands where English has a comma, which elsewhere stands before parts of one: a narrow space, as
-# ISO 80000-1 has it.
-THOUSANDS = "\u202f"
-
-_words: Mapping[str, str] = {}
-_english: OrderedDict[str, str] = OrderedDict()  # what was lately shown, and what that is in English
-_language = ENGLISH
+# Between thousands and before decimals, by language. A narrow space between thousands is ISO 80000-1's.
+SEPARATORS = {"en": (",", "."), "de": ("\u202f", ","), "pl": ("\u202f", ",")}
 
 
-def tr(text: str, **values: object) -> str:
-    """Return a text in the language that was chosen. values: of what it has in braces, as `str.format` has
-    it; without any, braces are braces.
+class _Language:
+    """The chosen language: its code, its catalogue, and how it writes numbers."""
+
+    def __init__(self, code: str) -> None:
+        self.code = code
+        self.catalogue = load_catalogue(code)
+        self.separators = dict(zip((44, 46), SEPARATORS[code], strict=True))  # by the code points of , and .
+
+
+_chosen: _Language | None = None  # None: English
+
+
+class Shown(str):
+    """Text in another language that knows what it is in English."""
+
+    __slots__ = ("english",)
+    english: str
+
+    @classmethod
+    def of(cls, text: str, english: str) -> Shown:
+        made = cls(text)
+        made.english = english
+        return made
+
+
+def tr(text: str, /, **values: object) -> str:
+    """Return a text in the chosen language. values: for the braces in the text, as in `str.format`; without
+    any, braces are braces.
     """
-    found = _words.get(text, text)
-    if not _words:
-        return found.format(**values) if values else found
-    shown = found.format(**{k: _said(v) for k, v in values.items()}) if values else found
-    _remember(shown, text.format(**{k: _in_english(v) for k, v in values.items()}) if values else text)
-    return shown
+    if _chosen is None:
+        return fill(text, values)
+    return _filled(_look_up(text), text, values)
 
 
-def _remember(shown: str, english: str) -> None:
-    _english[shown] = english
-    _english.move_to_end(shown)
-    if len(_english) > REMEMBERED:
-        _english.popitem(last=False)
-
-
-def in_english(text: str) -> str:
-    """Return what was lately said, by `tr` or `tr_told`, in English: for logs that are to be read by others.
-    A text that was not is returned as it is.
+def tr_plural(one: str, many: str, count: int, /, **values: object) -> str:
+    """Return a text that depends on a count: `tr_plural("{count:,} clip", "{count:,} clips", 3)` is
+    "3 clips".
     """
-    return str(_english.get(text, text))
+    english = one if count == 1 else many
+    values = {"count": count, **values}
+    if _chosen is None:
+        return english.format(**values)
+    return _filled(_chosen.catalogue.ngettext(one, many, count), english, values)
 
 
-class _Grouped(int):
-    """A whole number in another language than English."""
-
-    def __format__(self, form: str) -> str:
-        return format(int(self), form).replace(",", THOUSANDS)
-
-
-def grouped(count: int) -> str:
-    """Return a whole number as it stands in the language that was chosen: "2,328"."""
-    return f"{_said(count):,}"
-
-
-def _said(value: object) -> object:
-    """Return a value as it stands in a text: what the domain says in the same language."""
-    if isinstance(value, BaseException):
-        return tr_error(value)
-    if isinstance(value, str):
-        return tr_told(value)
-    return _Grouped(value) if _words and type(value) is int else value
-
-
-def _in_english(value: object) -> object:
-    return _english.get(value, value) if isinstance(value, str) else value
-
-
-def tr_told(words: str) -> str:
-    """Return what the domain says in the language that was chosen, where it knows how it was made."""
-    if not _words or not isinstance(words, Told):
-        return words
-    shown = reworded(words, lambda template: _words.get(template, template), _said)
-    _remember(shown, str(words))
-    return shown
-
-
-def tr_error(error: object) -> str:
-    """Return what an error says, in the language that was chosen."""
-    return tr_told(error_words(error)) if isinstance(error, BaseException) else str(error)
+def tr_context(context: str, text: str, /, **values: object) -> str:
+    """Return a text that means different things in different places. context: tells translators which."""
+    if _chosen is None:
+        return fill(text, values)
+    return _filled(_chosen.catalogue.pgettext(context, text), text, values)
 
 
 def tr_noop(text: str) -> str:
-    """Return a text as it is: one that is looked up later, by `tr` of what holds it."""
+    """Return a text as it is, marked for translators: whoever shows it calls `tr` with it."""
     return text
 
 
-def language() -> str:
-    """Return the code of the language that was chosen."""
-    return _language
+def tr_phrase(words: str) -> str:
+    """Return a phrase of the domain in the chosen language; other text as it is."""
+    if _chosen is None or not isinstance(words, Phrase):
+        return words
+    return Shown.of(translate_phrase(words, _template, _show), str(words))
+
+
+def tr_error(error: object) -> str:
+    """Return the message of an error in the chosen language."""
+    return tr_phrase(error_words(error)) if isinstance(error, BaseException) else str(error)
+
+
+def in_english(text: str) -> str:
+    """Return a text that `tr` and its kin returned in English, for logs that others read; other text as it
+    is.
+    """
+    return text.english if isinstance(text, Shown) else text
+
+
+def group_thousands(count: int) -> str:
+    """Return a whole number as the chosen language writes it: "2,328"."""
+    return f"{_show(count):,}"
+
+
+class _Int(int):
+    """A whole number that is formatted as the chosen language writes it."""
+
+    def __format__(self, form: str) -> str:
+        return _localize(format(int(self), form))
+
+
+class _Float(float):
+    """A number that is formatted as the chosen language writes it."""
+
+    def __format__(self, form: str) -> str:
+        return _localize(format(float(self), form))
+
+
+def _localize(number: str) -> str:
+    return number if _chosen is None else number.translate(_chosen.separators)
+
+
+def _show(value: object) -> Any:
+    """Return a value as it appears in a text."""
+    if isinstance(value, BaseException):
+        return tr_error(value)
+    if isinstance(value, str):
+        return tr_phrase(value)
+    if isinstance(value, float):
+        return _Float(value)
+    return _Int(value) if type(value) is int else value
+
+
+def _filled(template: str, english: str, values: Mapping[str, object]) -> Shown:
+    if not values:
+        return Shown.of(template, english)
+    there = english.format(**{name: _in_english(value) for name, value in values.items()})
+    return Shown.of(template.format(**{name: _show(value) for name, value in values.items()}), there)
+
+
+def _in_english(value: object) -> object:
+    return in_english(value) if isinstance(value, str) else value
+
+
+def _look_up(text: str) -> str:
+    assert _chosen is not None
+    return _chosen.catalogue.gettext(text) if text else text  # "" would find the header
+
+
+def _template(words: Phrase) -> str:
+    assert _chosen is not None
+    if words.plural:
+        return _chosen.catalogue.ngettext(words.template, words.plural, words.values["count"])
+    return _look_up(words.template)
+
+
+class _Translated:
+    """Behaves like the dict or tuple that `make` returns, made again in each language."""
+
+    __slots__ = ("_code", "_made", "_make")
+
+    def __init__(self, make: Callable[[], Any]) -> None:
+        self._make, self._made, self._code = make, None, ""
+
+    def _now(self) -> Any:
+        if self._code != current_language():
+            self._made, self._code = self._make(), current_language()
+        return self._made
+
+    def __getitem__(self, key: Any) -> Any:
+        return self._now()[key]
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter(self._now())
+
+    def __len__(self) -> int:
+        return len(self._now())
+
+    def __contains__(self, key: object) -> bool:
+        return key in self._now()
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._now(), name)
+
+
+def translated(make: Callable[[], T]) -> T:
+    """Return a dict or tuple of texts for a module to hold: what `make` returns, in the language chosen when
+    it is used. A single text is held by `tr_noop`, and shown by `tr`.
+    """
+    return cast(T, _Translated(make))
+
+
+def current_language() -> str:
+    """Return the code of the chosen language."""
+    return ENGLISH if _chosen is None else _chosen.code
 
 
 def choose(code: str) -> None:
-    """Choose a language for all that is asked from now on; English where there is none of that code."""
-    global _words, _language
-    found = code if code in NAMES else ENGLISH
-    _words, _language = words_of(found), found
-    _english.clear()
+    """Show all texts in a language from now on; in English where there is none of that code."""
+    global _chosen
+    _chosen = _Language(code) if code in NAMES and code != ENGLISH else None
 
 
-def words_of(code: str) -> dict[str, str]:
-    """Return English texts and what stands in their place."""
+def load_catalogue(code: str) -> gettext.NullTranslations:
+    """Return the catalogue of a language; an empty one for English. Raises OSError where it is missing."""
     if code == ENGLISH:
-        return {}
-    import msgspec
-
-    file = Path(__file__).parent / "languages" / f"{code}.json"
-    return msgspec.json.decode(file.read_bytes(), type=dict[str, str])
+        return gettext.NullTranslations()
+    return gettext.translation("metagraph", FOLDER, [code])
 
 
-def choose_as_told(settings: Any) -> None:
-    """Choose what METAGRAPH_LANGUAGE says, else the settings."""
-    choose(os.environ.get("METAGRAPH_LANGUAGE") or str(settings.value("language", ENGLISH)))
+def choose_language(settings: Any, system: Iterable[str] = ()) -> None:
+    """Choose the language that METAGRAPH_LANGUAGE names, else the one in the settings, else the first of the
+    system's that we have. system: language tags, such as "de-AT".
+    """
+    kept = os.environ.get("METAGRAPH_LANGUAGE") or str(settings.value("language", ""))
+    wanted = [tag.replace("_", "-").split("-")[0].lower() for tag in system]
+    choose(kept or next((code for code in wanted if code in COMPLETE), ENGLISH))

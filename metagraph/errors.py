@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 
 
 def shown(text: str) -> str:
@@ -24,9 +24,9 @@ class FileError(Exception):
     def __init__(self, path: str | Path, cause: str, where: str = "", remedy: str = "") -> None:
         self.path, self.cause, self.where, self.remedy = Path(path), cause, where, remedy
         name = shown(self.path.name)  # a name may be bytes in no known encoding
-        place = told("{file}, {where}", file=name, where=shown(where)) if where else name
+        place = phrase("{file}, {where}", file=name, where=shown(where)) if where else name
         words = "{place}: {cause}. {remedy}" if remedy else "{place}: {cause}."
-        super().__init__(told(words, place=place, cause=shown(cause), remedy=remedy))
+        super().__init__(phrase(words, place=place, cause=shown(cause), remedy=remedy))
 
     @property
     def words(self) -> str:

@@ -11,7 +11,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from preview.camera import Camera
 from preview.renderer import Renderer
 from preview.scene import DARK, Scene, Theme
@@ -24,10 +24,12 @@ class OpenGLError(RuntimeError):
 def no_opengl(reasons: str) -> OpenGLError:
     """Return what to raise where OpenGL 3.3 cannot be had. reasons: what the system says."""
     remedy = {
-        "linux": told("Install Mesa's software renderer, on Debian or Ubuntu: apt install libegl1 libgl1"),
-        "darwin": told("Sign in to a graphical session; macOS gives no OpenGL without one"),
-    }.get(sys.platform, told("Install the graphics card's driver"))
-    return OpenGLError(told("There is no OpenGL 3.3 ({reasons}). {remedy}.", reasons=reasons, remedy=remedy))
+        "linux": phrase("Install Mesa's software renderer, on Debian or Ubuntu: apt install libegl1 libgl1"),
+        "darwin": phrase("Sign in to a graphical session; macOS gives no OpenGL without one"),
+    }.get(sys.platform, phrase("Install the graphics card's driver"))
+    return OpenGLError(
+        phrase("There is no OpenGL 3.3 ({reasons}). {remedy}.", reasons=reasons, remedy=remedy)
+    )
 
 
 def standalone_context() -> moderngl.Context:

@@ -14,7 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from app.cli.label_page import SCRIPT, STYLE
-from app.look.plural import many
+from app.look.plural import clips_words
+from app.translation import tr_plural
 from metagraph.common.xml_text import escape
 from metagraph.formats.import_words import counted
 from metagraph.graph.model import KINDS, LAYERS, Project
@@ -87,7 +88,8 @@ def _aside(project: Project, found: Proposals) -> str:
     lines = []
     for why, clips in reasons(found.aside):
         names = ", ".join(escape(project.clips[c].name) for c in clips)
-        lines.append(f"<li>{many(len(clips), 'clip')}: {escape(why)} <span class='dim'>({names})</span></li>")
+        count = clips_words(len(clips))
+        lines.append(f"<li>{count}: {escape(why)} <span class='dim'>({names})</span></li>")
     if not lines:
         return ""
     return f"<h2 id='aside'>Left aside ({len(found.aside)})</h2><ul>{''.join(lines)}</ul>"
@@ -123,10 +125,11 @@ def _overview(project: Project, pictures: Mapping[str, Any]) -> str:
             count = {kind: len(graph.of(stance.id, kind)) for kind in KINDS}
             into = sum(a.end_stance == stance.id for a in graph.actions.values() if a.kind == "transition")
             clips = {a.clip for a in graph.actions.values() if stance.id in (a.stance, a.end_stance)}
+            gestures = tr_plural("{count:,} gesture", "{count:,} gestures", count["gesture"])
+            fidgets = tr_plural("{count:,} fidget", "{count:,} fidgets", count["fidget"])
             lines = (
-                f"{layer}, {many(len(clips), 'clip')}",
-                f"{KIND_MARKS['gesture']} {many(count['gesture'], 'gesture')}, "
-                f"{KIND_MARKS['fidget']} {many(count['fidget'], 'fidget')}",
+                f"{layer}, {clips_words(len(clips))}",
+                f"{KIND_MARKS['gesture']} {gestures}, {KIND_MARKS['fidget']} {fidgets}",
                 f"{KIND_MARKS['transition']} {count['transition']} out, {into} in",
             )
             said = "".join(f"<span class='dim'>{line}</span>" for line in lines)

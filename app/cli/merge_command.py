@@ -9,7 +9,7 @@ from pathlib import Path
 
 from app.cli.command_output import say
 from app.cli.outputs import ProjectOutput
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.outputs import claim, wrote
 from metagraph.formats.project.merging import MergeError, merge
@@ -60,9 +60,9 @@ def run(options: Namespace) -> int:
         if not given.exists():
             raise FileError(
                 given,
-                told("is not there"),
-                told("the project"),
-                told("Name three projects: BASE OURS THEIRS."),
+                phrase("is not there"),
+                phrase("the project"),
+                phrase("Name three projects: BASE OURS THEIRS."),
             )
     path = options.output or options.ours
     if not (path.exists() and path.samefile(options.ours)):
@@ -83,7 +83,7 @@ def program() -> Path:
 def _merged(options: Namespace, output: ProjectOutput) -> int:
     base, ours, theirs = (_read(path) for path in (options.base, options.ours, options.theirs))
     name = options.name or options.ours.name
-    sides = (told("in ours"), told("in theirs"))
+    sides = (phrase("in ours"), phrase("in theirs"))
     try:
         if options.prefer == "theirs":
             found = merge(base, theirs, ours, sides[::-1])
@@ -92,9 +92,9 @@ def _merged(options: Namespace, output: ProjectOutput) -> int:
     except MergeError as error:
         raise FileError(
             options.theirs,
-            told("does not go together with ours: {error}", error=error),
-            told("the project"),
-            told("Open one of the two and import the other into it (File > Import project)."),
+            phrase("does not go together with ours: {error}", error=error),
+            phrase("the project"),
+            phrase("Open one of the two and import the other into it (File > Import project)."),
         ) from None
     output.save(found.project)
     for line in found.kept:

@@ -2,39 +2,49 @@
 
 from __future__ import annotations
 
-from app.translation import tr, tr_noop
+from app.translation import tr, tr_noop, translated
 
-KIND_TITLES = {
-    "stance": tr("Stance"),
-    "gesture": tr("Gesture"),
-    "fidget": tr("Fidget"),
-    "transition": tr("Transition"),
-}
-MANY_OF_KIND = {
-    "stance": tr("Stances"),
-    "gesture": tr("Gestures"),
-    "fidget": tr("Fidgets"),
-    "transition": tr("Transitions"),
-}
-LAYER_TITLES = {"body": tr("Body"), "arms": tr("Arms"), "head": tr("Head")}
-LAYER_LONG_TITLES = {"body": tr("Body layer"), "arms": tr("Arms layer"), "head": tr("Head layer")}
-COLOR_TITLES = {
-    "": "",
-    "red": tr("Red"),
-    "orange": tr("Orange"),
-    "yellow": tr("Yellow"),
-    "green": tr("Green"),
-    "blue": tr("Blue"),
-    "purple": tr("Purple"),
-}
-COLOR_LABELS = {
-    "red": tr("Red label"),
-    "orange": tr("Orange label"),
-    "yellow": tr("Yellow label"),
-    "green": tr("Green label"),
-    "blue": tr("Blue label"),
-    "purple": tr("Purple label"),
-}
+KIND_TITLES = translated(
+    lambda: {
+        "stance": tr("Stance"),
+        "gesture": tr("Gesture"),
+        "fidget": tr("Fidget"),
+        "transition": tr("Transition"),
+    }
+)
+MANY_OF_KIND = translated(
+    lambda: {
+        "stance": tr("Stances"),
+        "gesture": tr("Gestures"),
+        "fidget": tr("Fidgets"),
+        "transition": tr("Transitions"),
+    }
+)
+LAYER_TITLES = translated(lambda: {"body": tr("Body"), "arms": tr("Arms"), "head": tr("Head")})
+LAYER_LONG_TITLES = translated(
+    lambda: {"body": tr("Body layer"), "arms": tr("Arms layer"), "head": tr("Head layer")}
+)
+COLOR_TITLES = translated(
+    lambda: {
+        "": "",
+        "red": tr("Red"),
+        "orange": tr("Orange"),
+        "yellow": tr("Yellow"),
+        "green": tr("Green"),
+        "blue": tr("Blue"),
+        "purple": tr("Purple"),
+    }
+)
+COLOR_LABELS = translated(
+    lambda: {
+        "red": tr("Red label"),
+        "orange": tr("Orange label"),
+        "yellow": tr("Yellow label"),
+        "green": tr("Green label"),
+        "blue": tr("Blue label"),
+        "purple": tr("Purple label"),
+    }
+)
 
 # What stands in sentences and lists as the domain writes it: whoever shows one says `tr(word)`.
 WORDS = (

@@ -6,15 +6,10 @@ import re
 from collections.abc import Sequence
 from functools import lru_cache
 
-from app.translation import tr
+from app.translation import tr, tr_plural
 
 FRONT = "@|:"  # what studios put between a character's name and an action's
 _RUN = re.compile(r"[^\W\d_]+|\d+")  # of letters, or of digits
-
-
-def many(count: int, noun: str) -> str:
-    """Return "1 clip", "2,328 connections"."""
-    return tr(f"{{count:,}} {noun}{'s' if count != 1 else ''}", count=count)
 
 
 def listed(words: Sequence[str]) -> str:
@@ -68,4 +63,4 @@ def _begins_word(name: str, i: int) -> bool:
 
 def clips_words(count: int) -> str:
     """Return "1 clip", "152 clips"."""
-    return many(count, "clip")
+    return tr_plural("{count:,} clip", "{count:,} clips", count)

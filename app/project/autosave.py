@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QStandardPaths
 
-from app.translation import tr, tr_told
+from app.translation import tr, tr_phrase
 from metagraph.errors import FileError
 from metagraph.formats.new_file import PRIVATE
 from metagraph.formats.project.journal import Done, How, Journal, journal_path
@@ -70,6 +70,11 @@ class Autosave:
         if old is not None and (base is None or old.path != journal.path):
             old.remove()
         self._forget_abandoned(journal.path if journal.begun else None)
+
+    def take_over(self, other: Autosave) -> None:
+        """Go on with the journal of another window."""
+        self.journal, other.journal = other.journal, None
+        self._abandoned, other._abandoned = other._abandoned, []
 
     def _made(self, place: Path) -> Journal:
         document = self.document
@@ -138,7 +143,7 @@ class Autosave:
     def tell(self) -> None:
         notes = self.journal.notes if self.journal is not None else []
         while notes:
-            self._warn(tr_told(notes.pop(0)))
+            self._warn(tr_phrase(notes.pop(0)))
 
     def _warn(self, words: str) -> None:
         self.document.failed.emit(words)

@@ -237,6 +237,37 @@ class Document(QObject):
         self._restoring = False
         self.undo_stack.blockSignals(False)
 
+    def take_over(self, other: Document) -> None:
+        """Go on with the document of another window, which lets go of it: project, steps, file, lock and
+        journal.
+        """
+        before, self.project, self.path = self.project, other.project, other.path
+        self.owner, self.common, self.digest = other.owner, other.common, other.digest
+        self.access, self._home = other.access, other._home
+        self.read_only, self._returned = other.read_only, other._returned
+        self.lock, other.lock = other.lock, None
+        self.autosave.take_over(other.autosave)
+        theirs, stack = other.undo_stack, self.undo_stack
+        made = [c for c in map(theirs.command, range(theirs.count())) if isinstance(c, _Change)]
+        stack.clear()
+        self._restore([Step(c.text(), c.before, c.after) for c in made])
+        for step, theirs_step in zip(map(stack.command, range(stack.count())), made, strict=True):
+            assert isinstance(step, _Change)
+            step.english = theirs_step.english
+        stack.blockSignals(True)
+        self._restoring = True  # only the stack moves, to where the other stands
+        if theirs.cleanIndex() < 0:
+            stack.resetClean()
+        else:
+            stack.setIndex(theirs.cleanIndex())
+            stack.setClean()
+        stack.setIndex(theirs.index())
+        self._restoring = False
+        stack.blockSignals(False)
+        self.loaded.emit()
+        self.changed.emit(before, self.project)
+        self.state_changed.emit()
+
     def reload(self, project: Project, digest: str) -> None:
         """Take over what another program has made of the file: one step, which can be undone, to the saved
         state.

@@ -42,10 +42,13 @@ if TYPE_CHECKING:
     from app.project.recovering import Choice
 
 RECENT = 10
-FILTER = tr("Metagraph projects (*{ending} *.yaml);;All files (*)", ending=SUFFIX)
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / f"sample{SUFFIX}"
 SEATED = Path(__file__).resolve().parents[2] / "sample_clips" / f"seated{SUFFIX}"
 PRACTICE = Path(__file__).resolve().parents[2] / "sample_clips" / f"practice{SUFFIX}"
+
+
+def _filter() -> str:
+    return tr("Metagraph projects (*{ending} *.yaml);;All files (*)", ending=SUFFIX)
 
 
 class Files(QObject):
@@ -96,7 +99,7 @@ class Files(QObject):
         if self.refuse():
             return
         name, _ = QFileDialog.getOpenFileName(
-            self.window, tr("Open project"), str(self.document.folder or Path.home()), FILTER
+            self.window, tr("Open project"), str(self.document.folder or Path.home()), _filter()
         )
         if name:
             self.open(Path(name))
@@ -268,7 +271,10 @@ class Files(QObject):
     def save_as(self) -> bool:
         start = self.document.folder or Path.home()
         name, _ = QFileDialog.getSaveFileName(
-            self.window, tr("Save project as"), str(start / f"{self.document.project.name}{SUFFIX}"), FILTER
+            self.window,
+            tr("Save project as"),
+            str(start / f"{self.document.project.name}{SUFFIX}"),
+            _filter(),
         )
         if not name:
             return False

@@ -18,7 +18,7 @@ from app.project.jobs import Job, Jobs
 from app.project.kept_maps import kept_maps
 from app.project.load import Load
 from app.project.opening import take_over
-from app.translation import tr, tr_told
+from app.translation import tr, tr_phrase
 from metagraph.formats.clip_readers import clip_suffixes
 from metagraph.formats.import_words import Remedy, counted, head, said
 from metagraph.formats.imports import Imported, Strangers, import_files
@@ -27,8 +27,11 @@ from metagraph.formats.store import Opened, load_returned
 from metagraph.formats.takes import NAME
 from metagraph.graph.model import Project
 
-CLIPS = tr("Clips ({endings});;All files (*)", endings=" ".join(f"*{x}" for x in clip_suffixes()))
 Retarget = Callable[[Sequence[Strangers], Callable[[Imported], None]], None]
+
+
+def _filter() -> str:
+    return tr("Clips ({endings});;All files (*)", endings=" ".join(f"*{x}" for x in clip_suffixes()))
 
 
 @dataclass(frozen=True)
@@ -88,7 +91,7 @@ class Importing(QObject):
         if self.files.refuse():
             return
         names, _ = QFileDialog.getOpenFileNames(
-            self.widget, tr("Import clips"), str(self.document.folder or Path.home()), CLIPS
+            self.widget, tr("Import clips"), str(self.document.folder or Path.home()), _filter()
         )
         if names:
             self.import_paths(names)
@@ -174,7 +177,7 @@ class Importing(QObject):
             )
             return
         before = [note for note in result.notes if note.endswith("retargeted as before")]
-        self.told.emit(". ".join([tr_told(said(result)), *before]))
+        self.told.emit(". ".join([tr_phrase(said(result)), *before]))
         clips = self.load_for(result).clips
         repairs = repairs_of(self.document.project, clips)
         if any(
@@ -182,8 +185,8 @@ class Importing(QObject):
         ):  # a name is plain to see, and no reason to interrupt
             told = {found.repair.words for found in repairs}
             notes = [note for note in result.notes if note.split(": ", 1)[-1] not in told]
-            lines = [tr_told(line) for line in counted([*result.failures, *notes])]
-            self.noticed.emit(tr_told(head(result)), clips, lines)
+            lines = [tr_phrase(line) for line in counted([*result.failures, *notes])]
+            self.noticed.emit(tr_phrase(head(result)), clips, lines)
         self.ended.emit(result)
 
     def load_for(self, result: Imported) -> Load:

@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtWidgets import QFileDialog, QWidget
 
-from app.look.plural import many
 from app.project.document import Document
 from app.project.files import Files
 from app.project.importing import FileDrop, Importing
 from app.project.jobs import Job, Jobs
-from app.translation import tr
+from app.translation import tr, tr_plural
 from metagraph.formats.clip_readers import clip_suffixes
 from metagraph.formats.imports import Imported
 from metagraph.graph.model import Project
@@ -25,7 +24,10 @@ if TYPE_CHECKING:
     from metagraph.formats.action_labels import LabelRow
 
 ENDING = ".labels.json"
-FILES = tr("Labels (*{ending});;JSON (*.json);;All files (*)", ending=ENDING)
+
+
+def _filter() -> str:
+    return tr("Labels (*{ending});;JSON (*.json);;All files (*)", ending=ENDING)
 
 
 @dataclass(frozen=True)
@@ -70,7 +72,7 @@ class LabelFiles:
         if self._files.refuse():
             return
         name, _ = QFileDialog.getOpenFileName(
-            self._widget, tr("Import labels"), str(self._document.folder or Path.home()), FILES
+            self._widget, tr("Import labels"), str(self._document.folder or Path.home()), _filter()
         )
         if name:
             self.take([Path(name)])
@@ -107,9 +109,17 @@ class LabelFiles:
                 return project
 
             self._document.edit(
-                tr("Import labels of {actions}", actions=many(len(read.rows), "action")), edit
+                tr(
+                    "Import labels of {actions}",
+                    actions=tr_plural("{count:,} action", "{count:,} actions", len(read.rows)),
+                ),
+                edit,
             )
-            told = tr("Labelled {met} of {actions}", met=met, actions=many(len(read.rows), "action"))
+            told = tr(
+                "Labelled {met} of {actions}",
+                met=met,
+                actions=tr_plural("{count:,} action", "{count:,} actions", len(read.rows)),
+            )
             why = (*left, *read.clips.failures)
             if why:
                 self._importing.report.emit(told, list(why))

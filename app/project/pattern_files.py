@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.translation import tr, tr_error
+from app.translation import tr, tr_error, tr_noop
 from metagraph.common.budgets import LIST_FILE
 from metagraph.common.files import read_file
 from metagraph.errors import FileError
@@ -15,7 +15,7 @@ from metagraph.formats.atomic import write_atomically
 if TYPE_CHECKING:
     from metagraph.suggest.words.patterns import Patterns
 
-REMEDY = tr("Export name patterns from the window, or write them as docs/labels.md says.")
+REMEDY = tr_noop("Export name patterns from the window, or write them as docs/labels.md says.")
 
 
 def read_patterns(path: Path) -> Patterns:
@@ -26,12 +26,15 @@ def read_patterns(path: Path) -> Patterns:
         return Patterns.from_json(json.loads(read_file(path, LIST_FILE).decode("utf-8")))
     except json.JSONDecodeError as error:
         raise FileError(
-            path, tr("it is not JSON: {why}", why=error.msg), tr("line {number}", number=error.lineno), REMEDY
+            path,
+            tr("it is not JSON: {why}", why=error.msg),
+            tr("line {number}", number=error.lineno),
+            tr(REMEDY),
         ) from None
     except (UnicodeDecodeError, RecursionError):
-        raise FileError(path, tr("it is not JSON"), tr("on reading name patterns"), REMEDY) from None
+        raise FileError(path, tr("it is not JSON"), tr("on reading name patterns"), tr(REMEDY)) from None
     except PatternsError as error:
-        raise FileError(path, tr_error(error), tr("on reading name patterns"), REMEDY) from None
+        raise FileError(path, tr_error(error), tr("on reading name patterns"), tr(REMEDY)) from None
 
 
 def write_patterns(path: Path, patterns: Patterns) -> None:

@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 
 from app.look.theme import strengthen
 from app.project.writing import FileChangedError, FolderGoneError
-from app.translation import tr, tr_error, tr_told
+from app.translation import tr, tr_error, tr_phrase
 from metagraph.formats.locking import Holder
 from metagraph.graph.editing.differences import differences
 from metagraph.graph.model import Project
@@ -202,6 +202,6 @@ class DifferencesDialog(QDialog):
         shown = QListWidget(self)
         shown.setWordWrap(True)
         shown.setAccessibleName(title)
-        shown.addItems(list(map(tr_told, lines)))
+        shown.addItems(list(map(tr_phrase, lines)))
         column.addWidget(shown)
         row.addLayout(column, 1)

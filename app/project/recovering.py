@@ -19,11 +19,11 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.look.plural import many
+from app.look.plural import clips_words
 from app.look.theme import strengthen, theme
 from app.project.leftovers import FoundJournal
 from app.project.questions import moment_words
-from app.translation import tr
+from app.translation import tr, tr_plural, translated
 from metagraph.common.files import is_file
 from metagraph.errors import FileError
 from metagraph.formats.project.journal_records import LostEdit
@@ -35,12 +35,14 @@ from metagraph.motion.clip import Clip
 from preview.joints import above, drawn
 
 Choice = Literal["recover", "copy", "later", "discard"]
-WORDS: dict[Choice, str] = {
-    "recover": tr("Go on with it"),
-    "copy": tr("Save as a copy beside it"),
-    "later": tr("Keep for later"),
-    "discard": tr("Discard"),
-}
+WORDS: dict[Choice, str] = translated(
+    lambda: {
+        "recover": tr("Go on with it"),
+        "copy": tr("Save as a copy beside it"),
+        "later": tr("Keep for later"),
+        "discard": tr("Discard"),
+    }
+)
 PICTURE = QSize(132, 76)  # pixels
 LOST = 5  # damaged edits that are named
 SHOWN = 4  # sittings that are seen at once
@@ -52,13 +54,15 @@ def left_words(left: Left, saved: Path | None) -> tuple[str, str]:
     """
     named = saved or project_of(left.path)
     name = named.name if named is not None else left.project.name or tr("untitled")
+    count = sum(1 for _ in left.project.actions())
+    actions = tr_plural("{count:,} action", "{count:,} actions", count)
     words = [
         tr(
             "{edits} in no file, the last of {moment}",
-            edits=many(left.edits, "edit"),
+            edits=tr_plural("{count:,} edit", "{count:,} edits", left.edits),
             moment=moment_words(left.written),
         ),
-        f"{many(len(left.project.clips), 'clip')}, {many(sum(1 for _ in left.project.actions()), 'action')}",
+        f"{clips_words(len(left.project.clips))}, {actions}",
     ]
     if saved is not None and left.saved is not None and left.saved.name != saved.name:
         words.append(tr("Made when the project file was called {name}", name=left.saved.name))

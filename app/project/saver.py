@@ -9,7 +9,7 @@ from PySide6.QtCore import QEventLoop, QObject, Signal
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.project.writing import FileChangedError, FolderGoneError, Writing
-from app.translation import tr, tr_told
+from app.translation import tr, tr_phrase
 
 
 class Saver(QObject):
@@ -83,7 +83,7 @@ class Saver(QObject):
         self._writing = None
         self.saved.emit(writing.target, writing.anew)
         if writing.note is not None:
-            self.noted.emit(writing.target, tr_told(writing.note))
+            self.noted.emit(writing.target, tr_phrase(writing.note))
         self._go_on()
 
     def _stopped(self, error: Exception, path: Path | None) -> None:

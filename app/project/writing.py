@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from metagraph.common.files import is_file
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.new_file import Access
 from metagraph.formats.project.appended_file import Identity, folder_now, identity_of
@@ -32,12 +32,12 @@ class FolderGoneError(FileError):
 
     def __init__(self, path: Path, place: Path | None) -> None:
         self.place = place
-        cause = told("its folder {folder} is not there any more", folder=path.parent)
-        remedy = told("Save the project in another place; your edits are kept until then.")
+        cause = phrase("its folder {folder} is not there any more", folder=path.parent)
+        remedy = phrase("Save the project in another place; your edits are kept until then.")
         if place is not None:
-            cause = told("its folder {folder} is now {place}", folder=path.parent, place=place)
-            remedy = told("Save the project there, or in another place; your edits are kept until then.")
-        super().__init__(path, cause, told("on saving it"), remedy)
+            cause = phrase("its folder {folder} is now {place}", folder=path.parent, place=place)
+            remedy = phrase("Save the project there, or in another place; your edits are kept until then.")
+        super().__init__(path, cause, phrase("on saving it"), remedy)
 
     def __reduce__(self) -> tuple[type[FolderGoneError], tuple[Path, Path | None]]:  # type: ignore[override]
         return type(self), (self.path, self.place)

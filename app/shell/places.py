@@ -372,7 +372,7 @@ class Places:
         for ident in order:
             area = self.area(ident, workspace)
             if area not in workspace.areas:
-                raise ValueError(f"panel {ident!r}: the workspace {workspace.title} has no area {area!r}")
+                raise ValueError(f"panel {ident!r}: the workspace {workspace.id} has no area {area!r}")
             out.setdefault(area, []).append(self.docks[ident])
         return out
 

@@ -7,7 +7,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QEvent, QSettings, Qt, QTimer
+from PySide6.QtCore import QEvent, QSettings, Qt, QTimer, Signal
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDragMoveEvent, QDropEvent, QKeyEvent
 from PySide6.QtWidgets import QAbstractButton, QApplication, QComboBox, QMainWindow
 
@@ -81,7 +81,13 @@ class WindowShell:
 class Window(QMainWindow):
     """Owns the shell, and composes panels, menus, header and status bar of what the features contribute to
     it.
+
+    language_chosen: the code of a language, for whoever can replace the window. replaced: another window goes
+    on with the document.
     """
+
+    language_chosen = Signal(str)
+    replaced = False
 
     def __init__(self, features: Iterable[Contribute]) -> None:
         super().__init__()
@@ -141,7 +147,7 @@ class Window(QMainWindow):
                     icon="theme",
                     study=True,
                 ),
-                language_command(self.shell),
+                language_command(self.shell, self.language_chosen.emit),
             ),
         )
 
@@ -281,7 +287,7 @@ class Window(QMainWindow):
             self.shell.importing.import_paths([str(p) for p in paths])
 
     def closeEvent(self, event: QCloseEvent) -> None:
-        if not self.shell.files.may_leave():
+        if not self.replaced and not self.shell.files.may_leave():
             event.ignore()
             return
         self.shell.faults.stop()

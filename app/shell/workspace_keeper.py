@@ -42,7 +42,7 @@ class Workspaces(QObject):
     def __init__(self, places: Places, parent: QObject) -> None:
         super().__init__(parent)
         self.places = places
-        self.tabs: list[Tab] = [Tab(w.id, w.title, w) for w in WORKSPACES]
+        self.tabs: list[Tab] = [Tab(w.id, tr(w.title), w) for w in WORKSPACES]
         self.current = FIRST.id
         self._panels = " ".join(sorted(places.docks))
 

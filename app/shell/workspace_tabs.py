@@ -55,7 +55,7 @@ def commands(keeper: Callable[[], Workspaces], window: QWidget) -> tuple[Command
                 partial(title, n),
                 partial(choose, n),
                 (f"Ctrl+Alt+{n + 1}",),
-                tip=WORKSPACES[n].tip if n < len(WORKSPACES) else tr("A workspace of your own"),
+                tip=tr(WORKSPACES[n].tip) if n < len(WORKSPACES) else tr("A workspace of your own"),
                 enabled=partial(there, n),
                 visible=partial(there, n),
                 checked=partial(on, n),
@@ -133,7 +133,7 @@ class WorkspaceTabs(QWidget):
 
     def _tip(self, place: int) -> str:
         tab = self.keeper.tabs[place]
-        words = tab.title if tab.own else tab.of.tip
+        words = tab.title if tab.own else tr(tab.of.tip)
         return f"{words} (Ctrl+Alt+{place + 1})" if place < KEYS else words
 
     def _button(self, place: int) -> QToolButton:

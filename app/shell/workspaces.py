@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from app.translation import tr
+from app.translation import tr_noop
 
 
 @dataclass(frozen=True)
@@ -59,32 +59,32 @@ def down(*parts: tuple[str | Split, int]) -> Split:
 
 LABEL = Workspace(
     "label",
-    tr("Label"),
-    tr("Clips large: say of each what it is"),
+    tr_noop("Label"),
+    tr_noop("Clips large: say of each what it is"),
     across(("large", 52), (down(("side", 57), ("below", 43)), 48)),
 )
 GRAPH = Workspace(
     "graph",
-    tr("Graph"),
-    tr("The graph and the character, both large"),
+    tr_noop("Graph"),
+    tr_noop("The graph and the character, both large"),
     across(("list", 16), (down(("large", 73), ("below", 27)), 51), ("side", 33)),
 )
 TIME = Workspace(
     "time",
-    tr("Time"),
-    tr("The character large, over the timing of an action"),
+    tr_noop("Time"),
+    tr_noop("The character large, over the timing of an action"),
     across(("list", 27), (down(("large", 53), ("below", 47)), 73)),
 )
 PERFORM = Workspace(
     "perform",
-    tr("Perform"),
-    tr("The character large, over what is asked of it and what plays"),
+    tr_noop("Perform"),
+    tr_noop("The character large, over what is asked of it and what plays"),
     down((across(("large", 68), ("side", 32)), 64), ("below", 36)),
 )
 TALK = Workspace(
     "talk",
-    tr("Talk"),
-    tr("Two who talk, over what they say"),
+    tr_noop("Talk"),
+    tr_noop("Two who talk, over what they say"),
     down((across(("large", 70), ("side", 30)), 54), ("below", 46)),
 )
 WORKSPACES: tuple[Workspace, ...] = (LABEL, GRAPH, TIME, PERFORM, TALK)
@@ -94,8 +94,8 @@ FIRST = GRAPH
 # looked for.
 ALL = Workspace(
     "all",
-    tr("All"),
-    tr("Every panel"),
+    tr_noop("All"),
+    tr_noop("Every panel"),
     across(
         (down((across(("left", 300), ("centre", 950)), 620), ("bottom", 286)), 1250),
         (down(("right", 470), ("right below", 440)), 420),

@@ -13,11 +13,10 @@ from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from app.look.plural import many
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.stage.fixes import Fix
-from app.translation import tr
+from app.translation import tr, tr_plural
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Action, Layer, Project
 from metagraph.graph.problem import Problem
@@ -117,7 +116,7 @@ def _few(layer: Layer, measured: Measured) -> Problem:
     from metagraph.suggest.jumps.found import FEWEST_CLIPS
     from metagraph.suggest.tracks import RATE
 
-    much = many(measured.labelled, "clip")
+    much = tr_plural("{count:,} clip", "{count:,} clips", measured.labelled)
     if measured.labelled >= FEWEST_CLIPS:
         much += tr(" of together {seconds:.0f} s", seconds=measured.stats.count / RATE)
     words = tr(

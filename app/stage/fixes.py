@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
-from app.translation import tr
+from app.translation import tr, tr_noop
 from metagraph.graph import edits
 from metagraph.graph.model import Action, Project
 from metagraph.graph.problem import Problem
 
-BRIDGE = tr("Bridge by blending")
+BRIDGE = tr_noop("Bridge by blending")
 
 
 @dataclass(frozen=True)
@@ -26,7 +27,7 @@ class Fix:
     changes: Mapping[str, Any] = field(default_factory=dict, hash=False)
     end: str | None = None  # the stance a transition should end in
     stance: str | None = None
-    tip: str = tr("One step that can be undone")
+    tip: str = field(default_factory=partial(tr, "One step that can be undone"))
     instead: Fix | None = None
 
     def __call__(self, project: Project) -> Project:
@@ -81,5 +82,5 @@ def bridges_for(project: Project, problems: Iterable[Problem]) -> dict[Problem, 
             if made:
                 tip = "; ".join(bridges.told(after, made))
                 words = tr("{what}. One step that can be undone", what=tip[:1].upper() + tip[1:])
-                out[problem] = Fix(BRIDGE, stance=problem.stance, tip=words)
+                out[problem] = Fix(tr(BRIDGE), stance=problem.stance, tip=words)
     return out

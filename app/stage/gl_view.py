@@ -28,7 +28,7 @@ from PySide6.QtGui import (
 from PySide6.QtOpenGLWidgets import QOpenGLWidget
 from PySide6.QtWidgets import QLabel, QLayout, QVBoxLayout, QWidget
 
-from app.translation import tr, tr_error
+from app.translation import tr, tr_error, tr_noop
 from preview.camera import Camera
 from preview.renderer import Renderer
 from preview.scene import DARK, Scene, Theme
@@ -38,7 +38,7 @@ GL_RENDERER = 0x1F01
 _Base: Any = QWidget if TYPE_CHECKING else object
 
 
-MOUSE = tr("Drag to orbit, right-drag to pan, wheel to zoom, double-click to frame")
+MOUSE = tr_noop("Drag to orbit, right-drag to pan, wheel to zoom, double-click to frame")
 
 
 class CameraMouse(_Base):
@@ -217,7 +217,7 @@ def make_view(compose: Compose, parent: QWidget | None = None) -> GLView | Image
     image = QGuiApplication.platformName() in without or (sys.platform.startswith("linux") and _in_software())
     view = (ImageView if image else GLView)(compose, parent)
     view.setAccessibleName(tr("Character"))
-    view.setAccessibleDescription(MOUSE)
+    view.setAccessibleDescription(tr(MOUSE))
     return view
 
 

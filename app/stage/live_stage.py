@@ -15,8 +15,7 @@ from threading import Thread
 import msgspec
 from PySide6.QtCore import QElapsedTimer, QObject, Qt, QTimer, Signal
 
-from app.look.plural import many
-from app.translation import tr, tr_error
+from app.translation import tr, tr_error, tr_plural
 from metagraph.generation.offered import offered
 from metagraph.graph.model import Project
 from metagraph.graph.requests import AnyRequest, Performance
@@ -229,7 +228,11 @@ class LiveStage(QObject):
         who = (
             tr("nobody is connected yet")
             if clients == 0
-            else tr("{clients}, {rate:.0f} requests/s", clients=many(clients, "client"), rate=self.rate)
+            else tr(
+                "{clients}, {rate:.0f} requests/s",
+                clients=tr_plural("{count:,} client", "{count:,} clients", clients),
+                rate=self.rate,
+            )
         )
         lacks = (
             tr("; its takes make no motion graph: {error}", error=self.graph_error)

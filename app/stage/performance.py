@@ -20,7 +20,7 @@ from app.stage.playback_source import Shown, alone, by_hand, in_context
 from app.stage.request_edits import SOON, RequestEdits
 from app.stage.session import Session
 from app.stage.timeline_edits import TimelineEdits
-from app.translation import tr, tr_told
+from app.translation import tr, tr_phrase
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest
 from metagraph.graph.timeline import only_noted
@@ -237,7 +237,7 @@ class Performance(QObject):
         if self.session.transport.show == "plan":
             self.staged = shown
         if shown.notes and shown.notes != self._noted:
-            self.document.failed.emit(" ".join(tr_told(note) for note in shown.notes))
+            self.document.failed.emit(" ".join(tr_phrase(note) for note in shown.notes))
         self._noted = shown.notes
         self.changed.emit()
         if self._again:

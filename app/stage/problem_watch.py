@@ -11,7 +11,7 @@ from app.project.jobs import Jobs
 from app.stage.compatibility_state import Compatibility, merged
 from app.stage.fixes import Fix, bridges_for, clips_for
 from app.stage.session import Session
-from app.translation import tr_told
+from app.translation import tr_phrase
 from metagraph.graph.check import check
 from metagraph.graph.problem import Problem
 
@@ -79,7 +79,7 @@ class ProblemWatch(QObject):
         self.problems = merged(found, flags)
         self.fixes = {**flags, **self._bridges}
         self.misfits = {
-            p.action: f"{tr_told(p.message)}. {tr_told(p.remedy)}"
+            p.action: f"{tr_phrase(p.message)}. {tr_phrase(p.remedy)}"
             for p in self.problems
             if p.action and p.severity != "hint"
         }

@@ -11,18 +11,20 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from app.project.jobs import Job
-from app.translation import tr
+from app.translation import tr, translated
 from metagraph.common.network_paths import is_allowed
 from metagraph.common.programs import python, start
 from metagraph.formats.store import absolute, save_project
 from metagraph.graph.model import Project
 
-SUFFIXES = {
-    ".mp4": tr("Video with sound"),
-    ".png": tr("Contact sheet"),
-    ".glb": tr("Motion (GLB)"),
-    ".bvh": tr("Motion (BVH)"),
-}
+SUFFIXES = translated(
+    lambda: {
+        ".mp4": tr("Video with sound"),
+        ".png": tr("Contact sheet"),
+        ".glb": tr("Motion (GLB)"),
+        ".bvh": tr("Motion (BVH)"),
+    }
+)
 
 
 @dataclass(frozen=True)

@@ -74,7 +74,7 @@ class RequestEdits:
             return idents
         return performance_edits.following(self.kept, idents, self.still())
 
-    def ask(self, ask: AnyRequest, text: str = tr("Ask for something")) -> None:
+    def ask(self, ask: AnyRequest, text: str = "") -> None:
         """Ask for one thing more, in the performance on stage or a new one; without a time it is wanted as
         soon as can be.
         """
@@ -95,7 +95,7 @@ class RequestEdits:
                 project, made = performance_edits.add_performance(project, kept)
             return performance_edits.add_request(project, made, ask)
 
-        self.document.edit(text, edit)
+        self.document.edit(text or tr("Ask for something"), edit)
         self.session.onstage.set_performance(made)
         if made is not None:
             self.session.onstage.select_requests((self.document.project.performances[made].asks[-1].id,))

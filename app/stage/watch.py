@@ -10,22 +10,24 @@ from typing import Any
 
 from PySide6.QtCore import QObject, QSettings, Signal
 
-from app.translation import tr
+from app.translation import tr, translated
 from preview.scene import THEMES, Theme
 
 KEY = "watch"
 STUDIO, STAGE = "studio", "stage"  # of `preview.looks`, which is read when others are chosen
 PANES = (1, 2, 4)
-SIDES = {  # of a view beside the first: what it is called
-    "front": tr("Front"),
-    "left": tr("Left side"),
-    "right": tr("Right side"),
-    "back": tr("Behind"),
-    "above": tr("Above"),
-    "quarter": tr("Three quarters"),
-    "face": tr("Face"),
-    "hands": tr("Hands"),
-}
+SIDES = translated(
+    lambda: {  # of a view beside the first: what it is called
+        "front": tr("Front"),
+        "left": tr("Left side"),
+        "right": tr("Right side"),
+        "back": tr("Behind"),
+        "above": tr("Above"),
+        "quarter": tr("Three quarters"),
+        "face": tr("Face"),
+        "hands": tr("Hands"),
+    }
+)
 MOST_GHOSTS = 5  # before now, and as many after it: each is drawn in every picture
 SPACINGS = (0.05, 0.1, 0.2, 0.5)  # seconds
 

@@ -11,15 +11,15 @@ from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QKeyEvent, QKeySequence
 from PySide6.QtWidgets import QComboBox, QLineEdit, QWidget
 
-from app.translation import tr
+from app.translation import tr, tr_noop
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 
-MIXED = tr("mixed")
+MIXED = tr_noop("mixed")
 
 
 class _MixedType:
     def __repr__(self) -> str:
-        return MIXED
+        return tr(MIXED)
 
 
 Mixed = _MixedType()
@@ -94,7 +94,7 @@ class Seconds(DoubleSpinBox):
     ) -> None:
         super().__init__(parent, toolTip=tip)
         self.setRange(-step, most)
-        self.setSpecialValueText(MIXED)
+        self.setSpecialValueText(tr(MIXED))
         self.setDecimals(decimals)
         self.setSingleStep(step)
         self.setSuffix(suffix)
@@ -128,7 +128,7 @@ class Seconds(DoubleSpinBox):
     def keyPressEvent(self, event: QKeyEvent) -> None:
         if event.key() == Qt.Key.Key_Escape:
             mixed = self.value() <= self.minimum()
-            self.lineEdit().setText(MIXED if mixed else self.textFromValue(self.value()) + self.suffix())
+            self.lineEdit().setText(tr(MIXED) if mixed else self.textFromValue(self.value()) + self.suffix())
         else:
             super().keyPressEvent(event)
 

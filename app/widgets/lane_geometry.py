@@ -15,7 +15,7 @@ from PySide6.QtGui import QFont
 
 from app.look.shortening import measured
 from app.stage.playback_source import Shown
-from app.translation import tr
+from app.translation import tr, translated
 from app.widgets.request_menu import STAGE, kind_of, request_words
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest
@@ -29,14 +29,16 @@ PLAYS = 34.0  # pixels at most for what plays in a lane; the rest is for what wa
 ROW, TALLEST = 19.0, 22.0  # pixels of a row of requests, at least and at most
 STEPS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0)
 NAMES = (STAGE, *LAYERS)
-TITLES = {
-    "cameras": tr("Cameras"),
-    STAGE: tr("Speech"),
-    "words": tr("Words"),
-    "body": tr("Body"),
-    "arms": tr("Arms"),
-    "head": tr("Head"),
-}
+TITLES = translated(
+    lambda: {
+        "cameras": tr("Cameras"),
+        STAGE: tr("Speech"),
+        "words": tr("Words"),
+        "body": tr("Body"),
+        "arms": tr("Arms"),
+        "head": tr("Head"),
+    }
+)
 FIXED = {"cameras": 18.0, "words": 40.0}  # pixels of lanes that have no requests
 GHOST = 14.0  # the same of another seed's
 TALLEST_SHARE, LEAST_SHARE = 4.0, 0.45  # by which a lane can be made taller or lower
@@ -251,14 +253,16 @@ def mark_at(found: Sequence[Mark], at: QPointF) -> Mark | None:
     return next((m for m in reversed(found) if m.rect.contains(at) and at.x() >= LEFT), None)
 
 
-VERBS = {
-    "say": tr("Said"),
-    "look": tr("Looks"),
-    "mode": tr("Changes"),
-    "mood": tr("Changes"),
-    "place": tr("Moves"),
-    "blink": tr("Blinks"),
-}
+VERBS = translated(
+    lambda: {
+        "say": tr("Said"),
+        "look": tr("Looks"),
+        "mode": tr("Changes"),
+        "mood": tr("Changes"),
+        "place": tr("Moves"),
+        "blink": tr("Blinks"),
+    }
+)
 
 
 def outcome(ask: AnyRequest, answer: Answer | None) -> str:

@@ -17,14 +17,16 @@ from PySide6.QtWidgets import (
 )
 
 from app.project.document import Document
-from app.translation import tr
+from app.translation import tr, translated
 from app.widgets.quiet_fields import DoubleSpinBox
 from metagraph.graph.editing import performances as performance_edits
 
-AXES = (
-    (tr("To its left"), tr("Metres to the character's left; to its right below 0")),
-    (tr("Up"), tr("Metres above the floor")),
-    (tr("Ahead"), tr("Metres in front of the character")),
+AXES = translated(
+    lambda: (
+        (tr("To its left"), tr("Metres to the character's left; to its right below 0")),
+        (tr("Up"), tr("Metres above the floor")),
+        (tr("Ahead"), tr("Metres in front of the character")),
+    )
 )
 
 

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QInputDialog, QMenu, QWidget
 from app.look.theme import KIND_MARKS
 from app.project.document import Document
 from app.stage.performance import Performance
-from app.translation import tr, tr_noop
+from app.translation import tr, tr_noop, translated
 from app.widgets.vocabulary import titled, word
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, MODES, Layer, Project
@@ -26,8 +26,10 @@ DIRECTIONS = {
     tr_noop("Down"): (0.0, 0.6, 1.0),
 }
 MOOD_WORDS = {name: titled(name) for name in FEELINGS}
-MODE_WORDS = {"idle": tr("Idle"), "listening": tr("Listen"), "talking": tr("Talk")}
-MODE_ASKED = {"idle": tr("idle"), "listening": tr("listen"), "talking": tr("talk")}  # within a sentence
+MODE_WORDS = translated(lambda: {"idle": tr("Idle"), "listening": tr("Listen"), "talking": tr("Talk")})
+MODE_ASKED = translated(
+    lambda: {"idle": tr("idle"), "listening": tr("listen"), "talking": tr("talk")}
+)  # within a sentence
 
 
 def kind_of(ask: a.AnyRequest) -> str | None:

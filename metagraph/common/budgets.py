@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 
 KIB, MIB, GIB = 1 << 10, 1 << 20, 1 << 30
 
@@ -77,4 +77,4 @@ class Allowance:
             self._refuse(where)
 
 
-OUT_OF_PROPORTION = told("it asks for far more memory than its size warrants")
+OUT_OF_PROPORTION = phrase("it asks for far more memory than its size warrants")

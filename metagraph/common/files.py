@@ -17,13 +17,13 @@ from io import BufferedReader
 from pathlib import Path
 from typing import ParamSpec, TypeVar
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 
 P = ParamSpec("P")
 R = TypeVar("R")
 
-_THERE = told("Check that it is there and that you may read it.")
+_THERE = phrase("Check that it is there and that you may read it.")
 _KINDS = (
     (stat.S_ISDIR, "a folder"),
     (stat.S_ISFIFO, "a pipe"),
@@ -99,7 +99,7 @@ def check_file(path: str | Path, most: int) -> Path:
 def unreadable(path: Path, error: OSError | ValueError) -> FileError:
     """Return the error that says why a file cannot be read."""
     words = (error.strerror or str(error)) if isinstance(error, OSError) else "its path is none"
-    return FileError(path, told("cannot be read ({words})", words=words), told("on opening it"), _THERE)
+    return FileError(path, phrase("cannot be read ({words})", words=words), phrase("on opening it"), _THERE)
 
 
 def _handle(path: Path) -> BufferedReader:
@@ -113,9 +113,9 @@ def _checked(path: Path, found: os.stat_result, most: int) -> None:
         if kind(found.st_mode):
             raise FileError(
                 path,
-                told("it is {words}, not a file", words=words),
-                told("on opening it"),
-                told("Choose a file."),
+                phrase("it is {words}, not a file", words=words),
+                phrase("on opening it"),
+                phrase("Choose a file."),
             )
     if found.st_size > most:
         raise _too_large(path, most)
@@ -125,9 +125,9 @@ def _too_large(path: Path, most: int) -> FileError:
     size = f"{most >> 30} GiB" if most >= 1 << 30 else f"{most >> 20} MiB"
     return FileError(
         path,
-        told("is larger than the {size} that are read", size=size),
-        told("on opening it"),
-        told("Split it."),
+        phrase("is larger than the {size} that are read", size=size),
+        phrase("on opening it"),
+        phrase("Split it."),
     )
 
 
@@ -157,10 +157,12 @@ def unforeseen(path: str | Path, error: Exception) -> FileError:
     if isinstance(error, FileError):
         return error
     if isinstance(error, MemoryError):
-        remedy = told("Close other programs, or split the file.")
-        return FileError(path, told("there is not enough memory for it"), told("on reading it"), remedy)
+        remedy = phrase("Close other programs, or split the file.")
+        return FileError(path, phrase("there is not enough memory for it"), phrase("on reading it"), remedy)
     if isinstance(error, OSError):
         return unreadable(Path(path), error)
     said = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-    remedy = told("Export it again; if that does not help, report it with the file (docs/reliability.md).")
-    return FileError(path, told("its reader failed on it ({said})", said=said), told("on reading it"), remedy)
+    remedy = phrase("Export it again; if that does not help, report it with the file (docs/reliability.md).")
+    return FileError(
+        path, phrase("its reader failed on it ({said})", said=said), phrase("on reading it"), remedy
+    )

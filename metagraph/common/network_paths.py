@@ -15,13 +15,13 @@ from collections.abc import Callable
 from pathlib import Path
 from urllib.parse import quote, unquote
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 
 FOLDER = ".not-opened"  # never there
 ANOTHER, DEVICE, ADDRESS = (
-    told("it is on another computer"),
-    told("it is the name of a device"),
-    told("it is an address, not a file"),
+    phrase("it is on another computer"),
+    phrase("it is the name of a device"),
+    phrase("it is an address, not a file"),
 )
 _DEVICES = re.compile(
     r"(?:con|prn|aux|nul|com[0-9¹²³]|lpt[0-9¹²³]|conin\$|conout\$) *(?:[.:].*)?", re.I | re.S

@@ -1,5 +1,8 @@
-"""What the domain says to people: English words that know what they were made of, so that who shows them can
-say the same in another language.
+"""Phrases: English text for people that knows what it was made of, so that the window can show it in another
+language.
+
+Each is marked where it is written, by `phrase` or `plural_phrase`; translators find it in the catalogues
+(`app/languages`).
 """
 
 from __future__ import annotations
@@ -8,68 +11,79 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Self
 
 
-class Told(str):
-    """English words, and the template and values they were made of. Values may be told, too."""
+class Phrase(str):
+    """English text with its template and the values in it, which may be phrases, too. plural: the template
+    for any `count` but one, or "".
+    """
 
-    __slots__ = ("template", "values")
+    __slots__ = ("plural", "template", "values")
     template: str
+    plural: str
     values: Mapping[str, Any]
 
-    def __new__(cls, template: str, values: Mapping[str, Any]) -> Self:
-        made = super().__new__(cls, filled(template, values))
-        made.template, made.values = template, values
+    def __new__(cls, template: str, values: Mapping[str, Any], plural: str = "") -> Self:
+        chosen = plural if plural and values["count"] != 1 else template
+        made = super().__new__(cls, fill(chosen, values))
+        made.template, made.values, made.plural = template, values, plural
         return made
 
-    def __reduce__(self) -> tuple[type[Self], tuple[str, dict[str, Any]]]:
-        return type(self), (self.template, dict(self.values))
+    def __reduce__(self) -> tuple[type[Self], tuple[str, dict[str, Any], str]]:
+        return type(self), (self.template, dict(self.values), self.plural)
 
 
-def told(template: str, /, **values: Any) -> Told:
-    """Return words made of a template, in whose braces the values stand, as `str.format` has it; without
-    any, braces are braces.
+def phrase(template: str, /, **values: Any) -> Phrase:
+    """Return a phrase. values: for the braces in the template, as in `str.format`; without any, braces are
+    braces.
 
-    What a program writes, as JSON or into a log, is `str` of it.
+    What a program reads, as JSON or in a log, is the phrase itself, which is English.
     """
-    return Told(template, values)
+    return Phrase(template, values)
 
 
-def joined(words: Sequence[str], between: str) -> Told:
-    """Return several words with something between them; each is said in another language by itself."""
+def plural_phrase(one: str, many: str, count: int, /, **values: Any) -> Phrase:
+    """Return a phrase that depends on a count: `plural_phrase("{count:,} clip", "{count:,} clips", 3)`."""
+    return Phrase(one, {"count": count, **values}, many)
+
+
+def join_phrases(words: Sequence[str], between: str) -> Phrase:
+    """Return several phrases with `between` between them; each is translated by itself."""
     values = {f"part{n}": one for n, one in enumerate(words)}
     between = between.replace("{", "{{").replace("}", "}}")
-    return Told(between.join(f"{{{name}}}" for name in values), values)
+    return Phrase(between.join(f"{{{name}}}" for name in values), values)
 
 
-def requoted(words: str, change: Callable[[str], str], quote: str = "'") -> str:
-    """Return words in which what stands in quotes is changed, in whatever language they are said."""
-    if not isinstance(words, Told):
+def change_quoted(words: str, change: Callable[[str], str], quote: str = "'") -> str:
+    """Return a phrase with `change` applied to each value in quotes; other text as it is."""
+    if not isinstance(words, Phrase):
         return words
     values = {
         name: value
         if not isinstance(value, str)
-        else requoted(value, change, quote)
-        if isinstance(value, Told)
+        else change_quoted(value, change, quote)
+        if isinstance(value, Phrase)
         else change(value)
         if f"{quote}{{{name}}}{quote}" in words.template
         else value
         for name, value in words.values.items()
     }
-    return Told(words.template, values)
+    return Phrase(words.template, values, words.plural)
 
 
-def filled(template: str, values: Mapping[str, Any]) -> str:
+def fill(template: str, values: Mapping[str, Any]) -> str:
     """Return a template with its values."""
     return template.format(**values) if values else template
 
 
-def reworded(words: str, look_up: Callable[[str], str], said: Callable[[Any], Any] = lambda v: v) -> str:
-    """Return words with each template they were made of replaced by what `look_up` finds for it; words that
-    do not know their template as they are. said: gives what stands for a value that is no text.
+def translate_phrase(
+    words: str, look_up: Callable[[Phrase], str], show: Callable[[Any], Any] = lambda value: value
+) -> str:
+    """Return a phrase in another language; other text as it is. look_up: returns the template of a phrase in
+    that language. show: returns what stands for a value that is no text, such as a number.
     """
-    if not isinstance(words, Told):
+    if not isinstance(words, Phrase):
         return words
     values = {
-        name: reworded(value, look_up, said) if isinstance(value, str) else said(value)
+        name: translate_phrase(value, look_up, show) if isinstance(value, str) else show(value)
         for name, value in words.values.items()
     }
-    return filled(look_up(words.template), values)
+    return fill(look_up(words), values)

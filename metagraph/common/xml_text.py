@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable
 from typing import Any
 
-from metagraph.common.wording import Told, told
+from metagraph.common.wording import Phrase, phrase
 
 _CANNOT = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 INSTEAD = "\ufffd"
@@ -31,14 +31,14 @@ def quoted(text: str) -> str:
     return f'"{kept}"'
 
 
-def replaced_note(values: Iterable[Any]) -> Told | None:
+def replaced_note(values: Iterable[Any]) -> Phrase | None:
     """Return what to say where texts lose characters in XML; None where none does. values: texts, and
     mappings and lists of them.
     """
     lost = sum(_CANNOT.search(text) is not None for text in _texts(values))
     if not lost:
         return None
-    return told("{count} texts hold control characters, which XML cannot: � stands for them", count=lost)
+    return phrase("{count} texts hold control characters, which XML cannot: � stands for them", count=lost)
 
 
 def _texts(value: Any) -> Iterable[str]:

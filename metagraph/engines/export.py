@@ -12,7 +12,7 @@ import msgspec
 from metagraph.common.budgets import SOUND_FILE
 from metagraph.common.file_names import file_stem, file_stems
 from metagraph.common.files import is_inside, read_file, unforeseen
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.engines import contract as c
 from metagraph.engines.export_document import to_document, used_clips
 from metagraph.engines.export_error import ExportError
@@ -90,11 +90,11 @@ def sound(project: Project) -> tuple[str, ...]:
     if errors:
         first, rest = errors[0], len(errors) - 1
         words = "{message}. {remedy} (and {rest} more)" if rest else "{message}. {remedy}"
-        raise ExportError(told(words, message=first.message, remedy=first.remedy, rest=rest))
+        raise ExportError(phrase(words, message=first.message, remedy=first.remedy, rest=rest))
     if project.skeleton is None or not any(True for _ in project.actions()):
-        raise ExportError(told("no action is placed yet: there is nothing to export"))
+        raise ExportError(phrase("no action is placed yet: there is nothing to export"))
     return tuple(
-        told("{message}. {remedy}", message=p.message, remedy=p.remedy)
+        phrase("{message}. {remedy}", message=p.message, remedy=p.remedy)
         for p in problems
         if p.severity == "warning"
     )
@@ -157,7 +157,9 @@ def _sounds(
             ending = sound_ending(source)
             if not is_inside(source, base) and not chosen(source):
                 remedy = "Move it there, or choose the line's sound by hand."
-                raise FileError(source, told("lies outside the project's folder"), told("its sound"), remedy)
+                raise FileError(
+                    source, phrase("lies outside the project's folder"), phrase("its sound"), remedy
+                )
             inside = f"lines/{name}{ending}" if line.channel is None else f"lines/{name}.wav"
             content = (
                 read_file(source, SOUND_FILE) if line.channel is None else _channel(source, line.channel)
@@ -206,9 +208,9 @@ def _write_glb(
     except OSError as error:
         raise FileError(
             path.parent,
-            told("cannot be made ({strerror})", strerror=error.strerror),
-            told("on making the folder"),
-            told("Choose a folder you may write to."),
+            phrase("cannot be made ({strerror})", strerror=error.strerror),
+            phrase("on making the folder"),
+            phrase("Choose a folder you may write to."),
         ) from None
     shown, notes = mesh_on(skeleton, character, project.hidden)
     presets = presets_of(shown.morphs, project.face.channels) if shown is not None else {}

@@ -12,7 +12,7 @@ import numpy as np
 
 from metagraph.common.budgets import TEXT_FILE
 from metagraph.common.files import guarded, is_file, read_file
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.engines import contract as c
 from metagraph.engines.export_contacts import read_contact_rig, read_contacts
 from metagraph.engines.export_rig import read_rig, read_voices
@@ -173,9 +173,9 @@ def glb_beside(path: Path, document: c.Export) -> Path:
     if document.glb_sha256 is not None and is_file(glb) and digest(glb) != document.glb_sha256:
         raise FileError(
             glb,
-            told("is not the GLB that {name} was written with", name=path.name),
-            told("its content"),
-            told("Export it again, and copy both files."),
+            phrase("is not the GLB that {name} was written with", name=path.name),
+            phrase("its content"),
+            phrase("Export it again, and copy both files."),
         )
     return glb
 

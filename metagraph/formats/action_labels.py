@@ -18,7 +18,7 @@ from msgspec import UNSET, Meta, Struct, UnsetType
 
 from metagraph.common.budgets import TEXT_FILE
 from metagraph.common.files import read_file
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.edits import add_stance, added_actions, move_actions, place, update_actions
@@ -75,7 +75,7 @@ def read_labels(path: Path) -> tuple[LabelRow, ...]:
             path,
             message[:1].lower() + message[1:],
             where.strip("`") or "its content",
-            told("docs/labels.md says what such a file holds."),
+            phrase("docs/labels.md says what such a file holds."),
         ) from None
 
 
@@ -100,13 +100,13 @@ def _applied(project: Project, row: LabelRow, fresh: Mapping[str, str]) -> Proje
     clip = fresh.get(row.clip) or next((e.id for e in project.clips.values() if e.name == row.clip), None)
     known = project.action(row.action) if row.action is not None else None
     if row.action is not None and known is None:
-        raise EditError(told("there is no action '{action}' in this project", action=row.action))
+        raise EditError(phrase("there is no action '{action}' in this project", action=row.action))
     if clip is None:
-        raise EditError(told("there is no clip '{clip}'", clip=row.clip))
+        raise EditError(phrase("there is no clip '{clip}'", clip=row.clip))
     layer = row.layer or (known.layer if known is not None else None)
     kind = row.kind or (known.kind if known is not None else None)
     if layer is None or kind is None:
-        raise EditError(told("a new action needs a kind and a layer"))
+        raise EditError(phrase("a new action needs a kind and a layer"))
     stance = known.stance if known is not None and row.stance is None and layer == known.layer else None
     end = known.end_stance if known is not None and row.end_stance is None and layer == known.layer else None
     if row.stance is not None:
@@ -114,7 +114,9 @@ def _applied(project: Project, row: LabelRow, fresh: Mapping[str, str]) -> Proje
     if row.end_stance is not None:
         project, end = _stance(project, layer, row.end_stance)
     if stance is None:
-        raise EditError(told("it does not say which stance of the layer {layer} it is of", layer=told(layer)))
+        raise EditError(
+            phrase("it does not say which stance of the layer {layer} it is of", layer=phrase(layer))
+        )
     if known is None:
         alike = project.graphs[layer].of(stance, kind)
         known = next((a for a in alike if a.name == (row.name or row.clip)), None)
@@ -134,7 +136,7 @@ def _stance(project: Project, layer: Layer, name: str) -> tuple[Project, str]:
         if found is not None:
             return project, found
         project = add_stance(project, layer, name)
-    raise EditError(told("'{name}' cannot be a stance's name", name=name))
+    raise EditError(phrase("'{name}' cannot be a stance's name", name=name))
 
 
 def _fields(row: LabelRow) -> dict[str, Any]:

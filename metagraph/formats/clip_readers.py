@@ -9,7 +9,7 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.formats.live_link_face import is_live_link
 from metagraph.motion.clip import Clip
 
@@ -60,18 +60,20 @@ def _is_fbx(head: bytes, text: bytes) -> bool:
 
 
 LIVE_LINK = ClipReader(
-    told("a recording of Live Link Face"), (".csv",), lambda head, text: is_live_link(head), _read_live_link
+    phrase("a recording of Live Link Face"), (".csv",), lambda head, text: is_live_link(head), _read_live_link
 )
 # The first that knows a file's beginning reads it.
 READERS = [
-    ClipReader(told("a BVH file"), (".bvh",), lambda head, text: text[:9].upper() == b"HIERARCHY", _read_bvh),
     ClipReader(
-        told("a glTF file"),
+        phrase("a BVH file"), (".bvh",), lambda head, text: text[:9].upper() == b"HIERARCHY", _read_bvh
+    ),
+    ClipReader(
+        phrase("a glTF file"),
         (".glb", ".gltf", ".vrm", ".vrma"),
         lambda head, text: head.startswith(b"glTF") or text.startswith(b"{"),
         _read_gltf,
     ),
-    ClipReader(told("an FBX file"), (".fbx",), _is_fbx, _read_fbx),
+    ClipReader(phrase("an FBX file"), (".fbx",), _is_fbx, _read_fbx),
     LIVE_LINK,
 ]
 

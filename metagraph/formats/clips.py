@@ -12,7 +12,7 @@ from pathlib import Path
 
 from metagraph.common.budgets import MOTION_FILE, SOUND_FILE
 from metagraph.common.files import guarded, opened, unforeseen
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.clip_readers import (
     HEAD,
@@ -52,28 +52,28 @@ def read_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
     """
     path = Path(path)
     wanted, found = reader_for(path.suffix.lower()), _reader(path)
-    remedy = told("Clips are read from {endings}.", endings=", ".join(clip_suffixes()))
+    remedy = phrase("Clips are read from {endings}.", endings=", ".join(clip_suffixes()))
     if wanted is None:
         raise FileError(
             path,
-            told("'{value}' is not an ending of a clip file", value=path.suffix or path.name),
-            told("its name"),
+            phrase("'{value}' is not an ending of a clip file", value=path.suffix or path.name),
+            phrase("its name"),
             remedy,
         )
     if isinstance(found, str):
-        cause = told("it is {kind}, not {names}", kind=found, names=wanted.name)
-        raise FileError(path, cause, told("its first bytes"), remedy)
+        cause = phrase("it is {kind}, not {names}", kind=found, names=wanted.name)
+        raise FileError(path, cause, phrase("its first bytes"), remedy)
     if found is not wanted:
         raise FileError(
             path,
-            told("it is {names} in spite of its ending", names=found.name),
-            told("its first bytes"),
-            told("Rename it to match its content."),
+            phrase("it is {names} in spite of its ending", names=found.name),
+            phrase("its first bytes"),
+            phrase("Rename it to match its content."),
         )
     try:
         clips = wanted.read(path, as_is)
     except ClipError as error:
-        raise FileError(path, str(error), told("its motion"), told("Export it again.")) from error
+        raise FileError(path, str(error), phrase("its motion"), phrase("Export it again.")) from error
     return _without_junk(clips, as_is)
 
 
@@ -116,15 +116,15 @@ def _reader(path: Path) -> ClipReader | str:
     with opened(path, MOTION_FILE) as file:
         head = file.read(HEAD)
     if not head:
-        return told("an empty file")
+        return phrase("an empty file")
     found = reader_of(head)
     if found is not None:
         return found
     if head.startswith(b"version https://git-lfs"):
-        return told("a Git LFS pointer whose content was never fetched")
+        return phrase("a Git LFS pointer whose content was never fetched")
     if head.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"<":
-        return told("a web page or XML file")
-    return told("something else")
+        return phrase("a web page or XML file")
+    return phrase("something else")
 
 
 def is_face_recording(path: Path) -> bool:

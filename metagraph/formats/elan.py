@@ -14,7 +14,7 @@ from xml.parsers import expat
 
 from metagraph.common.budgets import MARKS, MARKS_FILE, NESTING
 from metagraph.common.files import guarded, read_file
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.playback.learning.annotation import Annotation, Interval, Tier
 
@@ -25,8 +25,8 @@ UNITS: Mapping[str, float] = {
     "PAL-50-frames": 1 / 50,
     "NTSC-frames": 1001 / 30000,
 }
-_AGAIN = told("Open it in ELAN and save it again.")
-_NOT = told("Choose a file that ELAN saved (.eaf).")
+_AGAIN = phrase("Open it in ELAN and save it again.")
+_NOT = phrase("Choose a file that ELAN saved (.eaf).")
 
 
 @dataclass
@@ -81,19 +81,19 @@ class _Reader:
 
     def fail(self, cause: str, line: int | None = None, remedy: str = _AGAIN) -> FileError:
         return FileError(
-            self.path, cause, told("line {value}", value=self.line if line is None else line), remedy
+            self.path, cause, phrase("line {value}", value=self.line if line is None else line), remedy
         )
 
     def _entity(self, *_: object) -> None:
         raise self.fail(
-            told("it defines entities of its own, which no program of annotations does"), remedy=_NOT
+            phrase("it defines entities of its own, which no program of annotations does"), remedy=_NOT
         )
 
     def _begin(self, name: str, at: dict[str, str]) -> None:
         self.depth += 1
         if self.depth == 1 and name != "ANNOTATION_DOCUMENT":
             raise self.fail(
-                told(
+                phrase(
                     "its outermost element is '{name}', not 'ANNOTATION_DOCUMENT': this is not an "
                     "ELAN annotation",
                     name=name,
@@ -101,12 +101,12 @@ class _Reader:
                 remedy=_NOT,
             )
         if self.depth > NESTING:  # ELAN writes 5
-            raise self.fail(told("elements lie more than {most} deep", most=NESTING))
+            raise self.fail(phrase("elements lie more than {most} deep", most=NESTING))
         if name == "HEADER":
             unit = at.get("TIME_UNITS", "milliseconds")
             if unit not in UNITS:
                 raise self.fail(
-                    told("times are in '{unit}'; known are {names}", unit=unit, names=", ".join(UNITS))
+                    phrase("times are in '{unit}'; known are {names}", unit=unit, names=", ".join(UNITS))
                 )
             self.unit = UNITS[unit]
             self.old_media = at.get("MEDIA_FILE", "")
@@ -127,26 +127,26 @@ class _Reader:
 
     def _need(self, at: Mapping[str, str], key: str, element: str) -> str:
         if not at.get(key):
-            raise self.fail(told("a {element} has no {key}", element=element, key=key))
+            raise self.fail(phrase("a {element} has no {key}", element=element, key=key))
         return at[key]
 
     def _slot(self, at: Mapping[str, str]) -> None:
         ident, text = self._need(at, "TIME_SLOT_ID", "TIME_SLOT"), at.get("TIME_VALUE")
         if len(self.slots) > 2 * MARKS:
-            raise self.fail(told("it has more than {value:,} time slots", value=2 * MARKS))
+            raise self.fail(phrase("it has more than {value:,} time slots", value=2 * MARKS))
         if ident in self.slots:
-            raise self.fail(told("time slot '{ident}' is there twice", ident=ident))
+            raise self.fail(phrase("time slot '{ident}' is there twice", ident=ident))
         seconds = None
         if text is not None:
             try:
                 seconds = int(text[:40]) * self.unit
             except ValueError:
                 raise self.fail(
-                    told("'{text}' is not a whole number of {value}", text=text, value=self._unit_name())
+                    phrase("'{text}' is not a whole number of {value}", text=text, value=self._unit_name())
                 ) from None
             if not 0 <= seconds <= LONGEST:
                 raise self.fail(
-                    told(
+                    phrase(
                         "a time of {seconds:g} s is not between 0 and {most:g}",
                         seconds=seconds,
                         most=LONGEST,
@@ -161,7 +161,8 @@ class _Reader:
         name = self._need(at, "TIER_ID", "TIER")
         if name in self.tiers:
             raise self.fail(
-                told("tier '{name}' is there twice", name=name), remedy=told("Rename one of them in ELAN.")
+                phrase("tier '{name}' is there twice", name=name),
+                remedy=phrase("Rename one of them in ELAN."),
             )
         self.tier = self.tiers[name] = _Tier(
             name, at.get("PARTICIPANT", "").strip(), at.get("PARENT_REF", "")
@@ -169,18 +170,18 @@ class _Reader:
 
     def _mark(self, name: str, at: Mapping[str, str]) -> None:
         if self.tier is None:
-            raise self.fail(told("an annotation stands outside a tier"))
+            raise self.fail(phrase("an annotation stands outside a tier"))
         ident = self._need(at, "ANNOTATION_ID", name)
         if len(self.marks) >= MARKS:
-            raise self.fail(told("it has more than {most:,} annotations", most=MARKS))
+            raise self.fail(phrase("it has more than {most:,} annotations", most=MARKS))
         if ident in self.marks:
-            raise self.fail(told("annotation '{ident}' is there twice", ident=ident))
+            raise self.fail(phrase("annotation '{ident}' is there twice", ident=ident))
         if name == "ALIGNABLE_ANNOTATION":
             slots = self._need(at, "TIME_SLOT_REF1", name), self._need(at, "TIME_SLOT_REF2", name)
             unknown = next((s for s in slots if s not in self.slots), None)
             if unknown is not None:
                 raise self.fail(
-                    told(
+                    phrase(
                         "annotation '{ident}' begins or ends at time slot '{unknown}', which is not there",
                         ident=ident,
                         unknown=unknown,
@@ -239,12 +240,12 @@ def read_elan(path: str | Path) -> Annotation:
         raise FileError(
             path,
             cause,
-            told("line {lineno}, column {offset}", lineno=error.lineno, offset=error.offset + 1),
+            phrase("line {lineno}, column {offset}", lineno=error.lineno, offset=error.offset + 1),
             _NOT if not reader.tiers else _AGAIN,
         ) from None
     except (LookupError, ValueError) as error:  # an encoding nobody knows
         raise FileError(
-            path, told("its text cannot be decoded ({error})", error=error), told("line 1"), _AGAIN
+            path, phrase("its text cannot be decoded ({error})", error=error), phrase("line 1"), _AGAIN
         ) from None
     return _annotation(reader)
 
@@ -330,7 +331,7 @@ def _refer(reader: _Reader, spans: dict[str, tuple[float, float]]) -> None:
             if mark.slots is None:
                 if mark.of not in reader.marks:
                     raise reader.fail(
-                        told(
+                        phrase(
                             "annotation '{ident}' refers to '{of}', which is not there",
                             ident=mark.ident,
                             of=mark.of,
@@ -354,7 +355,7 @@ def _refer(reader: _Reader, spans: dict[str, tuple[float, float]]) -> None:
     if waiting:
         mark = next(iter(waiting.values()))[0][0]
         raise reader.fail(
-            told("annotation '{ident}' refers to itself by way of '{of}'", ident=mark.ident, of=mark.of),
+            phrase("annotation '{ident}' refers to itself by way of '{of}'", ident=mark.ident, of=mark.of),
             mark.line,
         )
 

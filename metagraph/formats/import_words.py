@@ -10,17 +10,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from metagraph.common.wording import joined, told
+from metagraph.common.wording import join_phrases, phrase
 from metagraph.formats.imports import Imported, Strangers
 from metagraph.formats.takes import BIND_POSE, LONE_FRAME, NAME, ONE_FRAME, UNIT, UP
 
 _RIGHT = {
-    BIND_POSE: told("bind poses on first frames"),
-    UNIT: told("units of length"),
-    UP: told("Z up"),
-    ONE_FRAME: told("takes of one frame"),
-    LONE_FRAME: told("single stray frames"),
-    NAME: told("names"),
+    BIND_POSE: phrase("bind poses on first frames"),
+    UNIT: phrase("units of length"),
+    UP: phrase("Z up"),
+    ONE_FRAME: phrase("takes of one frame"),
+    LONE_FRAME: phrase("single stray frames"),
+    NAME: phrase("names"),
 }
 _VARIES = re.compile(r"'[^']*'|\d+(?:\.\d+)?")
 
@@ -45,14 +45,14 @@ def remedies(result: Imported) -> tuple[Remedy, ...]:
     unsure = tuple(s for s in result.apart if s.joint_map.missing)
     if sure:
         count = _clips(_count(sure))
-        label = told("Retarget {clips}", clips=count)
+        label = phrase("Retarget {clips}", clips=count)
         out.append(Remedy("retarget", label, f"retarget {count} (--retarget)", sure))
     if unsure:
         count = _clips(_count(unsure))
-        label = told("Map joints of {clips}…", clips=count)
+        label = phrase("Map joints of {clips}…", clips=count)
         out.append(Remedy("map", label, f"map joints of {count} in the window", unsure))
     if result.stand_ins:
-        out.append(Remedy("character", told("Choose character…"), "choose a character in the window"))
+        out.append(Remedy("character", phrase("Choose character…"), "choose a character in the window"))
     return tuple(out)
 
 
@@ -61,8 +61,8 @@ def head(result: Imported) -> str:
     count = len(result.loaded)
     if result.retargeted and count:
         again = result.retargeted
-        return told("Imported {clips}, {again} of them retargeted", clips=_clips(count), again=again)
-    return told("Imported {clips}", clips=_clips(count))
+        return phrase("Imported {clips}, {again} of them retargeted", clips=_clips(count), again=again)
+    return phrase("Imported {clips}", clips=_clips(count))
 
 
 def said(result: Imported, window: bool = True) -> str:
@@ -75,50 +75,50 @@ def said(result: Imported, window: bool = True) -> str:
         first = Path(result.stand_ins[0].path).name
         more, why = len(result.stand_ins) - 1, result.stand_ins[0].why_not
         parts.append(
-            told("No character: the mesh of {first} and {more} more {why}", first=first, more=more, why=why)
+            phrase("No character: the mesh of {first} and {more} more {why}", first=first, more=more, why=why)
             if more
-            else told("No character: the mesh of {first} {why}", first=first, why=why)
+            else phrase("No character: the mesh of {first} {why}", first=first, why=why)
         )
     if right:
-        made = [told("{what} ({count})", what=_RIGHT.get(k, k), count=n) for k, n in right.items()]
-        parts.append(told("Put right: {made}", made=joined(made, ", ")))
+        made = [phrase("{what} ({count})", what=_RIGHT.get(k, k), count=n) for k, n in right.items()]
+        parts.append(phrase("Put right: {made}", made=join_phrases(made, ", ")))
     if result.character is not None and result.character.hidden:
         count = len(result.character.hidden)
         parts.append(
-            told("Hidden: 1 mesh in the hands")
+            phrase("Hidden: 1 mesh in the hands")
             if count == 1
-            else told("Hidden: {count} meshes in the hands", count=count)
+            else phrase("Hidden: {count} meshes in the hands", count=count)
         )
     known = {repair.words for _, _, _, clip in result.loaded for repair in clip.repairs}
     hidden = result.character.notes if result.character is not None else ()
     notes = [n for n in result.notes if n.partition(": ")[2] not in known and n not in hidden]
     if notes := counted(notes):
-        parts.append(told("1 note") if len(notes) == 1 else told("{count:,} notes", count=len(notes)))
+        parts.append(phrase("1 note") if len(notes) == 1 else phrase("{count:,} notes", count=len(notes)))
     left = []
     if apart := _count(result.apart):
-        left.append(told("{clips} of another skeleton", clips=_clips(apart)))
+        left.append(phrase("{clips} of another skeleton", clips=_clips(apart)))
     broken = len(result.failures) - sum(len(s.told) for s in result.apart)
     if broken > 0:
         left.append(
-            told("1 file that cannot be used")
+            phrase("1 file that cannot be used")
             if broken == 1
-            else told("{count:,} files that cannot be used", count=broken)
+            else phrase("{count:,} files that cannot be used", count=broken)
         )
     if left:
-        parts.append(told("Left out: {left}", left=joined(left, ", ")))
+        parts.append(phrase("Left out: {left}", left=join_phrases(left, ", ")))
     to_do = remedies(result)
     if to_do:
         steps = [_STEPS[r.do](r) if window else r.command for r in to_do]
-        parts.append(told("To do: {steps}", steps=joined(steps, ", ")))
+        parts.append(phrase("To do: {steps}", steps=join_phrases(steps, ", ")))
     if result.cancelled:
-        parts.append(told("It was stopped before the end"))
-    return joined(parts, ". ")
+        parts.append(phrase("It was stopped before the end"))
+    return join_phrases(parts, ". ")
 
 
 _STEPS: dict[str, Callable[[Remedy], str]] = {
-    "retarget": lambda r: told("retarget {clips}", clips=_clips(_count(r.strangers))),
-    "map": lambda r: told("map joints of {clips}", clips=_clips(_count(r.strangers))),
-    "character": lambda r: told("choose character"),
+    "retarget": lambda r: phrase("retarget {clips}", clips=_clips(_count(r.strangers))),
+    "map": lambda r: phrase("map joints of {clips}", clips=_clips(_count(r.strangers))),
+    "character": lambda r: phrase("choose character"),
 }
 
 
@@ -176,4 +176,4 @@ def _count(strangers: Iterable[Strangers]) -> int:
 
 
 def _clips(count: int) -> str:
-    return told("{count:,} clip", count=count) if count == 1 else told("{count:,} clips", count=count)
+    return phrase("{count:,} clip", count=count) if count == 1 else phrase("{count:,} clips", count=count)

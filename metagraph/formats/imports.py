@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from metagraph.common.files import unforeseen
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError, error_words
 from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clips
 from metagraph.formats.store import kept_path, relative
@@ -31,7 +31,7 @@ Loaded = tuple[str, int, str, Clip]  # path as the project keeps it, take, diges
 Maps = Callable[
     [str, str], JointMap | None
 ]  # fingerprints of a source and a target skeleton -> the map kept for them
-_ALONE = told("Import it into a project of its own.")
+_ALONE = phrase("Import it into a project of its own.")
 _LONGER = 0.025  # share by which bones may differ from the project's without a word
 
 
@@ -66,11 +66,11 @@ class Strangers:
         remedy = (
             _ALONE
             if self.joint_map.missing
-            else told("Retarget it (import it with --retarget), or import it into a project of its own.")
+            else phrase("Retarget it (import it with --retarget), or import it into a project of its own.")
         )
         why = self.why
         return tuple(
-            told(
+            phrase(
                 "{file}: {count} clips are of another character: {why}. {remedy}",
                 file=Path(path).name,
                 count=count,
@@ -78,7 +78,7 @@ class Strangers:
                 remedy=remedy,
             )
             if count > 1
-            else told(
+            else phrase(
                 "{file}: its clip is of another character: {why}. {remedy}",
                 file=Path(path).name,
                 why=why,
@@ -187,7 +187,7 @@ def import_files(
         try:
             loaded.append((name, take, content, on_body(add_clips(project, loaded), clip)))
         except RetargetError as error:
-            failures.append(told("{file}: {why}", file=Path(name).name, why=error_words(error)))
+            failures.append(phrase("{file}: {why}", file=Path(name).name, why=error_words(error)))
     character: CharacterFile | None = None
     stand_ins: tuple[CharacterFile, ...] = ()
     if project.character is None and skeleton is not None:
@@ -280,7 +280,7 @@ def bring_over(
             loaded.append((path, take, content, bringing.bring(clip, joint_map)))
         except (RetargetError, ClipError) as error:
             why = error_words(error)
-            failures.append(told("{file}: {why}. {remedy}", file=Path(path).name, why=why, remedy=_ALONE))
+            failures.append(phrase("{file}: {why}. {remedy}", file=Path(path).name, why=why, remedy=_ALONE))
         except Exception as error:  # one bad clip never spoils the others
             failures.append(unforeseen(path, error).words)
     maps = {strangers.fingerprint: joint_map} if loaded else {}

@@ -18,7 +18,7 @@ from typing import Any
 
 from metagraph.common.csv_text import csv_text, restored
 from metagraph.common.files import guarded, read_file
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.manual import groups as manual_groups
@@ -90,16 +90,16 @@ def rows_of(text: str) -> list[Row]:
                 check_names(names)
                 continue
             if len(out) >= MOST_ROWS:
-                raise ValueError(told("it has more than {most:,} rows", most=MOST_ROWS))
+                raise ValueError(phrase("it has more than {most:,} rows", most=MOST_ROWS))
             told_of = ((n, restored(c).strip()) for n, c in zip(names, cells, strict=False) if n in COLUMNS)
             known = {n: c for n, c in told_of if c}
             out.append(Row(lines.line_num, known))
     except csv.Error as error:
         raise ValueError(
-            told("line {line_num} is no row of a table: {error}", line_num=lines.line_num, error=error)
+            phrase("line {line_num} is no row of a table: {error}", line_num=lines.line_num, error=error)
         ) from None
     if names is None:
-        raise ValueError(told("it is empty"))
+        raise ValueError(phrase("it is empty"))
     return out
 
 
@@ -107,10 +107,10 @@ def check_names(names: Sequence[str]) -> None:
     """Raise ValueError where the first row names not both ends of a link, or a column twice."""
     for name in ("from", "to"):
         if name not in names:
-            raise ValueError(told("the first row names no column '{name}'", name=name))
+            raise ValueError(phrase("the first row names no column '{name}'", name=name))
     twice = next((n for n in COLUMNS if list(names).count(n) > 1), None)
     if twice is not None:
-        raise ValueError(told("the first row names the column '{twice}' twice", twice=twice))
+        raise ValueError(phrase("the first row names the column '{twice}' twice", twice=twice))
 
 
 def filled(project: Project, layer: Layer, rows: Sequence[Row]) -> Filled:
@@ -126,7 +126,7 @@ def filled(project: Project, layer: Layer, rows: Sequence[Row]) -> Filled:
             after, targets = _nodes(after, layer, row, "to")
             found = machine(after, layer)
             if len(found.links) + len(sources) * len(targets) > MOST_LINKS:
-                raise ValueError(told("the machine would have more than {most:,} links", most=MOST_LINKS))
+                raise ValueError(phrase("the machine would have more than {most:,} links", most=MOST_LINKS))
             # Links that patterns name lead from no state to itself, as drawn ones do.
             one = len(sources) == len(targets) == 1
             pairs = [(a, b) for a in sources for b in targets if a != b or one]
@@ -160,7 +160,7 @@ def _linked(
 def _nodes(project: Project, layer: Layer, row: Row, column: str) -> tuple[Project, list[str]]:
     """Return what a cell names, and the project, with an alias more where several states are to be left."""
     if column not in row.cells:
-        raise ValueError(told("'{column}' is empty", column=column))
+        raise ValueError(phrase("'{column}' is empty", column=column))
     found = machine(project, layer)
     out: dict[str, None] = {}
     words = [w.strip() for w in row.cells[column].split("|")]
@@ -168,7 +168,7 @@ def _nodes(project: Project, layer: Layer, row: Row, column: str) -> tuple[Proje
         named = [*found.states] if (word, column) == ("*", "to") else _named(found, word)
         if not named:
             raise ValueError(
-                told(
+                phrase(
                     "'{column}' names '{word}', which is no state or alias of the {layer} layer",
                     column=column,
                     word=word,
@@ -210,7 +210,9 @@ def _settings(row: Row) -> dict[str, Any]:
         condition["when"] = cells["when"].lower()
         if condition["when"] not in WHENS:
             raise ValueError(
-                told("'when' is '{cells}' rather than {names}", cells=cells["when"], names=" or ".join(WHENS))
+                phrase(
+                    "'when' is '{cells}' rather than {names}", cells=cells["when"], names=" or ".join(WHENS)
+                )
             )
     if "trigger" in cells:
         condition |= {"trigger": cells["trigger"]} | ({"when": "request"} if "when" not in cells else {})
@@ -225,7 +227,7 @@ def _settings(row: Row) -> dict[str, Any]:
         at_end, once = word == "end", word in ("at once", "none")
         part = 1.0 if at_end else _number(word[:-1], "exit") / 100 if word.endswith("%") else None
         if part is not None and part > 1:
-            raise ValueError(told("'exit' is '{cells}', which is after the end", cells=cells["exit"]))
+            raise ValueError(phrase("'exit' is '{cells}', which is after the end", cells=cells["exit"]))
         out["exit_part"] = part
         out["exit_time"] = None if part is not None or once else _number(word, "exit")
     return out
@@ -236,10 +238,10 @@ def _number(word: str, column: str, least: float = 0.0) -> float:
         value = float(word.strip().removesuffix("s").strip().replace(",", "."))
     except ValueError:
         raise ValueError(
-            told("'{column}' is '{word}', which is no number", column=column, word=word)
+            phrase("'{column}' is '{word}', which is no number", column=column, word=word)
         ) from None
     if not least <= value <= 1e6:
-        raise ValueError(told("'{column}' is {word}, which is out of range", column=column, word=word))
+        raise ValueError(phrase("'{column}' is {word}, which is out of range", column=column, word=word))
     return value
 
 

@@ -27,7 +27,7 @@ from metagraph.common.network_paths import (
     original,
     reason,
 )
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError, shown
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.clip_identity import with_clip_identity
@@ -85,23 +85,23 @@ def from_text(text: str, path: Path, notes: list[str] | None = None) -> Project:
         if conflict := _CONFLICT.search(text):
             raise FileError(
                 path,
-                told("holds two versions that Git could not merge"),
-                told("line {line}", line=text.count("\n", 0, conflict.start()) + 1),
-                told("Merge the three versions that Git keeps, as docs/together.md says."),
+                phrase("holds two versions that Git could not merge"),
+                phrase("line {line}", line=text.count("\n", 0, conflict.start()) + 1),
+                phrase("Merge the three versions that Git keeps, as docs/together.md says."),
             ) from None
         line = f"line {error.line}" if error.line else "its text"
         raise FileError(
             path,
-            told("not valid YAML ({error})", error=error),
+            phrase("not valid YAML ({error})", error=error),
             line,
-            told("Undo the last change made by hand, or restore a backup."),
+            phrase("Undo the last change made by hand, or restore a backup."),
         ) from None
     try:
         return _closed_below(from_data(_upgraded(data, path), notes), path.parent)
     except DataError as error:
         cause = f"{error.where} {error}".strip()
         raise FileError(
-            path, cause, _line_of(lines, error.where), told("Correct it, or restore a backup.")
+            path, cause, _line_of(lines, error.where), phrase("Correct it, or restore a backup.")
         ) from None
 
 
@@ -112,12 +112,12 @@ def _upgraded(data: Any, path: Path) -> Any:
     if not isinstance(version, int) or isinstance(version, bool) or version < 1:
         raise DataError("metagraph", "should be the version of the format, a whole number from 1")
     if version > FORMAT:
-        cause = told(
+        cause = phrase(
             "was written by a newer Metagraph (format {version}, this one reads up to {FORMAT})",
             version=version,
             FORMAT=FORMAT,
         )
-        raise FileError(path, cause, "metagraph", told("Update Metagraph."))
+        raise FileError(path, cause, "metagraph", phrase("Update Metagraph."))
     while version < FORMAT:
         data = {**UPGRADES[version](dict(data)), "metagraph": version + 1}
         version += 1
@@ -159,20 +159,20 @@ def encoded(project: Project, path: Path) -> bytes:
         text = to_text(with_clip_identity(to_data(project)))
     except DataError as error:
         raise FileError(
-            path, told("cannot be saved: {error}", error=error), error.where, told("Correct that value.")
+            path, phrase("cannot be saved: {error}", error=error), error.where, phrase("Correct that value.")
         ) from None
     try:
         from_data(_parsed(text, path))
     except DataError as error:
         raise FileError(
             path,
-            told(
+            phrase(
                 "cannot be saved, since it could not be opened again: {where} {error}",
                 where=error.where,
                 error=error,
             ),
             error.where,
-            told("Correct that value; the file is as it was."),
+            phrase("Correct that value; the file is as it was."),
         ) from None
     return text.encode()
 
@@ -183,9 +183,9 @@ def _parsed(text: str, path: Path) -> Data:
     except TextError as error:
         raise FileError(
             path,
-            told("cannot be saved: {error}", error=error),
-            told("line {line}", line=error.line),
-            told("Correct it."),
+            phrase("cannot be saved: {error}", error=error),
+            phrase("line {line}", line=error.line),
+            phrase("Correct it."),
         ) from None
     return data
 
@@ -327,7 +327,7 @@ def kept_path(path: Path, folder: Path | None) -> str:
     whole = path.parent.resolve() / path.name  # a linked file keeps its name
     name = relative(path, folder) if folder is not None else whole.as_posix()
     if not is_text(name):
-        raise FileError(path, told("has a name that is no text"), told("its name"), told("Rename it."))
+        raise FileError(path, phrase("has a name that is no text"), phrase("its name"), phrase("Rename it."))
     return name
 
 
@@ -361,9 +361,9 @@ def _decoded(content: bytes, path: Path, notes: list[str] | None = None) -> Proj
     except UnicodeDecodeError as error:
         raise FileError(
             path,
-            told("is not text"),
-            told("byte {start}", start=error.start),
-            told("Choose a Metagraph project file."),
+            phrase("is not text"),
+            phrase("byte {start}", start=error.start),
+            phrase("Choose a Metagraph project file."),
         ) from None
 
 
@@ -410,7 +410,7 @@ def reopened(project: Project) -> Project:
 
 def closed_words(names: Sequence[str]) -> str:
     """Say which files were not opened, and how they can be."""
-    return told(
+    return phrase(
         "{count} of the files that it names were not opened, such as '{name}': {why}. If you trust where the "
         "project comes from, give the command --network; in the window choose File, Files on other computers",
         count=len(names),

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.generation.chunks import GUIDANCE
 from metagraph.generation.features import RATE as SOUND_RATE
 from metagraph.generation.features import (
@@ -114,7 +114,7 @@ def side_sound(conversation: Conversation, side: int, folder: Path) -> tuple[Arr
         of = conversation.sides[n]
         if of.audio is None:
             notes.append(
-                told(
+                phrase(
                     "{side_name} has no sound: who speaks when is all that is heard.",
                     side_name=side_name(conversation, n),
                 )

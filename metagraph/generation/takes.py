@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.generation.features import (
     MELS,
     NONE,
@@ -158,7 +158,7 @@ def take_of(
         )
     if abs(len(poses) - frames_of(sound.shape[1])) > FPS:
         notes.append(
-            told(
+            phrase(
                 "{who}: motion lasts {count:.1f} s, sound {shape:.1f} s; what is over is left out. "
                 "Check that both begin at the same moment.",
                 who=who,
@@ -172,7 +172,7 @@ def take_of(
         sound = np.concatenate([sound, np.zeros_like(sound)])
     if conversation is None:
         notes.append(
-            told("{who} has no words: loudness tells who speaks, and strokes cannot be judged.", who=who)
+            phrase("{who} has no words: loudness tells who speaks, and strokes cannot be judged.", who=who)
         )
         partner = sound[1] if len(sound) > 1 else None
         activity, marks = voice_activity(sound[0], partner, RATE, count), Marks()
@@ -182,9 +182,9 @@ def take_of(
     if activity[:, NONE].sum() / FPS > count / FPS - SPOKEN:
         raise TakeError(f"{who}: nobody speaks in it. Check which sound belongs to it")
     if own < SPOKEN:
-        notes.append(told("{who}: this side hardly speaks: it teaches listening alone.", who=who))
+        notes.append(phrase("{who}: this side hardly speaks: it teaches listening alone.", who=who))
     elif not activity[:, PARTNER].any():
-        notes.append(told("{who}: the partner never speaks: it teaches speaking alone.", who=who))
+        notes.append(phrase("{who}: the partner never speaks: it teaches speaking alone.", who=who))
     gains = [gain_of(channel, RATE) for channel in sound]
     audio = features(sound, activity, tracks, gains)[:count]
     if float(poses[:count].std(0).max()) < 1e-3:
@@ -199,20 +199,22 @@ def _check_sound(who: str, sound: Array, clipped: Sequence[float], shared: bool,
     if all(silent):
         raise TakeError(f"{who}: its sound is silent. Check the microphone, or which channel is its own")
     if len(sound) == 1 and not shared:
-        notes.append(told("{who} has one voice only: it is its own, and the partner never speaks.", who=who))
+        notes.append(
+            phrase("{who} has one voice only: it is its own, and the partner never speaks.", who=who)
+        )
     elif len(sound) == 1:
         notes.append(
-            told("{who}: both voices are in one channel; neither is brought to its own loudness.", who=who)
+            phrase("{who}: both voices are in one channel; neither is brought to its own loudness.", who=who)
         )
     elif silent[0]:
         notes.append(
-            told(
+            phrase(
                 "{who}: its own channel is silent: it teaches listening alone. Are the channels swapped?",
                 who=who,
             )
         )
     elif silent[1]:
-        notes.append(told("{who} has one voice only: the partner's channel is silent.", who=who))
+        notes.append(phrase("{who} has one voice only: the partner's channel is silent.", who=who))
     worst = max(clipped, default=0.0)
     if worst > 0.02:
         raise TakeError(
@@ -221,7 +223,7 @@ def _check_sound(who: str, sound: Array, clipped: Sequence[float], shared: bool,
         )
     if worst > 1e-4:
         notes.append(
-            told("{who}: {value:.2g} % of its sound is cut off at full scale.", who=who, value=100 * worst)
+            phrase("{who}: {value:.2g} % of its sound is cut off at full scale.", who=who, value=100 * worst)
         )
 
 

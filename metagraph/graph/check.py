@@ -11,7 +11,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from metagraph.common.network_paths import ANOTHER, original, reason
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.graph import anatomy
 from metagraph.graph.checks import end_gaps
 from metagraph.graph.checks.base import check_base, stance_name
@@ -35,8 +35,8 @@ def check(project: Project) -> list[Problem]:
             Problem(
                 "hint",
                 "no-stance",
-                told("nothing plays yet"),
-                told("Drop a resting clip on the middle of a layer to make its first stance."),
+                phrase("nothing plays yet"),
+                phrase("Drop a resting clip on the middle of a layer to make its first stance."),
             )
         )
     order = {"error": 0, "warning": 1, "hint": 2}
@@ -59,13 +59,13 @@ def _why_missing(entry: ClipEntry) -> tuple[str, str]:
     path = original(entry.path)
     if path != entry.path:
         return (
-            told("the file of clip '{name}' is not opened: {why} ({path})",
+            phrase("the file of clip '{name}' is not opened: {why} ({path})",
                  name=entry.name, why=reason(path) or ANOTHER, path=path),
-            told("If you trust the project, choose 'Files on other computers' or give --network."),
+            phrase("If you trust the project, choose 'Files on other computers' or give --network."),
         )  # fmt: skip
     return (
-        told("the file of clip '{name}' is missing ({path})", name=entry.name, path=path),
-        told("Put the file back, or choose 'Find missing files' and show where it is now."),
+        phrase("the file of clip '{name}' is missing ({path})", name=entry.name, path=path),
+        phrase("Put the file back, or choose 'Find missing files' and show where it is now."),
     )
 
 
@@ -83,13 +83,13 @@ def _clips(project: Project) -> Iterator[Problem]:
             yield Problem(
                 "error" if project.uses.get(entry.id) else "warning",
                 "other-skeleton",
-                told(
+                phrase(
                     "clip '{name}' has another skeleton ({count} joints, the project has {own})",
                     name=entry.name,
                     count=len(entry.motion.skeleton),
                     own=len(project.skeleton),
                 ),
-                told("Import its file again to retarget it, or remove it."),
+                phrase("Import its file again to retarget it, or remove it."),
                 clip=entry.id,
             )
 
@@ -103,8 +103,8 @@ def _character(project: Project) -> Iterator[Problem]:
             yield Problem(
                 "warning",
                 "no-part",
-                told("no joint of the skeleton was recognised as {part}", part=told(part)),
-                told("Open 'Skeleton' and say which joints they are."),
+                phrase("no joint of the skeleton was recognised as {part}", part=phrase(part)),
+                phrase("Open 'Skeleton' and say which joints they are."),
             )
 
 
@@ -122,20 +122,20 @@ def _graph(project: Project, graph: MetaGraph) -> Iterator[Problem]:
             yield at(
                 "error",
                 "no-loop",
-                told("stance '{name}' has no loop to rest in", name=stance.name),
-                told("Drop a resting clip on the middle node."),
+                phrase("stance '{name}' has no loop to rest in", name=stance.name),
+                phrase("Drop a resting clip on the middle node."),
             )
         for kind in KINDS[1:3]:
             if not graph.of(stance.id, kind):
                 yield at(
                     "hint",
                     f"no-{kind}s",
-                    told("stance '{name}' has no gestures", name=stance.name)
+                    phrase("stance '{name}' has no gestures", name=stance.name)
                     if kind == "gesture"
-                    else told("stance '{name}' has no fidgets", name=stance.name),
-                    told("Drop clips on its node of gestures.")
+                    else phrase("stance '{name}' has no fidgets", name=stance.name),
+                    phrase("Drop clips on its node of gestures.")
                     if kind == "gesture"
-                    else told("Drop clips on its node of fidgets."),
+                    else phrase("Drop clips on its node of fidgets."),
                 )
         if len(graph.stances) > 1 and not any(
             a.end_stance in graph.stances for a in graph.of(stance.id, "transition")
@@ -143,22 +143,22 @@ def _graph(project: Project, graph: MetaGraph) -> Iterator[Problem]:
             yield at(
                 "warning",
                 "dead-end",
-                told("stance '{name}' cannot be left", name=stance.name),
-                told("Drop a clip on its transition node."),
+                phrase("stance '{name}' cannot be left", name=stance.name),
+                phrase("Drop a clip on its transition node."),
             )
         if graph.start in graph.stances and stance.id not in led_to:
             yield at(
                 "warning",
                 "unreachable",
-                told("stance '{name}' cannot be reached", name=stance.name),
-                told("Drop a transition that ends in it on another stance."),
+                phrase("stance '{name}' cannot be reached", name=stance.name),
+                phrase("Drop a transition that ends in it on another stance."),
             )
     if graph.actions and graph.start not in graph.stances:
         yield Problem(
             "error",
             "no-start",
-            told("the {layer} layer has no stance to begin in", layer=told(layer)),
-            told("Choose a stance and 'Start here'."),
+            phrase("the {layer} layer has no stance to begin in", layer=phrase(layer)),
+            phrase("Choose a stance and 'Start here'."),
             layer,
         )
     for part, weight in graph.weights.items():
@@ -166,13 +166,13 @@ def _graph(project: Project, graph: MetaGraph) -> Iterator[Problem]:
             yield Problem(
                 "error",
                 "weight",
-                told(
+                phrase(
                     "the {layer} layer's weight on {part} is {weight:g}",
-                    layer=told(layer),
+                    layer=phrase(layer),
                     part=part,
                     weight=weight,
                 ),
-                told("Set it between 0 and 2."),
+                phrase("Set it between 0 and 2."),
                 layer,
             )
     for action in graph.actions.values():
@@ -188,7 +188,7 @@ class _ActionCheck:
 
     def at(self, severity: Severity, code: str, message: str, remedy: str) -> Problem:
         action = self.action
-        words = told("'{name}' {message}", name=action.name, message=message)
+        words = phrase("'{name}' {message}", name=action.name, message=message)
         return Problem(severity, code, words, remedy, self.graph.layer, action.stance, action.id, action.clip)
 
     def problems(self) -> Iterator[Problem]:
@@ -200,20 +200,20 @@ class _ActionCheck:
             yield self.at(
                 "error",
                 "lost-clip",
-                told("uses a clip that is not in the project"),
-                told("Remove it, or import the clip again."),
+                phrase("uses a clip that is not in the project"),
+                phrase("Remove it, or import the clip again."),
             )
             return
         if self.action.clip_name:
             yield self.at(
                 "error",
                 "swapped-clip",
-                told(
+                phrase(
                     "was made of clip '{was}', and now plays '{name}'",
                     was=self.action.clip_name,
                     name=entry.name,
                 ),
-                told("Choose in Problems which of the two it plays: by the button, or in the row's menu."),
+                phrase("Choose in Problems which of the two it plays: by the button, or in the row's menu."),
             )
         end = entry.duration if self.timing.end is None else self.timing.end
         yield from self.played(entry, end)
@@ -228,28 +228,31 @@ class _ActionCheck:
             yield self.at(
                 "error",
                 "lost-stance",
-                told("belongs to a stance that is not there"),
-                told("Move it to a stance, or remove it."),
+                phrase("belongs to a stance that is not there"),
+                phrase("Move it to a stance, or remove it."),
             )
         if action.kind != "transition":
             return
         if action.end_stance is None:
             yield self.at(
-                "error", "no-end", told("is a transition that ends nowhere"), told("Choose its end stance.")
+                "error",
+                "no-end",
+                phrase("is a transition that ends nowhere"),
+                phrase("Choose its end stance."),
             )
         elif action.end_stance not in graph.stances:
             yield self.at(
                 "error",
                 "lost-end",
-                told("ends in a stance that is not there"),
-                told("Choose another end stance."),
+                phrase("ends in a stance that is not there"),
+                phrase("Choose another end stance."),
             )
         elif action.end_stance == action.stance:
             yield self.at(
                 "warning",
                 "circle",
-                told("ends in the stance it starts from"),
-                told("Choose another end stance, or make it a gesture."),
+                phrase("ends in the stance it starts from"),
+                phrase("Choose another end stance, or make it a gesture."),
             )
 
     def choice(self) -> Iterator[Problem]:
@@ -259,17 +262,17 @@ class _ActionCheck:
             yield self.at(
                 "error",
                 "likelihood",
-                told(
+                phrase(
                     "has the likelihood {likelihood:g} and can never be chosen", likelihood=action.likelihood
                 ),
-                told("Set it above 0."),
+                phrase("Set it above 0."),
             )
         if unknown := anatomy.unknown_joints(self.project.skeleton, action):
             yield self.at(
                 "error",
                 "mask",
-                told("moves joint '{unknown}', which the skeleton does not have", unknown=unknown[0]),
-                told("Correct its joints."),
+                phrase("moves joint '{unknown}', which the skeleton does not have", unknown=unknown[0]),
+                phrase("Correct its joints."),
             )
 
     def played(self, entry: ClipEntry, end: float) -> Iterator[Problem]:
@@ -282,33 +285,33 @@ class _ActionCheck:
             yield self.at(
                 "error",
                 "trim",
-                told(
+                phrase(
                     "plays {start:.2f}-{end:.2f} s of a clip of {duration:.2f} s",
                     start=timing.start,
                     end=end,
                     duration=entry.duration,
                 ),
-                told("Bring start and end inside the clip."),
+                phrase("Bring start and end inside the clip."),
             )
         elif end <= timing.start and entry.frames > 1:
             yield self.at(
                 "error",
                 "empty",
-                told(
+                phrase(
                     "ends at {end:.2f} s, not after its start at {start:.2f} s", end=end, start=timing.start
                 ),
-                told("Move its end behind its start."),
+                phrase("Move its end behind its start."),
             )
         elif self.action.kind != "stance" and _sound(blends) and blends > end - timing.start + tolerance:
             yield self.at(
                 "warning",
                 "blend",
-                told(
+                phrase(
                     "blends for {blends:.2f} s of its {length:.2f} s",
                     blends=blends,
                     length=end - timing.start,
                 ),
-                told("Shorten its blends."),
+                phrase("Shorten its blends."),
             )
 
     def blends(self) -> Iterator[Problem]:
@@ -318,15 +321,15 @@ class _ActionCheck:
             yield self.at(
                 _severity(blend_in),
                 "blend",
-                told("blends in for {blend:g} s", blend=blend_in),
-                told("Set its blend in to 0 s or more."),
+                phrase("blends in for {blend:g} s", blend=blend_in),
+                phrase("Set its blend in to 0 s or more."),
             )
         if not _sound(blend_out):
             yield self.at(
                 _severity(blend_out),
                 "blend",
-                told("blends out for {blend:g} s", blend=blend_out),
-                told("Set its blend out to 0 s or more."),
+                phrase("blends out for {blend:g} s", blend=blend_out),
+                phrase("Set its blend out to 0 s or more."),
             )
 
     def exit(self, end: float) -> Iterator[Problem]:
@@ -336,8 +339,8 @@ class _ActionCheck:
             yield self.at(
                 "warning",
                 "exit",
-                told("may be left at {earliest_exit:.2f} s, outside what plays", earliest_exit=earliest),
-                told("Bring the earliest exit inside."),
+                phrase("may be left at {earliest_exit:.2f} s, outside what plays", earliest_exit=earliest),
+                phrase("Bring the earliest exit inside."),
             )
 
     def ends(self) -> Iterator[Problem]:
@@ -349,8 +352,8 @@ class _ActionCheck:
                 yield self.at(
                     "warning",
                     "open-loop",
-                    told("does not close: its ends are {far:.0f} cm apart", far=gap.metres * 100),
-                    told("Blend its seam (blend in), or trim it to a loop."),
+                    phrase("does not close: its ends are {far:.0f} cm apart", far=gap.metres * 100),
+                    phrase("Blend its seam (blend in), or trim it to a loop."),
                 )
             return
         for gap in end_gaps.gaps(project, graph, action):
@@ -359,7 +362,7 @@ class _ActionCheck:
                     "warning",
                     "far-start" if gap.edge == "begins" else "far-end",
                     end_gaps.gap_words(gap, stance_name(project, gap.stance)),
-                    told("Trim it, lengthen the blend, or place it on the stance it fits."),
+                    phrase("Trim it, lengthen the blend, or place it on the stance it fits."),
                 )
 
 

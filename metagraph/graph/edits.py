@@ -12,7 +12,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.graph import ids
 from metagraph.graph.clip_source import with_source
 from metagraph.graph.edit_error import EditError
@@ -93,7 +93,7 @@ def with_motions(project: Project, motions: Mapping[str, Clip]) -> Project:
 
 def rename_clip(project: Project, clip: str, name: str) -> Project:
     if clip not in project.clips:
-        raise EditError(told("that clip is no longer in the project"))
+        raise EditError(phrase("that clip is no longer in the project"))
     return replace(project, clips={**project.clips, clip: replace(project.clips[clip], name=_clean(name))})
 
 
@@ -162,10 +162,10 @@ def refusal(
     stance.
     """
     if not clips:
-        return told("nothing to place")
+        return phrase("nothing to place")
     missing = [c for c in clips if c not in project.clips]
     if missing:
-        return told("a clip that is not in this project")
+        return phrase("a clip that is not in this project")
     for clip in clips:
         entry = project.clips[clip]
         if (
@@ -173,17 +173,19 @@ def refusal(
             and project.skeleton is not None
             and entry.motion.skeleton != project.skeleton
         ):
-            return told("'{name}' has another skeleton than this project", name=entry.name)
+            return phrase("'{name}' has another skeleton than this project", name=entry.name)
     graph = project.graphs[layer]
     if kind == "stance":
         return None
     if stance is None or stance not in graph.stances:
-        return told("make a stance first: drop a clip on the middle of the {layer} layer", layer=told(layer))
+        return phrase(
+            "make a stance first: drop a clip on the middle of the {layer} layer", layer=phrase(layer)
+        )
     if kind == "transition":
         if end is None or end not in graph.stances:
-            return told("choose the stance this transition ends in first")
+            return phrase("choose the stance this transition ends in first")
         if end == stance:
-            return told("a transition must end in another stance")
+            return phrase("a transition must end in another stance")
     return None
 
 
@@ -348,7 +350,7 @@ def set_base(project: Project, clip: str | None, frame: int = 0) -> Project:
     if clip is not None:
         entry = project.clips.get(clip)
         if entry is None:
-            raise EditError(told("the clip of the base pose is not in this project"))
+            raise EditError(phrase("the clip of the base pose is not in this project"))
         frame = min(max(0, frame), max(0, entry.frames - 1))
     return replace(project, base=BasePose(clip, frame if clip else 0))
 
@@ -357,7 +359,9 @@ def set_weight(project: Project, layer: Layer, part: Part, weight: float) -> Pro
     """Set how strongly a layer moves a body part, 0..2."""
     if part not in PARTS:
         raise EditError(
-            told("there is no body part '{part}'; there are {names}", part=told(part), names=", ".join(PARTS))
+            phrase(
+                "there is no body part '{part}'; there are {names}", part=phrase(part), names=", ".join(PARTS)
+            )
         )
     graph = project.graphs[layer]
     return project.with_graph(graph.but(weights={**graph.weights, part: min(2.0, max(0.0, weight))}))
@@ -406,14 +410,14 @@ def rename_project(project: Project, name: str) -> Project:
 def _stance(project: Project, ident: str) -> Stance:
     found = project.stance(ident)
     if found is None:
-        raise EditError(told("that stance is no longer in the project"))
+        raise EditError(phrase("that stance is no longer in the project"))
     return found
 
 
 def _clean(name: str) -> str:
     name = " ".join(name.split())
     if not name:
-        raise EditError(told("a name needs at least one letter"))
+        raise EditError(phrase("a name needs at least one letter"))
     return name
 
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import msgspec
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.graph import requests as a
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing.performances import asked_at, change_performance, move_requests
@@ -69,7 +69,7 @@ def paste_requests(project: Project, performance: str, text: str, at: float) -> 
         asks = [a.request_from(x) for x in data["requests"]]
         names: dict[str, Any] = dict(data.get("names", {}))
     except (a.RequestError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        raise EditError(told("there are no requests on the clipboard that can be read")) from None
+        raise EditError(phrase("there are no requests on the clipboard that can be read")) from None
     kept: list[a.AnyRequest] = []
     left_out: list[str] = []
     for ask in asks:

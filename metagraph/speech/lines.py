@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from metagraph.common.budgets import CONVERSATION_SECONDS, LINE_SECONDS
 from metagraph.common.files import unforeseen
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.graph.conversation.model import Word
 from metagraph.graph.model import Project
@@ -72,12 +72,12 @@ def voice_from_phones(phones: str | Path) -> Voice:
     pieces = [p for p in pieces_of(grid) if p.start >= 0]
     duration = max([grid.end, *(p.end for p in pieces)])
     if duration > LINE_SECONDS:
-        why = told(
+        why = phrase(
             "lasts {duration:.0f} s, a line at most {most:.0f} s",
             duration=duration,
             most=LINE_SECONDS,
         )
-        raise FileError(phones, why, told("its end"), told("Cut it into lines."))
+        raise FileError(phones, why, phrase("its end"), phrase("Cut it into lines."))
     if not pieces:
         return silent(max(duration, 0.0))
     vowels = [
@@ -122,7 +122,7 @@ def load_voices(project: Project, folder: str | Path) -> tuple[Project, tuple[st
                 voice = read_line(attempt, folder)
             except Exception as error:  # one bad sound never spoils a project
                 why = unforeseen(folder / (line.audio or line.phones or ""), error)
-                note = told("line '{ident}': {why}", ident=ident, why=why.words)
+                note = phrase("line '{ident}': {why}", ident=ident, why=why.words)
                 if note not in notes:
                     notes.append(note)
                 continue

@@ -25,7 +25,7 @@ from metagraph.common.budgets import (
     SOUND_SAMPLES,
 )
 from metagraph.common.files import check_file, guarded, is_file, opened
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.playback.life.mouth import MouthPiece
 from metagraph.speech.quantile import percentile
@@ -119,8 +119,8 @@ def read_sound(
         count = f"{len(samples)} channels" if len(samples) > 1 else "one channel"
         raise FileError(
             path,
-            told("has {count}; there is no channel {channel}", count=count, channel=channel + 1),
-            remedy=told("Choose the sound anew."),
+            phrase("has {count}; there is no channel {channel}", count=count, channel=channel + 1),
+            remedy=phrase("Choose the sound anew."),
         )
     return samples[channel], read.rate
 
@@ -143,12 +143,12 @@ def read_head(path: str | Path) -> tuple[int, int, int]:
 def _no_sound(path: Path, error: Exception) -> FileError:
     cause = str(getattr(error, "error_string", error)).strip().rstrip(".") or type(error).__name__
     if (kind := sound_kind(path)) and not kind.startswith("a WAV"):
-        cause = told("it is {kind}", kind=kind)
+        cause = phrase("it is {kind}", kind=kind)
     return FileError(
         path,
-        told("cannot be read as sound: {cause}", cause=cause),
-        told("its content"),
-        told("Save it as {endings}.", endings=_SUFFIXES),
+        phrase("cannot be read as sound: {cause}", cause=cause),
+        phrase("its content"),
+        phrase("Save it as {endings}.", endings=_SUFFIXES),
     )
 
 
@@ -164,8 +164,8 @@ def read_recording(path: str | Path, longest: float = LONGEST, most: int | None 
     if not is_file(path) and not path.exists():
         raise FileError(
             path,
-            told("there is no such sound file"),
-            remedy=told("Check where it is, or choose the file anew."),
+            phrase("there is no such sound file"),
+            remedy=phrase("Check where it is, or choose the file anew."),
         )
     check_file(path, SOUND_FILE)
     try:
@@ -174,49 +174,49 @@ def read_recording(path: str | Path, longest: float = LONGEST, most: int | None 
             if file.frames / max(rate, 1) > longest:
                 raise FileError(
                     path,
-                    told(
+                    phrase(
                         "lasts {lasts:.0f} s, at most {longest:.0f} s are read",
                         lasts=file.frames / rate,
                         longest=longest,
                     ),
-                    remedy=told("Cut it into pieces."),
+                    remedy=phrase("Cut it into pieces."),
                 )
             if not file.frames or rate < SOUND_RATES[0]:
                 why = (
-                    told("holds no sound")
+                    phrase("holds no sound")
                     if not file.frames
-                    else told("has {rate} samples a second, too few for speech", rate=rate)
+                    else phrase("has {rate} samples a second, too few for speech", rate=rate)
                 )
                 raise FileError(
                     path,
                     why,
-                    remedy=told(
+                    remedy=phrase(
                         "Save it as {endings}, with 16000 samples a second or more.", endings=_SUFFIXES
                     ),
                 )
             if rate > SOUND_RATES[1] or file.channels > SOUND_CHANNELS:
                 why = (
-                    told(
+                    phrase(
                         "has {rate:,} samples a second, more than any recorder's {most:,}",
                         rate=rate,
                         most=SOUND_RATES[1],
                     )
                     if rate > SOUND_RATES[1]
-                    else told(
+                    else phrase(
                         "has {channels} channels, at most {most} are read",
                         channels=file.channels,
                         most=SOUND_CHANNELS,
                     )
                 )
                 raise FileError(
-                    path, why, remedy=told("Save it anew as {endings}, with 48000.", endings=_SUFFIXES)
+                    path, why, remedy=phrase("Save it anew as {endings}, with 48000.", endings=_SUFFIXES)
                 )
             every = 1 if most is None else max(1, -(-rate // most))
             if file.frames // every * file.channels > SOUND_SAMPLES:
                 raise FileError(
                     path,
-                    told("holds more samples than are read"),
-                    remedy=told("Cut it, or save it with 48000 a second."),
+                    phrase("holds more samples than are read"),
+                    remedy=phrase("Cut it, or save it with 48000 a second."),
                 )
             return replace(_read_blocks(file, rate, every), really=misnamed(path))
     except (soundfile.LibsndfileError, RuntimeError, TypeError, MemoryError, OSError) as error:
@@ -255,9 +255,9 @@ def sound_ending(path: str | Path) -> str:
     if not known and not any(own in endings for endings in _ENDINGS.values()):
         raise FileError(
             path,
-            told("is a sound of an unusual kind"),
-            told("its content"),
-            told("Save it as {endings}.", endings=_SUFFIXES),
+            phrase("is a sound of an unusual kind"),
+            phrase("its content"),
+            phrase("Save it as {endings}.", endings=_SUFFIXES),
         )
     return path.suffix if not known or own in known else known[0]
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.graph.requests import Line
 from metagraph.playback.plan import Plan
@@ -34,7 +34,7 @@ def line_sounds(
             try:
                 samples, own = read_sound(folder / line.audio, line.channel)
             except FileError as error:
-                notes.append(told("line '{ident}': {why}", ident=ident, why=error.words))
+                notes.append(phrase("line '{ident}': {why}", ident=ident, why=error.words))
                 continue
             sounds[ident] = resampled(samples, own, rate)
     return sounds, tuple(notes)

@@ -15,13 +15,13 @@ from pathlib import Path
 
 from metagraph.common.budgets import MARKS, MARKS_FILE
 from metagraph.common.files import guarded, read_file
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 
 _TOKEN = re.compile(
     r'"(?:[^"]|"")*"|<[a-z]+>|(?<![^\s=])[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?%?(?!\S)'
 )
-_REMEDY = told("Save it from Praat as a text file or a short text file.")
+_REMEDY = phrase("Save it from Praat as a text file or a short text file.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +59,7 @@ def read_textgrid(path: str | Path) -> TextGrid:
 def _text(path: Path) -> str:
     data = read_file(path, MARKS_FILE)
     if data.startswith(b"ooBinaryFile"):
-        raise FileError(path, told("is a binary Praat file"), remedy=_REMEDY)
+        raise FileError(path, phrase("is a binary Praat file"), remedy=_REMEDY)
     utf16 = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
     try:
         return data.decode("utf-16" if utf16 else "utf-8-sig")
@@ -83,41 +83,43 @@ class _Reader:
 
     def fail(self, cause: str) -> FileError:
         line = self.text.count("\n", 0, self.at) + 1
-        return FileError(self.path, cause, told("line {line}", line=line), _REMEDY)
+        return FileError(self.path, cause, phrase("line {line}", line=line), _REMEDY)
 
     def word(self, what: str) -> str:
         token = next(self.tokens, None)
         if token is None:
-            raise self.fail(told("ends before its {what}", what=what))
+            raise self.fail(phrase("ends before its {what}", what=what))
         if not token.startswith('"'):
-            raise self.fail(told("{token} stands where {what} should be", token=token[:20], what=what))
+            raise self.fail(phrase("{token} stands where {what} should be", token=token[:20], what=what))
         return token[1:-1].replace('""', '"')
 
     def number(self, what: str) -> float:
         token = next(self.tokens, None)
         if token is None:
-            raise self.fail(told("ends before its {what}", what=what))
+            raise self.fail(phrase("ends before its {what}", what=what))
         try:
             value = float(token)
         except ValueError:
             raise self.fail(
-                told("{token} stands where {what} should be", token=token[:20], what=what)
+                phrase("{token} stands where {what} should be", token=token[:20], what=what)
             ) from None
         if not abs(value) < 1e7:
-            raise self.fail(told("{what} is {token}", what=what, token=token[:20]))
+            raise self.fail(phrase("{what} is {token}", what=what, token=token[:20]))
         return value
 
     def count(self, what: str) -> int:
         value = self.number(what)
         if value < 0 or value != math.floor(value):
-            raise self.fail(told("{what} is {value:g}", what=what, value=value))
+            raise self.fail(phrase("{what} is {value:g}", what=what, value=value))
         return int(value)
 
     def grid(self) -> TextGrid:
         kind = self.word("file type")
         what = self.word("object class")
         if kind != "ooTextFile" or not what.startswith("TextGrid"):
-            raise self.fail(told("it is no TextGrid but {kind!r}, {what!r}", kind=kind[:20], what=what[:20]))
+            raise self.fail(
+                phrase("it is no TextGrid but {kind!r}, {what!r}", kind=kind[:20], what=what[:20])
+            )
         start, end = self.number("start"), self.number("end")
         exists = next(self.tokens, "")
         tiers = (
@@ -128,7 +130,7 @@ class _Reader:
     def tier(self) -> Tier:
         kind = self.word("tier's class")
         if kind not in ("IntervalTier", "TextTier"):
-            raise self.fail(told("there is no tier of class {kind!r}", kind=kind[:20]))
+            raise self.fail(phrase("there is no tier of class {kind!r}", kind=kind[:20]))
         name = self.word("tier's name")
         self.number("tier's start")
         self.number("tier's end")
@@ -136,12 +138,12 @@ class _Reader:
         for _ in range(self.count("number of intervals")):
             self.marks += 1
             if self.marks > MARKS:
-                raise self.fail(told("it has more than {most:,} intervals", most=MARKS))
+                raise self.fail(phrase("it has more than {most:,} intervals", most=MARKS))
             start = self.number("interval's start")
             end = self.number("interval's end") if kind == "IntervalTier" else start
             if end < start:
                 raise self.fail(
-                    told(
+                    phrase(
                         "an interval ends at {end:g} s, before it starts at {start:g} s", end=end, start=start
                     )
                 )

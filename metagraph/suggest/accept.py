@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import error_words
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
@@ -41,7 +41,7 @@ def accept(
         p for p in found.proposals.values() if (clips is None or p.clip in clips) and p.clip in project.clips
     ]
     left: dict[str, str] = {
-        p.clip: told("only {sure:.0%} sure", sure=p.confidence) for p in wanted if p.confidence < above
+        p.clip: phrase("only {sure:.0%} sure", sure=p.confidence) for p in wanted if p.confidence < above
     }
     wanted = [p for p in wanted if p.clip not in left]
     keys = {
@@ -108,11 +108,11 @@ def _place(
     held in a moment of a clip. Raises EditError.
     """
     if p.stance is None:
-        raise EditError(told("nothing says which stance it belongs to"))
+        raise EditError(phrase("nothing says which stance it belongs to"))
     layer: Layer = p.layer.value
     kind: Kind = p.kind.value
     if kind == "transition" and p.end_stance is None:
-        raise EditError(told("nothing says where it ends"))
+        raise EditError(phrase("nothing says where it ends"))
     for belief in (p.stance, p.end_stance if kind == "transition" else None):
         if belief is None or belief.value in keys or (belief is p.stance and kind == "stance"):
             continue
@@ -123,7 +123,7 @@ def _place(
         )
         if loop is None:
             raise EditError(
-                told(
+                phrase(
                     "no resting clip shows its stance, '{name}'"
                     if belief is p.stance
                     else "no resting clip shows the stance it ends in, '{name}'",

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.suggest.estimate import Belief
 
 Array = NDArray[Any]
@@ -118,7 +118,9 @@ class Alike:
             value, firm, near = model.best(model.scores(said, away, None), said)
             sure = model.confidence(firm) * model.familiar(away)
             out[field] = Belief(
-                value, sure, told("like '{words}'", words=near) if near else told("like what is labelled so")
+                value,
+                sure,
+                phrase("like '{words}'", words=near) if near else phrase("like what is labelled so"),
             )
         return out
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from math import log, sqrt
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.graph.words import Layer
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.traits import Traits
@@ -104,31 +104,31 @@ def layer_of(traits: Traits) -> Belief[Layer]:
     arms = max(0.0, e["left_arm"] + e["right_arm"] - breath) + e["fingers"]
     have = [layer for layer in ("body", "arms", "head") if layers[layer].names]
     if have == ["body"]:
-        return Belief("body", SUREST, told("the character has neither arms nor a head that are known"))
+        return Belief("body", SUREST, phrase("the character has neither arms nor a head that are known"))
     if traits.face > 1e-3 and "head" in have:
-        return Belief("head", SUREST, told("only the face moves"))
+        return Belief("head", SUREST, phrase("only the face moves"))
     if arms + lower + upper < 1e-5:
-        return Belief("body", 0.34, told("nothing moves"))
+        return Belief("body", 0.34, phrase("nothing moves"))
     body, hands = lower / (0.15 * upper + 0.25 * arms + 1e-6), arms / (0.1 * upper + 1e-6)
-    share = told(
+    share = phrase(
         "hips and legs {lower:.1f}, arms {arms:.1f}, head and trunk {upper:.1f} % of the height a second",
         lower=lower * 100,
         arms=arms * 100,
         upper=upper * 100,
     )
     if body >= 1:
-        return Belief("body", _tempered(body), told("hips and legs move: {share}", share=share))
+        return Belief("body", _tempered(body), phrase("hips and legs move: {share}", share=share))
     if hands >= 1 and "arms" in have:
         return Belief(
             "arms",
             min(_tempered(hands), _tempered(1 / max(body, 1e-3))),
-            told("the arms move, hips and legs do not: {share}", share=share),
+            phrase("the arms move, hips and legs do not: {share}", share=share),
         )
     if "head" in have:
         return Belief(
             "head",
             min(_tempered(1 / max(hands, 1e-3)), _tempered(1 / max(body, 1e-3))),
-            told("only the head moves: {share}", share=share),
+            phrase("only the head moves: {share}", share=share),
         )
     return Belief("body", 0.5, share)
 
@@ -150,10 +150,10 @@ def moves_most(traits: Traits) -> Belief[Layer]:
 
 def _goes_farthest(layer: Layer, length: float) -> str:
     if layer == "body":
-        return told("the body goes {length:.0f} cm, the most beside what is usual", length=length)
+        return phrase("the body goes {length:.0f} cm, the most beside what is usual", length=length)
     if layer == "arms":
-        return told("the arms go {length:.0f} cm, the most beside what is usual", length=length)
-    return told("the head goes {length:.0f} cm, the most beside what is usual", length=length)
+        return phrase("the arms go {length:.0f} cm, the most beside what is usual", length=length)
+    return phrase("the head goes {length:.0f} cm, the most beside what is usual", length=length)
 
 
 def _tempered(ratio: float) -> float:

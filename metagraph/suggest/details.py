@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Action, Kind, Layer, Project, Timing
 from metagraph.motion.clip import Clip
@@ -94,12 +94,12 @@ def _with_times(p: Proposal, motion: Clip, times: compatibility.Times) -> Propos
     reasons["loop"] = _plays(p.kind.value)
     if times.earliest_exit is None:
         reasons["earliest_exit"] = (
-            told("a stance may be left at any time")
+            phrase("a stance may be left at any time")
             if loop
-            else told("it plays to its end, where it looks like a stance again")
+            else phrase("it plays to its end, where it looks like a stance again")
         )
     else:
-        reasons["earliest_exit"] = told(
+        reasons["earliest_exit"] = phrase(
             "looks like the stance it ends in from {seconds:.2f} s on", seconds=times.earliest_exit
         )
     details = {
@@ -113,10 +113,10 @@ def _with_times(p: Proposal, motion: Clip, times: compatibility.Times) -> Propos
 
 def _plays(kind: Kind) -> str:
     if kind == "stance":
-        return told("a stance goes on until it is left")
+        return phrase("a stance goes on until it is left")
     if kind == "transition":
-        return told("a transition plays once")
-    return told("a gesture plays once") if kind == "gesture" else told("a fidget plays once")
+        return phrase("a transition plays once")
+    return phrase("a gesture plays once") if kind == "gesture" else phrase("a fidget plays once")
 
 
 def masked(project: Project, p: Proposal, traits: Traits | None) -> Proposal:
@@ -126,7 +126,7 @@ def masked(project: Project, p: Proposal, traits: Traits | None) -> Proposal:
     motion = project.clips[p.clip].motion
     if motion is None or traits is None:
         return p
-    mask: Belief[tuple[str, ...]] = Belief((), 0.9, told("moves what its layer reaches"))
+    mask: Belief[tuple[str, ...]] = Belief((), 0.9, phrase("moves what its layer reaches"))
     if traits.face > 0 and p.layer.value == "head":
         moving = np.flatnonzero(np.ptp(motion.rotations, axis=0).max(-1) > 1e-3)
         apart = np.ptp(motion.translations, axis=0).max(-1) if len(motion.translated) else np.zeros(0)
@@ -138,9 +138,9 @@ def masked(project: Project, p: Proposal, traits: Traits | None) -> Proposal:
             mask = Belief(
                 names,
                 0.9,
-                told("only {count} joints of the face move", count=len(names))
+                phrase("only {count} joints of the face move", count=len(names))
                 if len(names) > 1
-                else told("only 1 joint of the face moves"),
+                else phrase("only 1 joint of the face moves"),
             )
     return replace(p, details={**p.details, "mask": mask})
 
@@ -158,7 +158,7 @@ def stroked(project: Project, p: Proposal, motion: MotionGuess | None) -> Propos
     near = motion.stroke is not None and abs(motion.stroke.value - found.stroke) < 0.1
     reason = _fastest(p.layer.value, found.stroke)
     if near:
-        reason = told(
+        reason = phrase(
             "{fastest}, on the way out; held until {seconds:.2f} s", fastest=reason, seconds=found.relax
         )
     return replace(
@@ -170,10 +170,10 @@ def stroked(project: Project, p: Proposal, motion: MotionGuess | None) -> Propos
 
 def _fastest(layer: Layer, seconds: float) -> str:
     if layer == "arms":
-        return told("the hands are fastest at {seconds:.2f} s", seconds=seconds)
+        return phrase("the hands are fastest at {seconds:.2f} s", seconds=seconds)
     if layer == "head":
-        return told("the head is fastest at {seconds:.2f} s", seconds=seconds)
-    return told("the trunk is fastest at {seconds:.2f} s", seconds=seconds)
+        return phrase("the head is fastest at {seconds:.2f} s", seconds=seconds)
+    return phrase("the trunk is fastest at {seconds:.2f} s", seconds=seconds)
 
 
 def weighted(project: Project, proposals: Mapping[str, Proposal]) -> dict[str, Proposal]:
@@ -197,10 +197,12 @@ def weighted(project: Project, proposals: Mapping[str, Proposal]) -> dict[str, P
             belief = Belief(
                 round(1 / count, 3),
                 0.8,
-                told("one of {count} of '{words}', which share the weight of one", count=count, words=words),
+                phrase(
+                    "one of {count} of '{words}', which share the weight of one", count=count, words=words
+                ),
             )
         else:
-            belief = Belief(1.0, 0.8, told("no other is called so, so it counts as one"))
+            belief = Belief(1.0, 0.8, phrase("no other is called so, so it counts as one"))
         for clip in clips:
             p = proposals[clip]
             out[clip] = replace(p, details={**p.details, "likelihood": belief})
@@ -239,13 +241,13 @@ def rest_of(project: Project, place: Place, proposals: Mapping[str, Proposal]) -
             start, end = (0.0, long) if first else (motion.duration - long, motion.duration)
             name = project.clips[clip].name
             reason = (
-                told(
+                phrase(
                     "no clip rests there; '{name}' is still for its first {seconds:.2f} s",
                     name=name,
                     seconds=long,
                 )
                 if first
-                else told(
+                else phrase(
                     "no clip rests there; '{name}' is still for its last {seconds:.2f} s",
                     name=name,
                     seconds=long,

@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.suggest.clip_measures import nothing, walks
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.motion_guess import MotionGuess
@@ -77,8 +77,8 @@ def left_aside(
     """
     if traits is not None and traits.duration < POSE and not _shared(traits, motion, shapes):
         if traits.frames == 1:
-            return told("is a single frame: a pose in which no other clip begins or ends, not a movement")
-        return told(
+            return phrase("is a single frame: a pose in which no other clip begins or ends, not a movement")
+        return phrase(
             "is only {seconds:.2f} s long: a pose in which no other clip begins or ends, not a movement",
             seconds=traits.duration,
         )
@@ -89,7 +89,7 @@ def left_aside(
     if traits is None or motion is None or motion.chances is None:
         return ""
     if walks(traits):
-        return told(
+        return phrase(
             "walks or runs: its feet pass each other by {stride:.0f} cm, and its end flows into its "
             "beginning",
             stride=100 * traits.height * traits.stride,
@@ -98,9 +98,9 @@ def left_aside(
     if begins and ends and begins[0][1] is not ends[0][1] and min(begins[0][0], ends[0][0]) > PASSES:
         return ""
     if traits.travel > FAR:
-        return told("goes {length:.1f} m away and to no other stance", length=traits.height * traits.travel)
+        return phrase("goes {length:.1f} m away and to no other stance", length=traits.height * traits.travel)
     if traits.turned > ROUND:
-        return told("turns round by {degrees:.0f} degrees and to no other stance", degrees=traits.turned)
+        return phrase("turns round by {degrees:.0f} degrees and to no other stance", degrees=traits.turned)
     if (
         traits.rise > EXERCISE
         and traits.energy["legs"] > FAST
@@ -108,7 +108,7 @@ def left_aside(
         and ends
         and begins[0][1] is ends[0][1]
     ):
-        return told(
+        return phrase(
             "goes up and down by {length:.0f} cm: an exercise", length=100 * traits.height * traits.rise
         )
     return ""

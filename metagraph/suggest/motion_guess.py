@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import exp, log
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.graph.words import LAYERS, Kind, Layer, Limb
 from metagraph.suggest.clip_measures import SUREST, TYPICAL, energy, layer_of, moves_most, resting, walks
 from metagraph.suggest.estimate import Belief
@@ -85,23 +85,23 @@ def guess(
     kind = max(chances, key=lambda k: chances[k])
     cm = 100 * traits.height
     reason: dict[Kind, str] = {
-        "transition": told(
+        "transition": phrase(
             "ends {apart:.1f} cm from where it begins and goes only {aside:.0f} cm beside that way",
             apart=posed.loop_error * cm,
             aside=posed.extent * cm,
         ),
-        "stance": told(
+        "stance": phrase(
             "moves at most {speed:.0f} cm/s in {seconds:.1f} s",
             speed=max(y.peak for y in traits.layers.values()) * cm,
             seconds=traits.duration,
         )
         if not walking
-        else told(
+        else phrase(
             "goes on walking or running: its feet pass each other by {stride:.0f} cm, and its end flows into "
             "its beginning",
             stride=traits.stride * cm,
         ),
-        "gesture": told(
+        "gesture": phrase(
             "goes {length:.0f} cm away and comes back, in {times}, up to {speed:.0f} cm/s",
             length=x.extent * cm,
             times=_times(x.bouts),
@@ -110,7 +110,7 @@ def guess(
         "fidget": _touching(
             traits,
             cm,
-            told(
+            phrase(
                 "goes {length:.0f} cm away in {times}, up to {speed:.0f} cm/s",
                 length=x.extent * cm,
                 times=_times(x.bouts),
@@ -125,7 +125,7 @@ def guess(
         Belief(
             kind == "stance",
             min(SUREST, chances[kind]),
-            told("its ends are {apart:.1f} cm apart", apart=x.loop_error * cm),
+            phrase("its ends are {apart:.1f} cm apart", apart=x.loop_error * cm),
         ),
         _beside(starts, begins, _begins if kind != "stance" else _rests, layer, cm),
         _beside(ends, leaves, _ends, layer, cm) if kind == "transition" else None,
@@ -138,13 +138,13 @@ def guess(
 
 
 def _times(bouts: int) -> str:
-    return told("1 movement") if bouts == 1 else told("{count} movements", count=bouts)
+    return phrase("1 movement") if bouts == 1 else phrase("{count} movements", count=bouts)
 
 
 def _touching(traits: Traits, cm: float, goes: str) -> str:
     if traits.touch <= 0.03:
         return goes
-    return told(
+    return phrase(
         "{goes}, and a hand comes {length:.0f} cm nearer to touch the other arm or the head",
         goes=goes,
         length=traits.touch * cm,
@@ -152,15 +152,15 @@ def _touching(traits: Traits, cm: float, goes: str) -> str:
 
 
 def _begins(length: str, stance: str) -> str:
-    return told('begins {length} from "{stance}"', length=length, stance=stance)
+    return phrase('begins {length} from "{stance}"', length=length, stance=stance)
 
 
 def _rests(length: str, stance: str) -> str:
-    return told('rests {length} from "{stance}"', length=length, stance=stance)
+    return phrase('rests {length} from "{stance}"', length=length, stance=stance)
 
 
 def _ends(length: str, stance: str) -> str:
-    return told('ends {length} from "{stance}"', length=length, stance=stance)
+    return phrase('ends {length} from "{stance}"', length=length, stance=stance)
 
 
 def _stroke(x: LayerTraits, cm: float) -> Belief[float]:
@@ -168,7 +168,7 @@ def _stroke(x: LayerTraits, cm: float) -> Belief[float]:
     return Belief(
         x.stroke_at,
         0.8 if again else 0.6,
-        told(
+        phrase(
             "fastest on the way out at {seconds:.2f} s of {speed:.0f} cm/s",
             seconds=x.stroke_at,
             speed=x.peak * cm,
@@ -194,7 +194,7 @@ def _beside(
     second = min((away for away, other in found if other is not shape), default=None)
     words = said(_cm(near * cm), shape.name)
     if second is not None:
-        words = told("{words}; next nearest {length}", words=words, length=_cm(second * cm))
+        words = phrase("{words}; next nearest {length}", words=words, length=_cm(second * cm))
     sure = max(chance, ONLY) if second is None else chance  # where there is only one, all are in it
     return Belief(shape, min(CLEAREST * sure, layer.confidence), words)
 
@@ -209,7 +209,9 @@ def _passing(begins: Likely, ends: Likely, otherwise: float) -> float:
 
 
 def _cm(length: float) -> str:
-    return told("{length:.1f} cm", length=length) if length < 10 else told("{length:.0f} cm", length=length)
+    return (
+        phrase("{length:.1f} cm", length=length) if length < 10 else phrase("{length:.0f} cm", length=length)
+    )
 
 
 def _layer_beside(traits: Traits, stances: Stances) -> Belief[Layer]:
@@ -221,7 +223,7 @@ def _layer_beside(traits: Traits, stances: Stances) -> Belief[Layer]:
         return Belief(
             "body",
             SUREST,
-            told("the feet pass each other by {stride:.0f} cm", stride=100 * traits.height * traits.stride),
+            phrase("the feet pass each other by {stride:.0f} cm", stride=100 * traits.height * traits.stride),
         )
     if resting(traits) < 0 or traits.face > 1e-3:
         return found
@@ -241,7 +243,7 @@ def _layer_beside(traits: Traits, stances: Stances) -> Belief[Layer]:
             0.75,
             _unusual("body", 100 * traits.height * unusual["body"])
             if "body" in unusual
-            else told("rests, and hips and legs make {share:.0%} of what moves", share=lower / all_of),
+            else phrase("rests, and hips and legs make {share:.0%} of what moves", share=lower / all_of),
         )
     if len(unusual) == 1 and found.value not in unusual:
         ((layer, away),) = unusual.items()
@@ -251,16 +253,18 @@ def _layer_beside(traits: Traits, stances: Stances) -> Belief[Layer]:
 
 def _unusual(layer: Layer, length: float) -> str:
     if layer == "body":
-        return told("rests {length:.0f} cm from the usual pose of the body", length=length)
+        return phrase("rests {length:.0f} cm from the usual pose of the body", length=length)
     if layer == "arms":
-        return told("rests {length:.0f} cm from the usual pose of the arms", length=length)
-    return told("rests {length:.0f} cm from the usual pose of the head", length=length)
+        return phrase("rests {length:.0f} cm from the usual pose of the arms", length=length)
+    return phrase("rests {length:.0f} cm from the usual pose of the head", length=length)
 
 
 def limb_of(traits: Traits, layer: Layer, kind: Kind) -> Belief[Limb]:
     """Return the arm that a clip needs; of a head that goes to one side, the side."""
     if kind in ("stance", "transition"):
-        both = told("a stance takes both arms") if kind == "stance" else told("a transition takes both arms")
+        both = (
+            phrase("a stance takes both arms") if kind == "stance" else phrase("a transition takes both arms")
+        )
         return Belief("both", 0.9, both)
     if layer == "arms":
         share = traits.symmetry
@@ -269,7 +273,7 @@ def limb_of(traits: Traits, layer: Layer, kind: Kind) -> Belief[Limb]:
         return Belief(
             limb,
             confidence,
-            told(
+            phrase(
                 "the left arm makes {left:.0f} % of the arms' movement, the right {right:.0f} %",
                 left=50 * (1 + share),
                 right=50 * (1 - share),
@@ -282,9 +286,11 @@ def limb_of(traits: Traits, layer: Layer, kind: Kind) -> Belief[Limb]:
         if max(left, right) > 0.02 and max(left, right) > 3 * min(left, right):
             length = 100 * traits.height * max(left, right)
             if left > right:
-                return Belief("left", 0.7, told("the nose goes {length:.0f} cm to the left", length=length))
-            return Belief("right", 0.7, told("the nose goes {length:.0f} cm to the right", length=length))
-    moves = told("the head moves, not one arm") if layer == "head" else told("the body moves, not one arm")
+                return Belief("left", 0.7, phrase("the nose goes {length:.0f} cm to the left", length=length))
+            return Belief("right", 0.7, phrase("the nose goes {length:.0f} cm to the right", length=length))
+    moves = (
+        phrase("the head moves, not one arm") if layer == "head" else phrase("the body moves, not one arm")
+    )
     return Belief("both", 0.9, moves)
 
 

@@ -14,7 +14,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, Action, Layer, Limb, Project
 from metagraph.suggest.accept import Taken, accept
 from metagraph.suggest.alike import Alike, Example
@@ -183,7 +183,7 @@ def _leading(said: NameGuess, motion: MotionGuess | None) -> NameGuess:
         return said
     if motion.kind.value != "transition" or motion.kind.confidence < LEADS:
         return said
-    why = told("{words}, and it comes there from elsewhere", words=said.stance.reason)
+    why = phrase("{words}, and it comes there from elsewhere", words=said.stance.reason)
     return replace(said, kind=None, stance=None, end_stance=replace(said.stance, reason=why))
 
 
@@ -249,7 +249,7 @@ def _ends(
 def _layer_of(each: Heard) -> Agreed[Layer] | None:
     """Return which layer a clip is for: the carrier's where the whole body was recorded together."""
     if each.posture is not None:
-        why = told("the whole body was recorded together, so this layer plays all of it")
+        why = phrase("the whole body was recorded together, so this layer plays all of it")
         return Agreed(Belief(CARRIER, 0.95, why))
     return each.agreed("layer", len(LAYERS))
 
@@ -271,9 +271,9 @@ def _somewhere(proposals: Mapping[str, Proposal], places: dict[str, Place]) -> d
                 stance=Belief(
                     key,
                     0.3,
-                    told("nothing says a stance; most are in this one")
+                    phrase("nothing says a stance; most are in this one")
                     if mine
-                    else told("nothing says a stance; there is no other"),
+                    else phrase("nothing says a stance; there is no other"),
                 ),
             )
         out[clip] = p
@@ -313,9 +313,9 @@ def _proposal(each: Heard, places: Places, anyway: bool = False) -> Proposal | N
     kind, layer = each.agreed("kind", len(KINDS)), _layer_of(each)
     if kind is None and layer is None and not anyway:
         return None
-    unsure: Agreed[Any] = Agreed(Belief("gesture", 0.3, told("nothing says what it is")))
+    unsure: Agreed[Any] = Agreed(Belief("gesture", 0.3, phrase("nothing says what it is")))
     kind = kind or unsure
-    layer = layer or Agreed(Belief(each.layer, 0.34, told("nothing says which layer it is for")))
+    layer = layer or Agreed(Belief(each.layer, 0.34, phrase("nothing says which layer it is for")))
     where: Layer = layer.belief.value
     stance = combine(places.vote(each, "stance", where), places.count(where))
     end = None
@@ -325,7 +325,7 @@ def _proposal(each: Heard, places: Places, anyway: bool = False) -> Proposal | N
         end = combine(ends, places.count(where))
     limb = each.agreed("limb", len(LIMBS)) if where == "arms" and kind.belief.value != "stance" else None
     both: Belief[Limb] = Belief(
-        "both", 0.9, told("only arms have sides") if where != "arms" else told("nothing says a side")
+        "both", 0.9, phrase("only arms have sides") if where != "arms" else phrase("nothing says a side")
     )
     found = [x for x in (kind, layer, stance, end) if x is not None]
     return Proposal(

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from statistics import median
 from typing import Any, Literal
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, Layer, Project
@@ -33,7 +33,7 @@ DECIDING: tuple[Field, ...] = (
     "limb",
 )  # what has a few values to choose from
 WORDS: tuple[Field, ...] = ("kind", "layer", "limb", "tags")
-SAID = told("you said so")
+SAID = phrase("you said so")
 USUAL = 6.0  # seconds a clip takes somebody, until some were decided
 PAUSE = 60.0  # seconds after which somebody was away, not deciding
 REMEMBERED = 25  # decisions the pace is taken from
@@ -265,7 +265,7 @@ def _corrected(found: Proposals, clip: str, said: Mapping[Field, Any]) -> Propos
             (k for k, _ in there.most_common(1)),
             next((k for k, x in places.items() if x.layer == layer), None),
         )
-        stance = Belief(best, 0.5, told("where most clips of this layer are")) if best is not None else None
+        stance = Belief(best, 0.5, phrase("where most clips of this layer are")) if best is not None else None
     end = p.end_stance if p.kind.value == "transition" else None
     if "end_stance" in said and p.kind.value == "transition":
         end = Belief(place(said["end_stance"]), 1.0, SAID)
@@ -274,7 +274,7 @@ def _corrected(found: Proposals, clip: str, said: Mapping[Field, Any]) -> Propos
     ):
         end = None
     if layer != "arms":
-        p = replace(p, limb=Belief("both", 0.9, told("only arms have sides")))
+        p = replace(p, limb=Belief("both", 0.9, phrase("only arms have sides")))
     was = found.proposals[clip]
     if (p.kind.value, p.layer.value, stance and stance.value, end and end.value) != _decides(was):
         # Its times were of what it is not; `Review.timed` finds those it has as what it is.

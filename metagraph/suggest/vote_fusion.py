@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from math import exp, log
 from typing import Generic, TypeVar
 
-from metagraph.common.wording import joined, told
+from metagraph.common.wording import join_phrases, phrase
 from metagraph.suggest.estimate import Belief
 
 T = TypeVar("T")
@@ -63,10 +63,10 @@ def combine(votes: Sequence[Belief[T]], count: int) -> Agreed[T] | None:
     agreeing = [v for v in votes if v.value == chosen]
     against = [v for v in votes if v.value != chosen and v.confidence >= FIRM]
     why = dict.fromkeys(v.reason for v in sorted(agreeing, key=lambda v: -v.confidence))
-    reason = joined(list(why), "; ")
+    reason = join_phrases(list(why), "; ")
     conflict = ""
     if against and max(v.confidence for v in agreeing) >= FIRM:
         strongest = max(against, key=lambda v: v.confidence)
-        conflict = told("{one}, but {other}", one=agreeing[0].reason, other=strongest.reason)
+        conflict = phrase("{one}, but {other}", one=agreeing[0].reason, other=strongest.reason)
     confidence = min(MOST, max(LEAST, shares[best] / whole))
     return Agreed(Belief(chosen, confidence, reason), conflict)

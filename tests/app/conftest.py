@@ -22,6 +22,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMenu, QMessageBox, QWidget
+from shiboken6 import isValid
 
 from app.main import prepare
 from tests.app.handles import Handles
@@ -124,6 +125,8 @@ class Driver(Handles):
 
     def let_go(self) -> None:
         """The test is over."""
+        if not isValid(self.window):  # another took its place
+            return
         for words in self._words:
             words.disconnect(self.told.append)
 
@@ -330,7 +333,8 @@ def drive(
     yield driver
     driver.let_go()
     if own:
-        close(window)
+        if isValid(window):
+            close(window)
     else:
         shared.give_back(whole=request.node.stash.get(PASSED, False))
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats import motion_cache, store
 from metagraph.formats.clips import digest, read_clips
@@ -69,8 +69,8 @@ def test_what_was_read_comes_back_to_the_bit_and_the_file_is_not_read_again(
 
 
 def test_clips_are_kept_whose_notes_know_their_template(monkeypatch: pytest.MonkeyPatch) -> None:
-    repair = Repair("unit", told("{n} frames were joined", n=2))
-    noted = [replace(read_clips(CLIP)[0], notes=(told("{n} gaps were filled", n=3),), repairs=(repair,))]
+    repair = Repair("unit", phrase("{n} frames were joined", n=2))
+    noted = [replace(read_clips(CLIP)[0], notes=(phrase("{n} gaps were filled", n=3),), repairs=(repair,))]
     monkeypatch.setattr(motion_cache, "read_clips", lambda *_: noted)
     read(CLIP)
     finish()

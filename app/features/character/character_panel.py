@@ -25,7 +25,7 @@ from app.stage.playback_source import ASIDE
 from app.stage.playhead import Playhead
 from app.stage.session import Session
 from app.stage.stools import stools
-from app.translation import tr
+from app.translation import tr, tr_noop
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
 from app.widgets.one_stop import OneStop
@@ -38,7 +38,9 @@ from preview.figure import Figure, SkinnedFigure
 from preview.scene import Actor, Scene
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 1.5, 2.0)
-BASE_TIP = tr("The pose all layers are added to. Right-click a clip in the library to take it from there.")
+BASE_TIP = tr_noop(
+    "The pose all layers are added to. Right-click a clip in the library to take it from there."
+)
 FRAME = 16  # milliseconds between frames
 SOFT_FRAME = 33  # where the processor draws them, which has other things to do as well
 HINT = 4000  # milliseconds for which it is told how to come back
@@ -89,7 +91,7 @@ class PreviewPanel(QWidget):
         """Make the view and what lies over it."""
         self.view = make_view(self.scene, self)
         self.view.frame_wanted.connect(self.frame_all)
-        self.view.setToolTip(MOUSE)
+        self.view.setToolTip(tr(MOUSE))
         self.bare = False
         self._margins: list[QMargins] = []  # of what is hidden then
         self.hint = QLabel(tr("F11 shows the rest again"), self.view)
@@ -192,7 +194,7 @@ class PreviewPanel(QWidget):
         lines = QBoxLayout(QBoxLayout.Direction.TopToBottom)
         lines.setContentsMargins(12, 0, 12, 8)
         lines.setSpacing(2)
-        self.caption, self.base = OneLine(self), OneLine(self, BASE_TIP)
+        self.caption, self.base = OneLine(self), OneLine(self, tr(BASE_TIP))
         for label in (self.caption, self.base):
             label.setProperty("dim", True)
             lines.addWidget(label)

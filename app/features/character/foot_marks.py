@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QWidget
 from app.features.character.over_view import lie_over
 from app.features.character.plates import draw_plate
 from app.look.theme import Theme, theme
-from app.translation import tr
+from app.translation import tr, tr_noop, translated
 from metagraph.playback.posing.foot_slides import RATE, SLIDES, FeetSeen, FeetWatch, FootState, worst_slide
 
 if TYPE_CHECKING:
@@ -23,13 +23,12 @@ if TYPE_CHECKING:
 SPAN = 1.5  # seconds before and after now that the line tells of
 AT_ONCE = 12  # poses that are composed in one event: the window stays free
 HIGH = 42  # pixels of the line
-SIDES = (tr("Left foot"), tr("Right foot"))
+SIDES = translated(lambda: (tr("Left foot"), tr("Right foot")))
 BELOW = 12.0  # pixels from a foot to its mark
 SIZE = 7.0  # pixels of half a mark
-LEGEND = tr(
+LEGEND = tr_noop(
     "Thick: the foot is held. Thin: it steps. Dots: it is in the air. Thicker, yellow: "
-    "it stands and slides, {speed:g} mm/s or more",
-    speed=SLIDES * 1000,
+    "it stands and slides, {speed:g} mm/s or more"
 )
 
 
@@ -134,7 +133,7 @@ class FootLine(QWidget):
         self._known: FeetSeen | None = None
         self.setFixedHeight(HIGH)
         self.setAccessibleName(tr("Feet"))
-        self.setToolTip(LEGEND)
+        self.setToolTip(tr(LEGEND, speed=SLIDES * 1000))
         self.hide()
 
     def show_feet(self, seen: FeetSeen | None) -> None:

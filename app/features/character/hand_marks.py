@@ -16,7 +16,7 @@ from app.features.character.foot_marks import draw_mark
 from app.features.character.over_view import lie_over
 from app.features.character.plates import draw_plate
 from app.look.theme import Theme, theme
-from app.translation import tr
+from app.translation import tr, translated
 from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.posing.foot_slides import FootState
 from metagraph.playback.posing.hand_touches import HandTouch, hand_touches, plan_of_clip
@@ -24,7 +24,7 @@ from metagraph.playback.posing.hand_touches import HandTouch, hand_touches, plan
 if TYPE_CHECKING:
     from app.features.character.character_panel import PreviewPanel
 
-HANDS = (tr("Left hand"), tr("Right hand"))
+HANDS = translated(lambda: (tr("Left hand"), tr("Right hand")))
 BESIDE = 20.0  # pixels from a mark to its words
 
 

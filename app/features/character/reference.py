@@ -16,7 +16,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QToolButton, QWidget
 
 from app.look import icons
 from app.look.theme import theme
-from app.translation import tr, tr_error
+from app.translation import tr, tr_error, tr_noop
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.errors import FileError
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 KEY = "reference"
 KEPT = 50  # projects whose videos are remembered
 DRAGGED = 0.01  # seconds of offset for each pixel a picture is dragged
-FILES = tr("Videos and pictures (*.mp4 *.mov *.mkv *.webm *.avi *.m4v *.png *.jpg *.jpeg)")
+FILES = tr_noop("Videos and pictures (*.mp4 *.mov *.mkv *.webm *.avi *.m4v *.png *.jpg *.jpeg)")
 
 
 class _Reader(QObject):

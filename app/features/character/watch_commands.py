@@ -235,7 +235,9 @@ def choose_reference(shell: Shell, reference: Reference) -> None:
     from app.features.character.reference import FILES
 
     folder = reference.path.parent if reference.path is not None else shell.document.folder or Path.home()
-    name, _ = QFileDialog.getOpenFileName(shell.widget, tr("Choose a reference video"), str(folder), FILES)
+    name, _ = QFileDialog.getOpenFileName(
+        shell.widget, tr("Choose a reference video"), str(folder), tr(FILES)
+    )
     if name:
         reference.choose(Path(name))
 

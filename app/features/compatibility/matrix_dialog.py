@@ -38,13 +38,12 @@ from app.features.compatibility.matrix_table import (
     told,
 )
 from app.look.domain_words import LAYER_LONG_TITLES
-from app.look.plural import many
 from app.look.theme import KIND_MARKS, KIND_TITLES, strengthen
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.stage.compatibility_state import Compatibility, proposed_fields
 from app.stage.session import Session
-from app.translation import tr, tr_error, tr_told
+from app.translation import tr, tr_error, tr_phrase, tr_plural
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
@@ -194,7 +193,7 @@ class MatrixDialog(QDialog):
             tr(
                 "{layer}, {clips}",
                 layer=LAYER_LONG_TITLES[layer],
-                clips=many(len(matrix.clips), "clip"),
+                clips=tr_plural("{count:,} clip", "{count:,} clips", len(matrix.clips)),
             )
         )
         if fresh:
@@ -310,7 +309,7 @@ class MatrixDialog(QDialog):
         end = self._end(clip, stance) if kind == "transition" else None
         why = edits.refusal(project, [clip], layer, kind, stance, end)
         if why is not None:
-            why = tr_told(why)
+            why = tr_phrase(why)
             self.words.setText(f"{why[:1].upper()}{why[1:]}.")
             return
         measured = judged.measured[layer] if judged is not None else None

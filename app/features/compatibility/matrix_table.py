@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QStyle, QStyledItemDelegate, QStyleOptionViewItem,
 
 from app.look.theme import KIND_MARKS, Theme, theme
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, translated
 from metagraph.graph.model import KINDS, Kind, Project
 
 if TYPE_CHECKING:
@@ -309,7 +309,7 @@ class Marks(QStyledItemDelegate):
 class Legend(QWidget):
     """What the marks mean."""
 
-    PARTS = ((0.5, tr("no jump")), (2.0, tr("a blend hides it")), (9.0, "jumps"))
+    PARTS = translated(lambda: ((0.5, tr("no jump")), (2.0, tr("a blend hides it")), (9.0, tr("jumps"))))
 
     def __init__(self, session: Session, parent: QWidget) -> None:
         super().__init__(parent)

@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QFileDialog, QInputDialog
 from app.project.document import Edit
 from app.project.files import Files
 from app.project.speech_files import SOUNDS, TRANSCRIPTS, beside, kinds_of
-from app.translation import tr, tr_error
+from app.translation import tr, tr_error, tr_noop
 from metagraph.errors import FileError
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.conversation.model import MOST_SPEAKERS, Conversation
@@ -23,11 +23,14 @@ from metagraph.graph.model import Project
 if TYPE_CHECKING:
     from app.shell.context import Shell
 
-FILTER = tr(
-    "Sounds and transcripts ({names} *.TextGrid);;All files (*)",
-    names=" ".join(f"*{s} *{s.upper()}" for s in (*SOUNDS, *TRANSCRIPTS)),
-)
-ELAN, TEXTGRID = tr("ELAN annotation (*.eaf)"), tr("Praat TextGrid (*.TextGrid)")
+ELAN, TEXTGRID = tr_noop("ELAN annotation (*.eaf)"), tr_noop("Praat TextGrid (*.TextGrid)")
+
+
+def _filter() -> str:
+    return tr(
+        "Sounds and transcripts ({names} *.TextGrid);;All files (*)",
+        names=" ".join(f"*{s} *{s.upper()}" for s in (*SOUNDS, *TRANSCRIPTS)),
+    )
 
 
 def on_stage(shell: Shell) -> tuple[str, Conversation] | None:
@@ -44,7 +47,10 @@ def converse(shell: Shell, paths: Sequence[Path] = ()) -> None:
     if not paths:
         start = str(shell.document.folder or Path.home())
         names, _ = QFileDialog.getOpenFileNames(
-            shell.widget, tr("Conversation from sound: one file, or one for each who speaks"), start, FILTER
+            shell.widget,
+            tr("Conversation from sound: one file, or one for each who speaks"),
+            start,
+            _filter(),
         )
         paths = [Path(n) for n in names]
     sounds, transcripts = kinds_of(paths)
@@ -138,13 +144,13 @@ def write_segments(shell: Shell) -> None:
         return
     start = (shell.document.folder or Path.home()) / f"{found[1].name}.eaf"
     name, kind = QFileDialog.getSaveFileName(
-        shell.widget, tr("Export segments"), str(start), f"{ELAN};;{TEXTGRID}"
+        shell.widget, tr("Export segments"), str(start), f"{tr(ELAN)};;{tr(TEXTGRID)}"
     )
     if not name:
         return
     path = Path(name)
     if path.suffix.lower() not in (".eaf", ".textgrid"):
-        path = path.with_name(path.name + (".TextGrid" if kind == TEXTGRID else ".eaf"))
+        path = path.with_name(path.name + (".TextGrid" if kind == tr(TEXTGRID) else ".eaf"))
     from metagraph.formats.conversations.writers import write_elan, write_textgrid
 
     try:

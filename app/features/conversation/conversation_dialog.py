@@ -34,7 +34,7 @@ from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.project.speech_files import TRANSCRIPTS, facts_of
 from app.stage.session import Session
-from app.translation import tr, tr_error, tr_told
+from app.translation import tr, tr_error, tr_phrase
 from app.widgets.act_strip import clock
 from app.widgets.making import make_widget
 from metagraph.graph.conversation import edits as conversation_edits
@@ -291,7 +291,7 @@ class ImportDialog(QDialog):
         more = [tr("… and {count} more", count=len(notes) - MOST)] if len(notes) > MOST else []
         t = theme(self.session.look.name)
         self.notes.setStyleSheet(f"color: {t.error if failure else t.warning}")
-        lines = [f"⚠  {tr_told(n)}" for n in notes[:MOST]]
+        lines = [f"⚠  {tr_phrase(n)}" for n in notes[:MOST]]
         self.notes.setText("\n".join((*lines, *more)))
         self.notes.setVisible(bool(notes))
         self._fit()

@@ -10,13 +10,13 @@ from app.features.conversation.segment_editing import Editing
 from app.features.conversation.segment_lanes import KINDS, PLURALS, segment_words
 from app.features.conversation.segment_view import SegmentView
 from app.features.conversation.sound_reading import Sounds
-from app.look.plural import listed, many
+from app.look.plural import listed
 from app.look.theme import SOUND_MARKS, theme
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.performance import Performance
 from app.stage.session import Session
-from app.translation import grouped, tr
+from app.translation import group_thousands, tr, tr_noop, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.mime import sounds_of
 from app.widgets.more_button import MoreButton
@@ -24,7 +24,7 @@ from app.widgets.quiet_fields import ComboBox
 from app.widgets.sentence import Sentence
 from metagraph.graph.conversation.model import SPOKEN, side_name
 
-NONE = tr("None on stage")
+NONE = tr_noop("None on stage")
 # pixels of the panel below which the legend leaves its words out: the sentence beside needs the room
 BRIEF = 1000
 
@@ -99,7 +99,7 @@ class ConversationPanel(QWidget):
 
     def _restage(self) -> None:
         """Show which conversations there are, and which is on stage."""
-        wanted = [(NONE, None), *((c.name, i) for i, c in self.document.project.conversations.items())]
+        wanted = [(tr(NONE), None), *((c.name, i) for i, c in self.document.project.conversations.items())]
         if wanted != [(self.stage.itemText(n), self.stage.itemData(n)) for n in range(self.stage.count())]:
             self.stage.clear()
             for name, ident in wanted:
@@ -124,7 +124,7 @@ class ConversationPanel(QWidget):
             mark = (
                 f"<span style='background:{t.sounds[k]}; color:#17181b'>&nbsp;{SOUND_MARKS[k]}&nbsp;</span>"
             )
-            parts.append(f"{mark} <span style='color:{t.dim}'>{grouped(counts[k])}{words}</span>")
+            parts.append(f"{mark} <span style='color:{t.dim}'>{group_thousands(counts[k])}{words}</span>")
         self.legend.setText("&nbsp;&nbsp; ".join(parts))
         if self.session.onstage.mode == "manual":
             self.title.say(
@@ -140,7 +140,13 @@ class ConversationPanel(QWidget):
                 f"{side_name(of, self.editing.last[0])}: {segment_words(found)}".replace("\n", ", "), True
             )
         elif chosen:
-            self.title.say(tr("{segments} selected", segments=many(len(chosen), "segment")), True)
+            self.title.say(
+                tr(
+                    "{segments} selected",
+                    segments=tr_plural("{count:,} segment", "{count:,} segments", len(chosen)),
+                ),
+                True,
+            )
         else:
             minutes, seconds = divmod(round(of.length), 60)
             who = listed([side_name(of, side) for side in range(len(of.sides))])

@@ -24,7 +24,7 @@ from app.look.theme import strengthen
 from app.project.document import Document
 from app.stage.performance import Performance
 from app.stage.playback_source import Shown
-from app.translation import tr, tr_error
+from app.translation import tr, tr_error, tr_noop, translated
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.graph.conversation import edits as conversation_edits
@@ -33,47 +33,56 @@ from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
 from metagraph.speech.gaze_shares import together
 
-RATES = {
-    "clause": (tr("gestures with its own clauses"), tr("How often the hands move with a clause")),
-    "response": (tr("nods with its own responses"), tr("How often the head nods with a “yeah” or “mm-hmm”")),
-    "hesitation": (
-        tr("nods when the other hesitates"),
-        tr("How often the head nods while the partner says “er”"),
-    ),
-    "mirror": (
-        tr("mirrors the other's stance"),
-        tr("How often the partner's change of stance is taken up while listening"),
-    ),
-    "mood": (
-        tr("of the other's mood"),
-        tr("How far the partner's mood shows on this one's face and posture, a moment later"),
-    ),
-    "laugh": (tr("laughs along"), tr("How many of the others' laughs are answered with a laughing face")),
-}
-BLINKS = {
-    "life": (
-        tr("As in Life, and on stresses"),
-        tr("The life layer's blinks, and one on many of the clauses' peaks"),
-    ),
-    "peaks": (
-        tr("On stresses, and after 5 s without"),
-        tr(
-            "On a clause's peak if the last blink is a second ago, and once in each five seconds without: "
-            "what Yang et al. keyed (section 7.3)"
+RATES = translated(
+    lambda: {
+        "clause": (tr("gestures with its own clauses"), tr("How often the hands move with a clause")),
+        "response": (
+            tr("nods with its own responses"),
+            tr("How often the head nods with a “yeah” or “mm-hmm”"),
         ),
-    ),
-}
-ORDINALS = (
-    tr("first"),
-    tr("second"),
-    tr("third"),
-    tr("fourth"),
-    tr("fifth"),
-    tr("sixth"),
-    tr("seventh"),
-    tr("eighth"),
+        "hesitation": (
+            tr("nods when the other hesitates"),
+            tr("How often the head nods while the partner says “er”"),
+        ),
+        "mirror": (
+            tr("mirrors the other's stance"),
+            tr("How often the partner's change of stance is taken up while listening"),
+        ),
+        "mood": (
+            tr("of the other's mood"),
+            tr("How far the partner's mood shows on this one's face and posture, a moment later"),
+        ),
+        "laugh": (tr("laughs along"), tr("How many of the others' laughs are answered with a laughing face")),
+    }
 )
-ACTORS = {"female": tr("the woman"), "male": tr("the man")}
+BLINKS = translated(
+    lambda: {
+        "life": (
+            tr("As in Life, and on stresses"),
+            tr("The life layer's blinks, and one on many of the clauses' peaks"),
+        ),
+        "peaks": (
+            tr("On stresses, and after 5 s without"),
+            tr(
+                "On a clause's peak if the last blink is a second ago, and once in five seconds without one: "
+                "what Yang et al. keyed (section 7.3)"
+            ),
+        ),
+    }
+)
+ORDINALS = translated(
+    lambda: (
+        tr("first"),
+        tr("second"),
+        tr("third"),
+        tr("fourth"),
+        tr("fifth"),
+        tr("sixth"),
+        tr("seventh"),
+        tr("eighth"),
+    )
+)
+ACTORS = translated(lambda: {"female": tr("the woman"), "male": tr("the man")})
 
 
 def asked(words: str) -> tuple[str, ...]:
@@ -98,7 +107,7 @@ class SettingDialog(QDialog):
         super().__init__(parent)
         self.document, self.ident, self.conversation = document, ident, conversation
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setWindowTitle(self.title)
+        self.setWindowTitle(tr(self.title))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(18, 16, 18, 14)
         layout.setSpacing(12)
@@ -124,7 +133,7 @@ class SettingDialog(QDialog):
 
     def accept(self) -> None:
         try:
-            self.document.edit(self.text, self.change)
+            self.document.edit(tr(self.text), self.change)
         except EditError as error:
             self.said.setText(f"{tr_error(error)[:1].upper()}{tr_error(error)[1:]}.")
             self.said.show()
@@ -172,7 +181,7 @@ class Tall(QScrollArea):
 class RatesDialog(SettingDialog):
     """How often each who talks moves with what is said, and what becomes of it on stage."""
 
-    title, text = tr("Rates"), tr("Change rates")
+    title, text = tr_noop("Rates"), tr_noop("Change rates")
 
     def __init__(
         self,

@@ -12,10 +12,9 @@ from PySide6.QtCore import QObject, Signal
 
 from app.features.conversation.segment_lanes import KINDS
 from app.features.conversation.sound_reading import SideSound, Sounds
-from app.look.plural import many
 from app.project.document import Document, Edit
 from app.stage.session import Session
-from app.translation import tr, tr_error
+from app.translation import tr, tr_error, tr_plural
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.conversation.model import SPOKEN, Conversation, Segment, Sound
 from metagraph.graph.edit_error import EditError
@@ -148,7 +147,9 @@ class Editing(QObject):
         if self.chosen:
             self.change(
                 tr(
-                    "Label {segments} as {kind}", segments=many(len(self.chosen), "segment"), kind=KINDS[kind]
+                    "Label {segments} as {kind}",
+                    segments=tr_plural("{count:,} segment", "{count:,} segments", len(self.chosen)),
+                    kind=KINDS[kind],
                 ),
                 conversation_edits.relabel_segments,
                 self.chosen,
@@ -166,7 +167,7 @@ class Editing(QObject):
             return
         side, at = min(self.chosen)
         if self.change(
-            tr("Remove {what}", what=many(len(self.chosen), "segment")),
+            tr("Remove {what}", what=tr_plural("{count:,} segment", "{count:,} segments", len(self.chosen))),
             conversation_edits.remove_segments,
             self.chosen,
         ):

@@ -11,16 +11,20 @@ from PySide6.QtGui import QKeySequence
 
 from app.features.conversation.segment_editing import Editing
 from app.look.theme import SOUND_MARKS
-from app.translation import tr
+from app.translation import tr, translated
 from metagraph.graph.conversation.model import SPOKEN, Sound
 
 FINE, FAR = 0.02, 0.2  # seconds a key moves something
-TITLES = {"clause": tr("Clause"), "response": tr("Response"), "hesitation": tr("Hesitation")}
-NUDGES = {
-    "body": (tr("Move earlier"), tr("Move later")),
-    "end": (tr("Move the end earlier"), tr("Move the end later")),
-    "start": (tr("Move the start earlier"), tr("Move the start later")),
-}
+TITLES = translated(
+    lambda: {"clause": tr("Clause"), "response": tr("Response"), "hesitation": tr("Hesitation")}
+)
+NUDGES = translated(
+    lambda: {
+        "body": (tr("Move earlier"), tr("Move later")),
+        "end": (tr("Move the end earlier"), tr("Move the end later")),
+        "start": (tr("Move the start earlier"), tr("Move the start later")),
+    }
+)
 Key, Modifier = Qt.Key, Qt.KeyboardModifier
 
 
@@ -74,42 +78,52 @@ def _nudges() -> list[Deed]:
     return out
 
 
-DEEDS: tuple[Deed, ...] = (
-    *(
-        Deed(f"{SOUND_MARKS[kind]}  {TITLES[kind]}", (_combined(key),), partial(_label, kind))
-        for kind, key in zip(SPOKEN, (Key.Key_1, Key.Key_2, Key.Key_3), strict=True)
-    ),
-    Deed(tr("Split here"), (_combined(Key.Key_S),), lambda e, at: e.split(at), needs=False, line=True),
-    Deed(tr("Merge with the next"), (_combined(Key.Key_M),), lambda e, _: e.merge()),
-    Deed(tr("Put the stress here"), (_combined(Key.Key_P),), lambda e, at: e.stress(at)),
-    Deed(
-        tr("Remove"),
-        (_combined(Key.Key_Delete), _combined(Key.Key_Backspace)),
-        lambda e, _: e.remove(),
-        line=True,
-    ),
-    Deed(
-        tr("Add a segment at the playhead"),
-        (_combined(Key.Key_Insert),),
-        lambda e, _: e.add_here(),
-        needs=False,
-        line=True,
-    ),
-    Deed(
-        tr("Select all segments"),
-        (_combined(Key.Key_A, Modifier.ControlModifier),),
-        lambda e, _: e.select_all(),
-        needs=False,
-    ),
-    Deed(tr("Next"), (_combined(Key.Key_Right),), lambda e, _: e.step(1), needs=False, hidden=True),
-    Deed(tr("Previous"), (_combined(Key.Key_Left),), lambda e, _: e.step(-1), needs=False, hidden=True),
-    Deed(
-        tr("The speaker above"), (_combined(Key.Key_Up),), lambda e, _: e.cross(-1), needs=False, hidden=True
-    ),
-    Deed(
-        tr("The speaker below"), (_combined(Key.Key_Down),), lambda e, _: e.cross(1), needs=False, hidden=True
-    ),
-    *_nudges(),
+DEEDS: tuple[Deed, ...] = translated(
+    lambda: (
+        *(
+            Deed(f"{SOUND_MARKS[kind]}  {TITLES[kind]}", (_combined(key),), partial(_label, kind))
+            for kind, key in zip(SPOKEN, (Key.Key_1, Key.Key_2, Key.Key_3), strict=True)
+        ),
+        Deed(tr("Split here"), (_combined(Key.Key_S),), lambda e, at: e.split(at), needs=False, line=True),
+        Deed(tr("Merge with the next"), (_combined(Key.Key_M),), lambda e, _: e.merge()),
+        Deed(tr("Put the stress here"), (_combined(Key.Key_P),), lambda e, at: e.stress(at)),
+        Deed(
+            tr("Remove"),
+            (_combined(Key.Key_Delete), _combined(Key.Key_Backspace)),
+            lambda e, _: e.remove(),
+            line=True,
+        ),
+        Deed(
+            tr("Add a segment at the playhead"),
+            (_combined(Key.Key_Insert),),
+            lambda e, _: e.add_here(),
+            needs=False,
+            line=True,
+        ),
+        Deed(
+            tr("Select all segments"),
+            (_combined(Key.Key_A, Modifier.ControlModifier),),
+            lambda e, _: e.select_all(),
+            needs=False,
+        ),
+        Deed(tr("Next"), (_combined(Key.Key_Right),), lambda e, _: e.step(1), needs=False, hidden=True),
+        Deed(tr("Previous"), (_combined(Key.Key_Left),), lambda e, _: e.step(-1), needs=False, hidden=True),
+        Deed(
+            tr("The speaker above"),
+            (_combined(Key.Key_Up),),
+            lambda e, _: e.cross(-1),
+            needs=False,
+            hidden=True,
+        ),
+        Deed(
+            tr("The speaker below"),
+            (_combined(Key.Key_Down),),
+            lambda e, _: e.cross(1),
+            needs=False,
+            hidden=True,
+        ),
+        *_nudges(),
+    )
 )
 _BY_KEY = {key: deed for deed in DEEDS for key in deed.keys}
 _PLAIN = ~(Modifier.KeypadModifier | Modifier.GroupSwitchModifier)

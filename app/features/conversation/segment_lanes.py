@@ -14,13 +14,17 @@ from typing import Any
 import numpy as np
 from PySide6.QtCore import QRectF
 
-from app.translation import tr
+from app.translation import tr, translated
 from app.widgets.lane_geometry import LEFT, RULER, Scale
 from metagraph.graph.conversation.model import Segment, Word
 
 # what the window calls the kinds of segments
-KINDS = {"clause": tr("clause"), "response": tr("response"), "hesitation": tr("hesitation")}
-PLURALS = {"clause": tr("clauses"), "response": tr("responses"), "hesitation": tr("hesitations")}
+KINDS = translated(
+    lambda: {"clause": tr("clause"), "response": tr("response"), "hesitation": tr("hesitation")}
+)
+PLURALS = translated(
+    lambda: {"clause": tr("clauses"), "response": tr("responses"), "hesitation": tr("hesitations")}
+)
 GAP = 8.0  # pixels between two
 WORDS, SEGMENTS, TALLEST = 17.0, 26.0, 190.0  # pixels of the words, of the segments, of a side at most
 LEGIBLE = 18.0  # pixels segments need for their words

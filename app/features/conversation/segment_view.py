@@ -40,7 +40,7 @@ from app.features.conversation.segment_paint import SegmentScene, empty, paint
 from app.features.conversation.sound_reading import Sounds
 from app.look.theme import theme
 from app.project.document import Edit
-from app.translation import tr
+from app.translation import tr, tr_noop, translated
 from app.widgets.gesture import Hand
 from app.widgets.lane_geometry import LEFT, Scale
 from app.widgets.lane_paint import badge, playhead
@@ -49,16 +49,20 @@ from metagraph.graph.conversation.model import Conversation, side_name
 from metagraph.graph.edit_error import EditError
 
 ZOOM, USUAL = 1.2, 100.0  # of a turn of the wheel; pixels a second to begin with: most words have room
-EMPTY = (
-    tr("Drop the sound of a conversation here"),
-    tr(
-        "one file with a channel for each who speaks, or a file for each; with their words as TextGrid, "
-        "ELAN, subtitles or JSON, if there are any."
-    ),
-    tr("What they say then stands here, in clauses, responses and hesitations, and moves a character each."),
+EMPTY = translated(
+    lambda: (
+        tr("Drop the sound of a conversation here"),
+        tr(
+            "one file with a channel for each who speaks, or a file for each; with their words as TextGrid, "
+            "ELAN, subtitles or JSON, if there are any."
+        ),
+        tr("What they say appears here, in clauses, responses and hesitations, and moves the characters."),
+    )
 )
-UNCHOSEN = (tr("No conversation is on stage"), tr("Choose one above, or drop the sound of another here."))
-TEXT = tr(
+UNCHOSEN = translated(
+    lambda: (tr("No conversation is on stage"), tr("Choose one above, or drop the sound of another here."))
+)
+TEXT = tr_noop(
     "Segments of a conversation. Left and Right choose one, Up and Down the speaker, 1 to 3 label it, S "
     "splits, M merges, Delete removes."
 )
@@ -87,7 +91,7 @@ class SegmentView(QWidget):
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAccessibleName(tr("Conversation"))
-        self.setAccessibleDescription(TEXT)
+        self.setAccessibleDescription(tr(TEXT))
         sounds.changed.connect(self._read)
         editing.changed.connect(self._chosen)
         self.document.changed.connect(lambda before, after: self._changed())

@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 
 from app.features.conversation.conversation_settings import ORDINALS, SettingDialog, Tall, caption
 from app.project.speech_files import SOUNDS, channels_of
-from app.translation import tr
+from app.translation import tr, tr_noop
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.formats.store import SUFFIX, relative
@@ -35,7 +35,7 @@ ROWS = 8  # of the grid for each who talks
 class SidesDialog(SettingDialog):
     """Who talks, which sound is whose, whose graph moves each, and where they stand."""
 
-    title, text = tr("Sounds and names"), tr("Change sounds and names")
+    title, text = tr_noop("Sounds and names"), tr_noop("Change sounds and names")
 
     def build(self, layout: QVBoxLayout) -> None:
         self.resize(720, 0 if len(self.conversation.sides) == 2 else 620)

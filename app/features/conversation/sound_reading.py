@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,7 @@ from app.features.conversation.segment_hits import pitch_maxima
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_noop
 from app.widgets.waveforms import Envelope, binned
 from metagraph.errors import FileError
 from metagraph.graph.conversation.model import Conversation
@@ -26,7 +26,7 @@ LONGEST = 36000.0  # seconds of a conversation
 KEPT = 16000  # samples a second that waveform and pitch need
 BLOCK = 60  # seconds of the waveform at a time
 HOPS = 100.0  # pitches a second
-ANEW = tr("Menu “…” above, Sounds and names, chooses another.")
+ANEW = tr_noop("Menu “…” above, Sounds and names, chooses another.")
 Key = tuple[str, int | None]  # a sound's path, and the channel
 
 
@@ -39,7 +39,7 @@ class SideSound:
 
     wave: Envelope | None = None
     pitch: Envelope | None = None
-    told: str = tr("Reading the sound …")
+    told: str = field(default_factory=partial(tr, "Reading the sound …"))
     part: float = 0.0
     missing: str = ""
     loudest: float = 0.0
@@ -160,7 +160,7 @@ class _Work:
                 samples |= self._read(path, mine)
             except FileError as error:
                 for heard in mine.values():
-                    self.set(heard, told="", missing=f"{error} {ANEW}")
+                    self.set(heard, told="", missing=f"{error} {tr(ANEW)}")
             if job.cancelled:
                 return
         for key, (sound, rate) in samples.items():
@@ -190,7 +190,7 @@ class _Work:
                         "{name} has no channel {number}. {anew}",
                         name=Path(path).name,
                         number=channel + 1,
-                        anew=ANEW,
+                        anew=tr(ANEW),
                     ),
                 )
                 continue

@@ -19,9 +19,8 @@ from PySide6.QtWidgets import (
 from app.features.conversation.conversation_settings import ORDINALS, Tall, caption
 from app.features.conversation.segment_lanes import KINDS, PLURALS
 from app.features.conversation.word_lists import language_name
-from app.look.plural import many
 from app.look.theme import SOUND_MARKS
-from app.translation import grouped, tr
+from app.translation import group_thousands, tr, tr_plural
 from app.widgets.making import make_widget
 from metagraph.graph.conversation.model import SPOKEN, Side
 
@@ -87,12 +86,14 @@ class Card(QFrame):
         )
         spoken = f", {language_name(side.language)}" if side.language else ""
         self.words.setText(
-            many(len(side.words), "word") + spoken if side.words else tr("none: told by its loudness")
+            tr_plural("{count:,} word", "{count:,} words", len(side.words)) + spoken
+            if side.words
+            else tr("none: told by its loudness")
         )
         counts = {k: sum(s.kind == k for s in side.segments) for k in SPOKEN}
         self.segments.setText(
             "   ".join(
-                f"{SOUND_MARKS[k]} {grouped(n)} {KINDS[k] if n == 1 else PLURALS[k]}"
+                f"{SOUND_MARKS[k]} {group_thousands(n)} {KINDS[k] if n == 1 else PLURALS[k]}"
                 for k, n in counts.items()
             )
         )

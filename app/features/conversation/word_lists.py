@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
 
 from app.features.conversation.conversation_settings import SettingDialog, Tall, asked, caption
 from app.look.theme import SOUND_MARKS
-from app.translation import tr
+from app.translation import tr, tr_noop
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph.conversation import edits as conversation_edits
@@ -122,7 +122,7 @@ class WordLists(QWidget):
 class WordsDialog(SettingDialog):
     """Which words make a segment a response or a hesitation, of all or of each."""
 
-    title, text = tr("Word lists"), tr("Change word lists")
+    title, text = tr_noop("Word lists"), tr_noop("Change word lists")
 
     def build(self, layout: QVBoxLayout) -> None:
         layout.addWidget(

@@ -23,26 +23,27 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.look.plural import many
 from app.look.theme import strengthen
 from app.project.document import Document
-from app.translation import tr, tr_error
+from app.translation import tr, tr_error, tr_plural, translated
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing import batch
 
-TITLES = {
-    "blends": tr("Blend in and out"),
-    "part": tr("Start and end"),
-    "exit": tr("Earliest exit"),
-    "phases": tr("Ready, stroke, hold"),
-    "limb": tr("Limb"),
-    "joints": tr("Joints it moves"),
-    "tags": tr("Tags"),
-    "likelihood": tr("Likelihood"),
-    "variation": tr("Cooldown and spacing"),
-}
+TITLES = translated(
+    lambda: {
+        "blends": tr("Blend in and out"),
+        "part": tr("Start and end"),
+        "exit": tr("Earliest exit"),
+        "phases": tr("Ready, stroke, hold"),
+        "limb": tr("Limb"),
+        "joints": tr("Joints it moves"),
+        "tags": tr("Tags"),
+        "likelihood": tr("Likelihood"),
+        "variation": tr("Cooldown and spacing"),
+    }
+)
 
 
 class BatchDialog(QDialog):
@@ -168,7 +169,7 @@ class PasteDialog(BatchDialog):
                 tr(
                     "From '{name}' to {actions}:",
                     name=name,
-                    actions=many(count, "action"),
+                    actions=tr_plural("{count:,} action", "{count:,} actions", count),
                 ),
                 self,
             )

@@ -37,7 +37,7 @@ from app.project.chosen import was_chosen
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.project.reveal import open_folder
-from app.translation import tr, tr_error, tr_told
+from app.translation import tr, tr_error, tr_phrase
 from app.widgets.making import make_widget
 from app.widgets.tree_items import items_below, top_items
 from metagraph.engines.targets import registry
@@ -133,8 +133,8 @@ class ExportDialog(QDialog):
             self.trouble.setText(
                 tr(
                     "First: {message}. {remedy}",
-                    message=tr_told(errors[0].message),
-                    remedy=tr_told(errors[0].remedy),
+                    message=tr_phrase(errors[0].message),
+                    remedy=tr_phrase(errors[0].remedy),
                 )
             )
 
@@ -147,10 +147,10 @@ class ExportDialog(QDialog):
         groups: dict[str, QTreeWidgetItem] = {}
         for target in registry.targets().values():
             if target.group not in groups:
-                groups[target.group] = QTreeWidgetItem(out, [tr_told(target.group)])
+                groups[target.group] = QTreeWidgetItem(out, [tr_phrase(target.group)])
                 groups[target.group].setFlags(Qt.ItemFlag.ItemIsEnabled)
                 groups[target.group].setForeground(0, self.palette().placeholderText())
-            item = QTreeWidgetItem(groups[target.group], [tr_told(target.title)])
+            item = QTreeWidgetItem(groups[target.group], [tr_phrase(target.title)])
             item.setData(0, NAME, target.name)
         out.expandAll()
         out.setItemsExpandable(False)
@@ -245,12 +245,12 @@ class ExportDialog(QDialog):
         self.folder.setText(self.chosen.folders.get(target.name) or self._usual(target.name))
         whole = size(project)
         played = (target.name == registry.DEFAULT) or target.group == registry.target(registry.DEFAULT).group
-        self.title.setText(tr_told(target.title))
+        self.title.setText(tr_phrase(target.title))
         joints = len(project.skeleton) if project.skeleton else 0
         self.words.setText(
             tr(
                 "Writes {files}. {states} actions, {clips} clips on {joints} joints.",
-                files=tr_told(target.files),
+                files=tr_phrase(target.files),
                 states=whole.states,
                 clips=whole.clips,
                 joints=joints,
@@ -259,9 +259,9 @@ class ExportDialog(QDialog):
         for box in (self.expanded, self.vectors, self.tools):
             box.setVisible(played)
         self.compress.setVisible(target.unpacks)
-        rows = [f"<li>{escape(tr_told(words))}</li>" for words in registry.losses(project, target.name)]
+        rows = [f"<li>{escape(tr_phrase(words))}</li>" for words in registry.losses(project, target.name)]
         note = (
-            tr("<p><b>Experimental</b>: {why}.</p>", why=escape(tr_told(target.untried)))
+            tr("<p><b>Experimental</b>: {why}.</p>", why=escape(tr_phrase(target.untried)))
             if target.untried
             else ""
         )
@@ -271,7 +271,7 @@ class ExportDialog(QDialog):
             if rows
             else nothing
         )
-        told = "".join(f"<li>{escape(tr_told(words))}</li>" for words in self.differences)
+        told = "".join(f"<li>{escape(tr_phrase(words))}</li>" for words in self.differences)
         differs = (
             f"<p><b>{tr('How it differs from what was drawn')}</b></p>"
             f"<ul style='margin-left:-20px'>{told}</ul>"
@@ -360,7 +360,7 @@ class ExportDialog(QDialog):
             size=size,
             clips=made.clips,
         )
-        self.results[made.target] = Result(str(folder), words, "\n".join(map(tr_told, made.warnings[:5])))
+        self.results[made.target] = Result(str(folder), words, "\n".join(map(tr_phrase, made.warnings[:5])))
         if self.target.name == made.target:
             self._show_result()
 

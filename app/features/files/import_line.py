@@ -13,13 +13,13 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSizePolicy, QTo
 from app.look.theme import strengthen
 from app.project.document import Document
 from app.project.importing import Importing
-from app.translation import tr, tr_told
+from app.translation import tr, tr_noop, tr_phrase
 from app.widgets.making import make_widget
 from metagraph.formats.import_words import Remedy, counted, head, remedies, said
 from metagraph.formats.imports import Imported
 from metagraph.graph.model import Project
 
-NEXT = tr("Next: let them be labelled, or drag them onto the nodes of the graph.")
+NEXT = tr_noop("Next: let them be labelled, or drag them onto the nodes of the graph.")
 
 
 class ImportLine(QToolBar):
@@ -78,14 +78,14 @@ class ImportLine(QToolBar):
         if fresh and not self._unlabelled(result):
             return
         if fresh:
-            words = f"{tr_told(words)}. {NEXT}"
+            words = f"{tr_phrase(words)}. {tr(NEXT)}"
             self._offer(tr("Label clips…"), lambda: self._do("propose"))
         self.result, self._fresh = result, fresh
-        self.words.setText(tr_told(words))
-        self.words.setToolTip(tr_told(words))
+        self.words.setText(tr_phrase(words))
+        self.words.setToolTip(tr_phrase(words))
         self.why.setVisible(bool(result.failures or result.notes))
         for remedy in remedies(result):
-            self._offer(tr_told(remedy.label), partial(self._mend, remedy))
+            self._offer(tr_phrase(remedy.label), partial(self._mend, remedy))
         self.show()
 
     def _offer(self, label: str, do: Callable[[], object]) -> None:
@@ -133,4 +133,4 @@ class ImportLine(QToolBar):
     def _details(self) -> None:
         if self.result is not None:
             lines = counted([*self.result.failures, *self.result.notes])
-            self._show(tr_told(head(self.result)), [tr_told(line) for line in lines])
+            self._show(tr_phrase(head(self.result)), [tr_phrase(line) for line in lines])

@@ -22,13 +22,12 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.look.plural import many
 from app.look.theme import strengthen
 from app.project.leftovers import pose_of
 from app.project.questions import moment_words
 from app.project.recovering import PICTURE, SittingPicture
 from app.project.version_count import set_version_count, version_count
-from app.translation import tr, tr_told
+from app.translation import tr, tr_phrase, tr_plural
 from app.widgets.quiet_fields import SpinBox
 from metagraph.errors import FileError, error_words
 from metagraph.formats.project.versions import MOST, Version, earlier_versions
@@ -165,11 +164,16 @@ class VersionsDialog(QDialog):
         elif not one.changes:
             words = tr("As it is now")
         else:
-            words = tr("{changes} since then", changes=many(len(one.changes), "change"))
+            words = tr(
+                "{changes} since then",
+                changes=tr_plural("{count:,} change", "{count:,} changes", len(one.changes)),
+            )
         item = QListWidgetItem(f"{when}\n{words}")
         if one.project is not None:
-            clips = many(len(one.project.clips), "clip")
-            item.setText(f"{when}\n{clips}, {many(sum(1 for _ in one.project.actions()), 'action')}\n{words}")
+            clips = tr_plural("{count:,} clip", "{count:,} clips", len(one.project.clips))
+            count = sum(1 for _ in one.project.actions())
+            actions = tr_plural("{count:,} action", "{count:,} actions", count)
+            item.setText(f"{when}\n{clips}, {actions}\n{words}")
             picture = SittingPicture(one.project, one.pose).grab()
             icon = QIcon(picture)
             icon.addPixmap(picture, QIcon.Mode.Selected)  # Qt would dim it
@@ -192,9 +196,9 @@ class VersionsDialog(QDialog):
             return
         self.title.setText(tr("Changed since {when}", when=moment_words(one.version.saved)))
         if one.project is None:
-            self.changes.addItem(tr_told(one.why))
+            self.changes.addItem(tr_phrase(one.why))
             return
-        self.changes.addItems(list(map(tr_told, one.changes[:LINES])) or [tr("Nothing")])
+        self.changes.addItems(list(map(tr_phrase, one.changes[:LINES])) or [tr("Nothing")])
         if len(one.changes) > LINES:
             self.changes.addItem(tr("and {count} more", count=len(one.changes) - LINES))
 

@@ -12,9 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from app.look.plural import many
 from app.project.new_clips import Loaded, pieces, save
-from app.translation import tr
+from app.translation import tr, tr_noop, tr_plural
 from metagraph.errors import FileError
 from metagraph.graph import edits
 from metagraph.graph.conversation.edits import change_side
@@ -30,7 +29,7 @@ if TYPE_CHECKING:
 KINDS = {"matching": "Matching", "flow-vae": "Flow-VAE", "moglow": "MoGlow", "cvae": "CVAE"}
 FOLDER = "generated"  # beside the project file, where new clips are kept
 LEAST, MOST = 1.0, 8.0  # seconds of clips cut from takes
-UNCUT = tr("Make more minutes, lower Chance, or train longer.")
+UNCUT = tr_noop("Make more minutes, lower Chance, or train longer.")
 Progress = Callable[[int, int], None]
 Cancelled = Callable[[], bool]
 
@@ -271,7 +270,11 @@ def about(card: ModelCard, project: Project) -> str:
         else tr("{hours:.1f} hours", hours=card.hours)
     )
     learned = (
-        tr("{hours} of {takes}", hours=hours, takes=many(len(card.takes), "take"))
+        tr(
+            "{hours} of {takes}",
+            hours=hours,
+            takes=tr_plural("{count:,} take", "{count:,} takes", len(card.takes)),
+        )
         if card.takes
         else tr("nothing")
     )
@@ -284,7 +287,7 @@ def about(card: ModelCard, project: Project) -> str:
         "{kind}, learned from {learned}, {steps}; made for {fits}.{told}",
         kind=kind,
         learned=learned,
-        steps=many(card.steps, "step"),
+        steps=tr_plural("{count:,} step", "{count:,} steps", card.steps),
         fits=fits,
         told=told,
     )

@@ -38,26 +38,29 @@ from app.features.generation.training_run import (
     keep,
     stands_of,
 )
-from app.look.plural import many
 from app.look.theme import strengthen
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_plural, translated
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, SpinBox
 from metagraph.generation.standing import Standing, busy
 from metagraph.generation.stored import SUFFIX
 from metagraph.generation.train_plan import PLAN, folder_of, read_takes
 
-TIPS = (
-    ("matching", tr("Follows the speech best for the time it takes: 15 minutes are a beginning")),
-    ("flow-vae", tr("As in the paper: a code of poses and a flow over it; needs longer")),
-    ("moglow", tr("The paper's comparison: a flow over the poses themselves")),
-    ("cvae", tr("The paper's other comparison: moves little")),
+TIPS = translated(
+    lambda: (
+        ("matching", tr("Follows the speech best for the time it takes: 15 minutes are a beginning")),
+        ("flow-vae", tr("As in the paper: a code of poses and a flow over it; needs longer")),
+        ("moglow", tr("The paper's comparison: a flow over the poses themselves")),
+        ("cvae", tr("The paper's other comparison: moves little")),
+    )
 )
-SIZES = (("small", tr("small, for this machine")), ("paper", tr("as in the paper, for a graphics card")))
-HEADS = (tr("Take"), tr("Length"), tr("Speech"), tr("What to know"))
+SIZES = translated(
+    lambda: (("small", tr("small, for this machine")), ("paper", tr("as in the paper, for a graphics card")))
+)
+HEADS = translated(lambda: (tr("Take"), tr("Length"), tr("Speech"), tr("What to know")))
 
 
 def missing() -> str | None:
@@ -243,10 +246,22 @@ class LearnPage(Page):
             if rows
             else tr("Takes")
         )
-        left = tr(" {bad} left out: the first rows say why.", bad=many(bad, "clip")) if bad else ""
+        left = (
+            tr(
+                " {bad} left out: the first rows say why.",
+                bad=tr_plural("{count:,} clip", "{count:,} clips", bad),
+            )
+            if bad
+            else ""
+        )
         short = tr(" That is little: an hour or more is better.") if good and listing.seconds < 1800 else ""
         self.said.emit(
-            tr("{good} can be learned from.{left}{short}", good=many(good, "take"), left=left, short=short)
+            tr(
+                "{good} can be learned from.{left}{short}",
+                good=tr_plural("{count:,} take", "{count:,} takes", good),
+                left=left,
+                short=short,
+            )
             if rows
             else ""
         )

@@ -14,18 +14,18 @@ from PySide6.QtWidgets import QHBoxLayout, QHeaderView, QTableWidget, QTableWidg
 from app.features.generation.generation_jobs import Piece
 from app.features.generation.sample_preview import FigurePreview
 from app.project.document import Document
-from app.translation import tr
+from app.translation import tr, tr_noop, translated
 from app.widgets.quiet_fields import ComboBox
 from metagraph.generation.landmarks import landmarks_of
 from metagraph.generation.networks import FPS
 from metagraph.generation.poses import poses_of
 from metagraph.graph.model import Kind, Limb
 
-HEADS = (tr("Piece"), tr("Length"), tr("Taken for"), tr("Sure"), tr("Arm"))
+HEADS = translated(lambda: (tr("Piece"), tr("Length"), tr("Taken for"), tr("Sure"), tr("Arm")))
 KIND, SURE, LIMB = 2, 3, 4  # columns
 KINDS: tuple[Kind, ...] = ("gesture", "fidget")
 LIMBS: tuple[Limb, ...] = ("both", "left", "right")
-EMPTY = tr("What is made and cut stands here, to be looked at before it is dropped.")
+EMPTY = tr_noop("What is made and cut stands here, to be looked at before it is dropped.")
 
 
 class PiecesTable(QTableWidget):
@@ -62,7 +62,7 @@ class PiecesTable(QTableWidget):
             painter = QPainter(self.viewport())
             painter.setPen(self.palette().placeholderText().color())
             painter.drawText(
-                self.viewport().rect(), Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap, EMPTY
+                self.viewport().rect(), Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap, tr(EMPTY)
             )
             painter.end()
 

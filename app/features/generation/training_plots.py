@@ -11,16 +11,18 @@ from PySide6.QtWidgets import QHBoxLayout, QWidget
 
 from app.look.theme import theme
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, translated
 from app.widgets.still_plot import empty_plot, still_plot
 
 # Statistics of which 1 is right, as people read them; others are told in words.
-RATIOS = {
-    "speed": tr("speed"),
-    "trembling": tr("trembling"),
-    "wrist_range": tr("reach"),
-    "profile": tr("goes with stresses"),
-}
+RATIOS = translated(
+    lambda: {
+        "speed": tr("speed"),
+        "trembling": tr("trembling"),
+        "wrist_range": tr("reach"),
+        "profile": tr("goes with stresses"),
+    }
+)
 STYLES = (
     Qt.PenStyle.SolidLine,
     Qt.PenStyle.DashLine,

@@ -11,19 +11,20 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from app.look.plural import many
-from app.translation import tr, tr_error
+from app.translation import tr, tr_error, tr_plural, translated
 
 if TYPE_CHECKING:
     from metagraph.generation.standing import Standing
     from metagraph.generation.train_process import Event
 
 # What an event's numbers tell, the most telling first.
-GOALS = {
-    "likelihood": tr("likelihood: more is better"),
-    "matching": tr("error of the flow: less is better"),
-    "loss": tr("error: less is better"),
-}
+GOALS = translated(
+    lambda: {
+        "likelihood": tr("likelihood: more is better"),
+        "matching": tr("error of the flow: less is better"),
+        "loss": tr("error: less is better"),
+    }
+)
 LITTLE = 0.4  # of a core: other work takes the rest
 LOOKS = 200  # milliseconds between two looks at what was said
 
@@ -98,9 +99,16 @@ def left_of(standing: Standing) -> str:
     if not step:
         return tr("{kind}, nothing kept yet", kind=kind)
     if standing.share >= 1:
-        return tr("{kind}, {steps}, its time is over", kind=kind, steps=many(step, "step"))
+        return tr(
+            "{kind}, {steps}, its time is over",
+            kind=kind,
+            steps=tr_plural("{count:,} step", "{count:,} steps", step),
+        )
     return tr(
-        "{kind}, {steps}, {share:.0f} % done", kind=kind, steps=many(step, "step"), share=100 * standing.share
+        "{kind}, {steps}, {share:.0f} % done",
+        kind=kind,
+        steps=tr_plural("{count:,} step", "{count:,} steps", step),
+        share=100 * standing.share,
     )
 
 
@@ -149,7 +157,11 @@ class TrainingRun(QObject):
 
 def stands_of(event: Event) -> str:
     """Return how far a training is, in words; also how little of the machine it gets, where that is so."""
-    words = tr("{steps}, {minutes:.1f} min", steps=many(event.step, "step"), minutes=event.minutes)
+    words = tr(
+        "{steps}, {minutes:.1f} min",
+        steps=tr_plural("{count:,} step", "{count:,} steps", event.step),
+        minutes=event.minutes,
+    )
     got = event.seconds / (60 * event.minutes)
     return (
         tr("{words}; busy machine: {share:.0f} % of a core", words=words, share=100 * got)

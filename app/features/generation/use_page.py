@@ -31,12 +31,11 @@ from app.features.generation.generation_jobs import (
 )
 from app.features.generation.page import Page
 from app.features.generation.pieces_table import PiecesView
-from app.look.plural import many
 from app.look.theme import strengthen
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.stage.session import Session
-from app.translation import tr, tr_error
+from app.translation import tr, tr_error, tr_noop, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
 from metagraph.errors import FileError
@@ -46,7 +45,7 @@ from metagraph.generation.stored import SUFFIX, read_card
 from metagraph.graph.conversation.model import side_name
 
 FILE, CHOOSE = "file", "choose"  # a sound that was chosen, and choosing one
-NOBODY = tr(
+NOBODY = tr_noop(
     "There is no conversation yet: drop a recording of two who talk on the window, and choose a side here."
 )
 
@@ -119,7 +118,7 @@ class UsePage(Page):
             self.move_side,
         )
         strengthen(self.move_button)
-        self.nobody = QLabel(NOBODY, self)
+        self.nobody = QLabel(tr(NOBODY), self)
         self.nobody.setProperty("dim", True)
         return self.row((tr("Who"), self.side), ("", self.move_button), ("", self.nobody))
 
@@ -251,7 +250,11 @@ class UsePage(Page):
         self.cut_button.setEnabled(free)
         count = len(self.table.chosen())
         self.drop_button.setEnabled(self._job is None and count > 0)
-        self.drop_button.setText(tr("Drop {count}", count=many(count, "clip")) if count else tr("Drop"))
+        self.drop_button.setText(
+            tr("Drop {count}", count=tr_plural("{count:,} clip", "{count:,} clips", count))
+            if count
+            else tr("Drop")
+        )
 
     def _start(self, title: str, work: Callable[[Job], Any], done: Callable[[Any], None]) -> None:
         self.said.emit(f"{title}…")
@@ -384,14 +387,14 @@ class UsePage(Page):
             if not found:
                 self.said.emit(
                     tr(
-                        "Nothing can be cut: {why}. {remedy} {told}", why=why, remedy=UNCUT, told=told
+                        "Nothing can be cut: {why}. {remedy} {told}", why=why, remedy=tr(UNCUT), told=told
                     ).rstrip()
                 )
                 return
             self.said.emit(
                 tr(
                     "{pieces}, not kept yet: drop those you like. {told}",
-                    pieces=many(len(found), "piece"),
+                    pieces=tr_plural("{count:,} piece", "{count:,} pieces", len(found)),
                     told=told,
                 ).rstrip()
             )
@@ -418,7 +421,7 @@ class UsePage(Page):
             self.said.emit(
                 tr(
                     "{clips} {place}; they say that '{named}' made them.",
-                    clips=many(len(ids), "clip"),
+                    clips=tr_plural("{count:,} clip", "{count:,} clips", len(ids)),
                     place=place,
                     named=named,
                 )

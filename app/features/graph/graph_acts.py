@@ -11,11 +11,10 @@ from PySide6.QtWidgets import QInputDialog, QWidget
 
 from app.features.graph.graph_drops import Drop, drop_at, perform
 from app.features.graph.graph_layout import GraphHit
-from app.look.plural import many
 from app.project.document import Document
 from app.project.load import Load
 from app.stage.session import Session
-from app.translation import tr, tr_error
+from app.translation import tr, tr_error, tr_plural
 from app.widgets.vocabulary import word
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
@@ -50,7 +49,10 @@ class GraphActs(QObject):
         """Perform a drop and select what it made."""
         before = {a.id for a in self.document.project.actions()}
         layer = self.session.place.layer
-        what = many(load.count, "action" if load.actions else "clip")
+        if load.actions:
+            what = tr_plural("{count:,} action", "{count:,} actions", load.count)
+        else:
+            what = tr_plural("{count:,} clip", "{count:,} clips", load.count)
         words = (
             tr("Reorder {what}", what=what)
             if drop.reorder
@@ -98,7 +100,7 @@ class GraphActs(QObject):
     def shift(self, steps: int) -> None:
         """List the selected actions a place earlier (-1) or later (1) in their nodes."""
         chosen = self.session.selection.actions
-        words = tr("Reorder {what}", what=many(len(chosen), "action"))
+        words = tr("Reorder {what}", what=tr_plural("{count:,} action", "{count:,} actions", len(chosen)))
         self.document.edit(words, lambda p: shifted(p, chosen, steps))
 
     def move_to(self, stance: str) -> None:
@@ -146,7 +148,7 @@ class GraphActs(QObject):
         gone = self.session.selection.actions
         if gone:
             self.document.edit(
-                tr("Remove {actions}", actions=many(len(gone), "action")),
+                tr("Remove {actions}", actions=tr_plural("{count:,} action", "{count:,} actions", len(gone))),
                 lambda p: edits.remove_actions(p, gone),
             )
 

@@ -51,14 +51,14 @@ from app.project.document import Document
 from app.stage.performance import Performance
 from app.stage.session import Session
 from app.stage.thumbnails import Thumbnails
-from app.translation import tr
+from app.translation import tr, tr_noop
 from app.widgets.gesture import Hand
 from app.widgets.memo import Once
 from app.widgets.mime import load_of
 from app.widgets.soon import Soon
 from metagraph.graph.model import Kind, Project
 
-KEYS = tr(
+KEYS = tr_noop(
     "Actions by their nodes. Up and Down choose an action, Left and Right make it less or more likely, Enter "
     "shows it."
 )
@@ -104,7 +104,7 @@ class Canvas(QWidget):
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setMinimumSize(int(LEAST_WIDTH), int(LEAST_HEIGHT))  # its height follows its width
         self.setAccessibleName(tr("Meta-graph"))
-        self.setAccessibleDescription(KEYS)
+        self.setAccessibleDescription(tr(KEYS))
         self._beat = Beat(self._next_beat, self)
         self._beat.run(session.transport.playing)
         session.transport.playing_changed.connect(lambda: self._beat.run(session.transport.playing))

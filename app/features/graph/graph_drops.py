@@ -8,9 +8,8 @@ from dataclasses import dataclass
 
 from app.features.graph.graph_layout import GraphHit
 from app.look.names import node_names
-from app.look.plural import many
 from app.project.load import ANNOTATIONS, Load
-from app.translation import tr, tr_error, tr_noop, tr_told
+from app.translation import tr, tr_error, tr_noop, tr_phrase, tr_plural
 from app.widgets.vocabulary import word
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing.listing import reordered
@@ -99,7 +98,7 @@ def drop_at(
     if why is None and load.actions and target is None and kind == "stance":
         why = tr("drag its clip from the library to make a new stance of it")
     if why is not None:
-        return Drop(False, tr_told(why), kind, target, end)
+        return Drop(False, tr_phrase(why), kind, target, end)
     return Drop(True, words, kind, target, end)
 
 
@@ -160,8 +159,12 @@ def _count(load: Load) -> str:
     if load.count == 1:
         return tr("this clip") if load.clips else tr("this action") if load.actions else tr("this file")
     if load.files and not load.clips and not load.actions:
-        return many(load.count, "file")
-    return many(load.count, "clip") if load.clips else many(load.count, "action")
+        return tr_plural("{count:,} file", "{count:,} files", load.count)
+    return (
+        tr_plural("{count:,} clip", "{count:,} clips", load.count)
+        if load.clips
+        else tr_plural("{count:,} action", "{count:,} actions", load.count)
+    )
 
 
 def _name(project: Project, stance: str | None) -> str:

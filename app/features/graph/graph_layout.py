@@ -12,7 +12,7 @@ from PySide6.QtCore import QPointF, QRectF, QSizeF
 
 from app.features.graph.graph_frames import GRID, HEADER, LINE, NARROW, PAD, ROW, Frames, frames
 from app.look.names import node_names
-from app.translation import tr
+from app.translation import tr, translated
 from metagraph.graph.model import Action, Kind, Layer, MetaGraph, Project
 
 LEAST_WIDTH, LEAST_HEIGHT = 240.0, 300.0  # pixels; a smaller canvas is laid out as if it was so large
@@ -135,7 +135,7 @@ class Layout:
         )
 
 
-HOLES = (tr("no loop"), tr("no way out"), tr("no gestures"), tr("no fidgets"))
+HOLES = translated(lambda: (tr("no loop"), tr("no way out"), tr("no gestures"), tr("no fidgets")))
 
 
 def hole(project: Project, layer: Layer, stance: str) -> str:

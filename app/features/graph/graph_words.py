@@ -6,8 +6,7 @@ from collections.abc import Mapping
 
 from app.features.graph.graph_layout import GraphHit, Layout
 from app.look.names import told_names
-from app.look.plural import many
-from app.translation import tr
+from app.translation import tr, tr_plural
 from metagraph.graph.expand import size
 from metagraph.graph.model import LAYERS, Project
 
@@ -49,9 +48,9 @@ def sentence(project: Project) -> str:
     layers = sum(1 for layer in LAYERS if project.graphs[layer].actions)
     over = tr(" over {layers} layers", layers=layers) if layers > 1 else ""
     clips, states, links = (
-        many(whole.clips, "clip"),
-        many(whole.states, "state"),
-        many(whole.connections, "connection"),
+        tr_plural("{count:,} clip", "{count:,} clips", whole.clips),
+        tr_plural("{count:,} state", "{count:,} states", whole.states),
+        tr_plural("{count:,} connection", "{count:,} connections", whole.connections),
     )
     return tr(
         "You placed {clips}{over}. This is the machine you did not have to draw: {states}, {links}.",

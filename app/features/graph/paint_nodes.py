@@ -12,14 +12,16 @@ from app.features.graph.graph_layout import GraphRow, Layout, Node, bar_part
 from app.features.graph.graph_look import GraphLook, between, bold, draw_box, draw_offer, upper
 from app.look.names import plain
 from app.look.theme import KIND_MARKS, KIND_TITLES
-from app.translation import tr
+from app.translation import tr, translated
 from metagraph.graph.model import Kind
 
-TEACH = {
-    "gesture": tr("Drop clips that mean something\nor beat time: a shrug, a point."),
-    "fidget": tr("Drop small habits:\na scratch, tapping fingers."),
-    "transition": tr("Drop clips that lead to another stance."),
-}
+TEACH = translated(
+    lambda: {
+        "gesture": tr("Drop clips that mean something\nor beat time: a shrug, a point."),
+        "fidget": tr("Drop small habits:\na scratch, tapping fingers."),
+        "transition": tr("Drop clips that lead to another stance."),
+    }
+)
 
 
 def draw_node(

@@ -8,8 +8,7 @@ from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
 from app.features.graph.graph_layout import Chip, Layout
 from app.features.graph.graph_look import GraphLook, between, bold, draw_box, draw_offer, upper
 from app.look.names import plain
-from app.look.plural import many
-from app.translation import tr
+from app.translation import tr, tr_plural
 
 
 def draw_chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, font: QFont) -> None:
@@ -111,7 +110,7 @@ def draw_card(painter: QPainter, layout: Layout, look: GraphLook, font: QFont) -
             painter.setFont(font)
             return _card_drop(painter, layout, look, font)
         start = look.project.graphs[stance.layer].start == stance.id
-        words = many(len(loops), "loop") if loops else tr("no loop yet")
+        words = tr_plural("{count:,} loop", "{count:,} loops", len(loops)) if loops else tr("no loop yet")
         painter.setFont(font)
         painter.setPen(QColor(t.dim if loops else t.warning))
         foot = QRectF(card.left() + 12, card.bottom() - 26, card.width() - 24, 20)

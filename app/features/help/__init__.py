@@ -14,30 +14,34 @@ from app.look.theme import KIND_MARKS
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
 from app.shell.places import Places
-from app.translation import tr
+from app.translation import tr, translated
 from metagraph.graph.model import KINDS
 
 if TYPE_CHECKING:
     from app.features.help.command_finder import Entry
 
-TIMELINE = (  # and what the timeline does
-    (tr("Add a marker"), "M"),
-    (tr("Move requests or a marker"), tr("arrows, with Shift by a second")),
-    (tr("Take requests back and close up"), tr("Shift+Del")),
-    (tr("Cut, copy, paste requests"), tr("Ctrl+X, Ctrl+C, Ctrl+V")),
-    (tr("Copy requests a second later"), tr("Ctrl+D")),
-    (tr("Ask for something"), tr("Insert")),
-    (tr("Cut to all, over a shoulder, close"), tr("1 to 9")),
-    (tr("Take the cut away"), "0"),
-    (tr("Zoom in and out"), "+, −"),
-    (tr("Drag without snapping"), tr("Shift")),
+TIMELINE = translated(
+    lambda: (  # and what the timeline does
+        (tr("Add a marker"), "M"),
+        (tr("Move requests or a marker"), tr("arrows, with Shift by a second")),
+        (tr("Take requests back and close up"), tr("Shift+Del")),
+        (tr("Cut, copy, paste requests"), tr("Ctrl+X, Ctrl+C, Ctrl+V")),
+        (tr("Copy requests a second later"), tr("Ctrl+D")),
+        (tr("Ask for something"), tr("Insert")),
+        (tr("Cut to all, over a shoulder, close"), tr("1 to 9")),
+        (tr("Take the cut away"), "0"),
+        (tr("Zoom in and out"), "+, −"),
+        (tr("Drag without snapping"), tr("Shift")),
+    )
 )
-LANES = (  # what the lanes take for themselves
-    (tr("Label as clause, response, hesitation"), "1, 2, 3"),
-    (tr("Split a segment"), "S"),
-    (tr("Merge segments"), "M"),
-    (tr("Set the stress"), "P"),
-    (tr("Go from segment to segment"), tr("Tab, arrows")),
+LANES = translated(
+    lambda: (  # what the lanes take for themselves
+        (tr("Label as clause, response, hesitation"), "1, 2, 3"),
+        (tr("Split a segment"), "S"),
+        (tr("Merge segments"), "M"),
+        (tr("Set the stress"), "P"),
+        (tr("Go from segment to segment"), tr("Tab, arrows")),
+    )
 )
 
 

@@ -12,7 +12,7 @@ from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelInd
 from PySide6.QtGui import QFont
 from PySide6.QtWidgets import QComboBox, QStyledItemDelegate, QStyleOptionViewItem, QWidget
 
-from app.translation import tr, tr_error
+from app.translation import tr, tr_error, tr_noop, translated
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.vocabulary import word
 from metagraph.graph.words import KINDS, LAYERS, LIMBS
@@ -21,22 +21,24 @@ from metagraph.suggest.words.languages import AFTER_FROM, AFTER_TO, MAYBE_FROM, 
 from metagraph.suggest.words.patterns import FIELDS, Patterns, PatternsError, forget, remembered
 
 Index = QModelIndex | QPersistentModelIndex
-COLUMNS = (tr("Words"), tr("About"), tr("Means"), tr("From"))
-ABOUT = {
-    "kinds": tr("kind"),
-    "layers": tr("layer"),
-    "limbs": tr("arm"),
-    "tags": tr("tags"),
-    "postures": tr("stance name"),
-    "joins": tr("transition"),
-    "junk": tr("no word"),
-    "synonyms": tr("same as"),
-    "kind": tr("kind"),
-    "layer": tr("layer"),
-    "limb": tr("arm"),
-    "stance": tr("begins in"),
-    "end_stance": tr("ends in"),
-}
+COLUMNS = translated(lambda: (tr("Words"), tr("About"), tr("Means"), tr("From")))
+ABOUT = translated(
+    lambda: {
+        "kinds": tr("kind"),
+        "layers": tr("layer"),
+        "limbs": tr("arm"),
+        "tags": tr("tags"),
+        "postures": tr("stance name"),
+        "joins": tr("transition"),
+        "junk": tr("no word"),
+        "synonyms": tr("same as"),
+        "kind": tr("kind"),
+        "layer": tr("layer"),
+        "limb": tr("arm"),
+        "stance": tr("begins in"),
+        "end_stance": tr("ends in"),
+    }
+)
 MEANINGS: dict[str, tuple[str, ...]] = {
     "kinds": (*KINDS, "other"),
     "layers": LAYERS,
@@ -52,17 +54,19 @@ MEANINGS: dict[str, tuple[str, ...]] = {
     "stance": (),
     "end_stance": (),
 }
-SHOWN = {
-    "other": tr("none of the four"),
-    "junk": tr("nothing"),
-    None: tr("nothing any more"),
-    NOTHING: tr("nothing"),
-    MAYBE_TO: tr("to, between stances"),
-    MAYBE_FROM: tr("from, between stances"),
-    AFTER_TO: tr("to, after a stance"),
-    AFTER_FROM: tr("from, after a stance"),
-}
-NOBODY, MINE, LEARNED = tr("built in"), tr("you"), tr("corrections")
+SHOWN = translated(
+    lambda: {
+        "other": tr("none of the four"),
+        "junk": tr("nothing"),
+        None: tr("nothing any more"),
+        NOTHING: tr("nothing"),
+        MAYBE_TO: tr("to, between stances"),
+        MAYBE_FROM: tr("from, between stances"),
+        AFTER_TO: tr("to, after a stance"),
+        AFTER_FROM: tr("from, after a stance"),
+    }
+)
+NOBODY, MINE, LEARNED = tr_noop("built in"), tr_noop("you"), tr_noop("corrections")
 
 
 def means(field: str, meaning: str | None) -> str:
@@ -102,7 +106,7 @@ class PatternRow:
             self.phrase,
             ABOUT[self.field],
             means(self.field, self.meaning),
-            self.source + times,
+            tr(self.source) + times,
         )
 
 

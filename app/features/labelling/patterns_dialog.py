@@ -38,27 +38,28 @@ from app.features.labelling.pattern_table import (
     fill_meanings,
     without,
 )
-from app.look.plural import many
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.project.learned import Learned
 from app.project.pattern_files import read_patterns, write_patterns
 from app.stage.session import Session
-from app.translation import tr, tr_error, tr_told
+from app.translation import tr, tr_error, tr_noop, tr_phrase, tr_plural, translated
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.vocabulary import word
 from metagraph.errors import FileError
 from metagraph.suggest.words.names import NameGuess, Patterns, PatternsError, merged, read_names
 from metagraph.suggest.words.patterns import FIELDS
 
-FILTER = tr("Name patterns (*.json);;All files (*)")
-PARTS = (
-    ("kind", tr("Kind")),
-    ("layer", tr("Layer")),
-    ("stance", tr("Stance")),
-    ("end_stance", tr("Ends in")),
-    ("limb", tr("Arm")),
-    ("tags", tr("Tags")),
+FILTER = tr_noop("Name patterns (*.json);;All files (*)")
+PARTS = translated(
+    lambda: (
+        ("kind", tr("Kind")),
+        ("layer", tr("Layer")),
+        ("stance", tr("Stance")),
+        ("end_stance", tr("Ends in")),
+        ("limb", tr("Arm")),
+        ("tags", tr("Tags")),
+    )
 )
 
 
@@ -261,7 +262,7 @@ class PatternsDialog(QDialog):
                 text = (
                     f"<span style='color:{look.kinds[belief.value]}'>{KIND_MARKS[belief.value]} {text}</span>"
                 )
-            cells = (title, f"<b>{text}</b>", f"{belief.confidence:.0%}", escape(tr_told(belief.reason)))
+            cells = (title, f"<b>{text}</b>", f"{belief.confidence:.0%}", escape(tr_phrase(belief.reason)))
             rows.append(
                 "<tr>" + "".join(f"<td style='padding-right:14px'>{cell}</td>" for cell in cells) + "</tr>"
             )
@@ -334,8 +335,8 @@ class PatternsDialog(QDialog):
         words = tr(
             "{words} learned from corrections and {clips} of saved projects are forgotten. Patterns you "
             "wrote stay.",
-            words=many(count, "word"),
-            clips=many(clips, "labelled clip"),
+            words=tr_plural("{count:,} word", "{count:,} words", count),
+            clips=tr_plural("{count:,} labelled clip", "{count:,} labelled clips", clips),
         )
         buttons = QMessageBox.StandardButton
         box = QMessageBox(QMessageBox.Icon.Question, tr("Forget all learned?"), words, buttons.Cancel, self)
@@ -349,7 +350,7 @@ class PatternsDialog(QDialog):
 
     def _import(self) -> None:
         name, _ = QFileDialog.getOpenFileName(
-            self, tr("Import name patterns"), str(self.document.folder or Path.home()), FILTER
+            self, tr("Import name patterns"), str(self.document.folder or Path.home()), tr(FILTER)
         )
         if name:
             try:
@@ -363,7 +364,7 @@ class PatternsDialog(QDialog):
             self._tell(
                 tr(
                     "{patterns} and {learned} learned were taken from {name}.",
-                    patterns=many(own, "pattern"),
+                    patterns=tr_plural("{count:,} pattern", "{count:,} patterns", own),
                     learned=learned,
                     name=Path(name).name,
                 )
@@ -371,7 +372,7 @@ class PatternsDialog(QDialog):
 
     def _export(self) -> None:
         start = (self.document.folder or Path.home()) / "name-patterns.json"
-        name, _ = QFileDialog.getSaveFileName(self, tr("Export name patterns"), str(start), FILTER)
+        name, _ = QFileDialog.getSaveFileName(self, tr("Export name patterns"), str(start), tr(FILTER))
         if name:
             path = Path(name) if Path(name).suffix else Path(name + ".json")
             try:

@@ -40,19 +40,21 @@ from app.project.learned import Learned
 from app.stage.figures import Figures
 from app.stage.playback_source import Shown, alone
 from app.stage.session import Session
-from app.translation import tr, tr_error, tr_told
+from app.translation import tr, tr_error, tr_phrase, translated
 from app.widgets.vocabulary import word
 from metagraph.graph.model import KINDS, Kind
 from metagraph.suggest.proposal import Proposal
 from metagraph.suggest.review import DECIDING, Field, Review
 
-TITLES: dict[str, str] = {
-    "kind": tr("Is a"),
-    "layer": tr("Layer"),
-    "stance": tr("Stance"),
-    "end_stance": tr("Ends in"),
-    "limb": tr("Arm"),
-}
+TITLES: dict[str, str] = translated(
+    lambda: {
+        "kind": tr("Is a"),
+        "layer": tr("Layer"),
+        "stance": tr("Stance"),
+        "end_stance": tr("Ends in"),
+        "limb": tr("Arm"),
+    }
+)
 LARGEST = QSize(1380, 850)  # pixels, where the window is that large
 FRAME = 1 / 30  # seconds a step goes
 LEAST = 2 / 30  # seconds a clip keeps at least
@@ -397,7 +399,7 @@ class ReviewDialog(QDialog):
             self.stage.tell(
                 tr(
                     "<b>Not placed:</b> {why}.",
-                    why=escape(tr_told(why[1]) if why is not None else tr("it is no longer there")),
+                    why=escape(tr_phrase(why[1]) if why is not None else tr("it is no longer there")),
                 )
             )
             return
@@ -461,7 +463,7 @@ class ReviewDialog(QDialog):
             self.stage.tell(done if self.work.looked else tr("Looking at names and motion…"))
             return
         if p is None:
-            why = tr_told(self.review.found.aside.get(clip, ""))
+            why = tr_phrase(self.review.found.aside.get(clip, ""))
             kinds = self._choices("kind")
             self.row = "kind"
             self.fields.show_rows(
@@ -476,7 +478,7 @@ class ReviewDialog(QDialog):
             if choices := self.review.choices(clip, name):
                 belief = getattr(p, name)
                 sure, reason = (
-                    (belief.confidence, tr_told(belief.reason))
+                    (belief.confidence, tr_phrase(belief.reason))
                     if belief is not None
                     else (0.0, tr("nothing says which"))
                 )

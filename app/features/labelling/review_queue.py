@@ -19,10 +19,9 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.labelling.review_words import about
-from app.look.plural import many
 from app.look.theme import KIND_MARKS, theme
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_plural
 from app.widgets.quiet_fields import SpinBox
 from metagraph.graph.model import Project
 from metagraph.suggest.propose import waiting
@@ -126,7 +125,7 @@ class ReviewQueue(QWidget):
         """Tell of stances, by name, that no clip leads to or from, or else what was made of blends."""
         names = ", ".join(stances[:4]) + (" …" if len(stances) > 4 else "")
         if stances:
-            found = many(len(stances), "stance")
+            found = tr_plural("{count:,} stance", "{count:,} stances", len(stances))
             self.parted.setText(
                 tr("No clip leads to {stances}, or back from it: {names}.", stances=found, names=names)
                 if len(stances) == 1
@@ -134,7 +133,10 @@ class ReviewQueue(QWidget):
             )
         else:
             self.parted.setText(
-                tr("{transitions} made by blending.", transitions=many(len(made), "transition"))
+                tr(
+                    "{transitions} made by blending.",
+                    transitions=tr_plural("{count:,} transition", "{count:,} transitions", len(made)),
+                )
                 if made
                 else ""
             )

@@ -7,32 +7,33 @@ from __future__ import annotations
 from collections.abc import Sequence
 from html import escape
 
-from app.look.plural import many
 from app.look.theme import KIND_MARKS, KIND_TITLES, Theme
-from app.translation import tr, tr_told
+from app.translation import tr, tr_noop, tr_phrase, tr_plural, translated
 from app.widgets.vocabulary import titled
 from metagraph.graph.model import Project
 from metagraph.suggest.proposal import Proposal
 from metagraph.suggest.review import Review
 
-KEYS = (
-    (tr("Enter"), tr("accept")),
-    ("↑ ↓", tr("field")),
-    ("← → 1–9", tr("change")),
-    ("Tab", tr("next")),
-    ("⇧Tab", tr("back")),
-    (tr("Backspace"), tr("undo")),
-    (tr("Space"), tr("pause")),
-    (", .", tr("frame")),
-    ("[ ]", tr("start, end here")),
-    ("C", tr("alone")),
-    ("N", tr("new stance")),
-    ("T", tr("tags")),
-    ("A", tr("accept the sure")),
-    ("W", tr("watch all")),
-    ("B", tr("bridge stances")),
+KEYS = translated(
+    lambda: (
+        (tr("Enter"), tr("accept")),
+        ("↑ ↓", tr("field")),
+        ("← → 1–9", tr("change")),
+        ("Tab", tr("next")),
+        ("⇧Tab", tr("back")),
+        (tr("Backspace"), tr("undo")),
+        (tr("Space"), tr("pause")),
+        (", .", tr("frame")),
+        ("[ ]", tr("start, end here")),
+        ("C", tr("alone")),
+        ("N", tr("new stance")),
+        ("T", tr("tags")),
+        ("A", tr("accept the sure")),
+        ("W", tr("watch all")),
+        ("B", tr("bridge stances")),
+    )
 )
-ANYWAY = tr("Left aside; choose what it is to label it all the same.")
+ANYWAY = tr_noop("Left aside; choose what it is to label it all the same.")
 
 
 def legend(look: Theme) -> str:
@@ -50,7 +51,7 @@ def headline(review: Review, project: Project, clip: str, look: Theme) -> str:
         return (
             f'<span style="font-size:17px; font-weight:600">{tr("Left aside")}</span><br>'
             f'<span style="color:{look.dim}">{escape(project.clips[clip].name)}</span><br>'
-            f"{escape(tr_told(review.found.aside.get(clip, '')))}"
+            f"{escape(tr_phrase(review.found.aside.get(clip, '')))}"
         )
     p, places = review.found.proposals[clip], review.found.places
     kind = p.kind.value
@@ -66,7 +67,7 @@ def headline(review: Review, project: Project, clip: str, look: Theme) -> str:
         f'<span style="color:{look.dim}">{escape(project.clips[clip].name)}</span>',
     ]
     against = [*p.conflicts, *([p.timing_reason] if p.good is False else [])]
-    lines += [f'<span style="color:{look.warning}">⚠ {escape(tr_told(words))}</span>' for words in against]
+    lines += [f'<span style="color:{look.warning}">⚠ {escape(tr_phrase(words))}</span>' for words in against]
     return "<br>".join(lines)
 
 
@@ -74,7 +75,10 @@ def rest(aside: Sequence[str]) -> str:
     """Return what is said when nothing is left but clips that were left aside."""
     if len(aside) == 1:
         return tr("<b>Every clip is placed</b> but one that was left aside.")
-    return tr("<b>Every clip is placed</b> but {clips} that were left aside.", clips=many(len(aside), "clip"))
+    return tr(
+        "<b>Every clip is placed</b> but {clips} that were left aside.",
+        clips=tr_plural("{count:,} clip", "{count:,} clips", len(aside)),
+    )
 
 
 def timing(p: Proposal, duration: float) -> str:
@@ -102,7 +106,7 @@ def timing(p: Proposal, duration: float) -> str:
         parts.append(tr("loops"))
     words = [", ".join(parts)]
     if p.timing_reason and p.good is not False:
-        words[0] += f": {tr_told(p.timing_reason)}"
+        words[0] += f": {tr_phrase(p.timing_reason)}"
     for name, belief in ((name, p.details.get(name)) for name in ("stroke", "mask", "likelihood")):
         if belief is not None and (name != "mask" or belief.value):
             value = (
@@ -112,7 +116,7 @@ def timing(p: Proposal, duration: float) -> str:
                 if name == "stroke"
                 else tr("some joints")
             )
-            words.append(f"{titled(name)} {value}: {tr_told(belief.reason)}")
+            words.append(f"{titled(name)} {value}: {tr_phrase(belief.reason)}")
     return "<br>".join(map(escape, words))
 
 

@@ -13,10 +13,9 @@ from PySide6.QtWidgets import QInputDialog, QMenu, QWidget
 from app.features.library.clip_badges import HEART, label_icon
 from app.features.library.clip_columns import stars
 from app.look.domain_words import COLOR_LABELS
-from app.look.plural import many
 from app.project.document import Document
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_plural
 from metagraph.graph import edits
 from metagraph.graph.clip_mark import COLORS, STARS
 from metagraph.graph.editing.listing import duplicate_clips
@@ -96,7 +95,7 @@ class ClipActs:
     def mark(self, clips: Iterable[str], field: str, value: object) -> None:
         """Put something on clips: one field of a `ClipMark`."""
         some = tuple(clips)
-        what = many(len(some), "clip")
+        what = tr_plural("{count:,} clip", "{count:,} clips", len(some))
         words = {
             "color": tr("Colour {clips}", clips=what),
             "rating": tr("Rate {clips}", clips=what),
@@ -115,7 +114,8 @@ class ClipActs:
         some, before = tuple(clips), self.document.project.clips
         if some:
             self.document.edit(
-                tr("Duplicate {clips}", clips=many(len(some), "clip")), lambda p: duplicate_clips(p, some)
+                tr("Duplicate {clips}", clips=tr_plural("{count:,} clip", "{count:,} clips", len(some))),
+                lambda p: duplicate_clips(p, some),
             )
             made = tuple(i for i in self.document.project.clips if i not in before)
             self.session.selection.select_clips(made)
@@ -140,6 +140,6 @@ class ClipActs:
         gone = tuple(clips)
         if gone:
             self.document.edit(
-                tr("Remove {clips}", clips=many(len(gone), "clip")),
+                tr("Remove {clips}", clips=tr_plural("{count:,} clip", "{count:,} clips", len(gone))),
                 lambda p: edits.remove_clips(p, gone),
             )

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from app.features.library.clip_facts import ClipFacts
 from app.features.library.clip_order import GIVEN, stances
 from app.look.domain_words import COLOR_TITLES
-from app.translation import tr
+from app.translation import tr, translated
 from metagraph.graph.clip_mark import STARS
 from metagraph.graph.model import KINDS, LAYERS, ClipEntry
 
@@ -52,66 +52,89 @@ def _note(facts: ClipFacts, entry: ClipEntry) -> str:
     return facts.mark(entry).note.replace("\n", " ")
 
 
-COLUMNS: tuple[Column, ...] = (
-    Column("name", tr("Name"), lambda f, e: e.name, "name", 250, tr("What the clip is called")),
-    Column(
-        "length", tr("Length"), lambda f, e: f"{e.duration:.2f} s", "length", 70, tr("Its length"), right=True
-    ),
-    Column(
-        "moves",
-        tr("Moves"),
-        lambda f, e: ", ".join(f.moved(e)),
-        "moves",
-        130,
-        tr("Whose joints turn; place: it travels"),
-    ),
-    Column("kind", tr("Kind"), _kinds, "use", 90, tr("What it serves as")),
-    Column("layer", tr("Layer"), _layers, "use", 80, tr("The layers it is placed in")),
-    Column(
-        "stance",
-        tr("Stance"),
-        lambda f, e: ", ".join(stances(f, e)),
-        "stance",
-        130,
-        tr("The stances it is used in"),
-    ),
-    Column(
-        "uses",
-        tr("Uses"),
-        lambda f, e: _count(len(f.uses(e))),
-        "uses",
-        55,
-        tr("How many actions use it"),
-        True,
-    ),
-    Column(
-        "problems",
-        tr("Problems"),
-        lambda f, e: _count(f.problems(e)),
-        "problems",
-        80,
-        tr("In how many it is"),
-        True,
-    ),
-    Column(
-        "rating", tr("Stars"), lambda f, e: stars(f.mark(e).rating), "rating", 85, tr("How many stars it has")
-    ),
-    Column(
-        "color", tr("Label"), lambda f, e: COLOR_TITLES[f.mark(e).color], "color", 80, tr("Its colour label")
-    ),
-    Column(
-        "favourite", "♥", lambda f, e: "♥" if f.mark(e).favourite else "", "favourite", 34, tr("Favourites")
-    ),
-    Column("note", tr("Note"), _note, "name", 160, tr("What was written about it"), shown=False),
-    Column(
-        "added",
-        tr("Added"),
-        lambda f, e: str(f.place(e)),
-        GIVEN,
-        65,
-        tr("In which order clips came"),
-        True,
-        False,
-    ),
-    Column("file", tr("File"), lambda f, e: e.path, "folder", 220, tr("The file it comes from")),
+COLUMNS: tuple[Column, ...] = translated(
+    lambda: (
+        Column("name", tr("Name"), lambda f, e: e.name, "name", 250, tr("What the clip is called")),
+        Column(
+            "length",
+            tr("Length"),
+            lambda f, e: f"{e.duration:.2f} s",
+            "length",
+            70,
+            tr("Its length"),
+            right=True,
+        ),
+        Column(
+            "moves",
+            tr("Moves"),
+            lambda f, e: ", ".join(f.moved(e)),
+            "moves",
+            130,
+            tr("Whose joints turn; place: it travels"),
+        ),
+        Column("kind", tr("Kind"), _kinds, "use", 90, tr("What it serves as")),
+        Column("layer", tr("Layer"), _layers, "use", 80, tr("The layers it is placed in")),
+        Column(
+            "stance",
+            tr("Stance"),
+            lambda f, e: ", ".join(stances(f, e)),
+            "stance",
+            130,
+            tr("The stances it is used in"),
+        ),
+        Column(
+            "uses",
+            tr("Uses"),
+            lambda f, e: _count(len(f.uses(e))),
+            "uses",
+            55,
+            tr("How many actions use it"),
+            True,
+        ),
+        Column(
+            "problems",
+            tr("Problems"),
+            lambda f, e: _count(f.problems(e)),
+            "problems",
+            80,
+            tr("In how many it is"),
+            True,
+        ),
+        Column(
+            "rating",
+            tr("Stars"),
+            lambda f, e: stars(f.mark(e).rating),
+            "rating",
+            85,
+            tr("How many stars it has"),
+        ),
+        Column(
+            "color",
+            tr("Label"),
+            lambda f, e: COLOR_TITLES[f.mark(e).color],
+            "color",
+            80,
+            tr("Its colour label"),
+        ),
+        Column(
+            "favourite",
+            "♥",
+            lambda f, e: "♥" if f.mark(e).favourite else "",
+            "favourite",
+            34,
+            tr("Favourites"),
+        ),
+        Column("note", tr("Note"), _note, "name", 160, tr("What was written about it"), shown=False),
+        Column(
+            "added",
+            tr("Added"),
+            lambda f, e: str(f.place(e)),
+            GIVEN,
+            65,
+            tr("In which order clips came"),
+            True,
+            False,
+        ),
+        Column("file", tr("File"), lambda f, e: e.path, "folder", 220, tr("The file it comes from")),
+    )
 )

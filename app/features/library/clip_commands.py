@@ -12,12 +12,11 @@ from app.features.library.clip_sizes import Style
 from app.features.library.library_bar import BUTTONS
 from app.features.library.library_panel import LibraryPanel
 from app.look.domain_words import COLOR_LABELS
-from app.look.plural import many
 from app.project.importing import Importing
 from app.shell.actions import Command, Standard
 from app.shell.command_table import Feature, bound, clips_selected
 from app.stage.problem_watch import ProblemWatch
-from app.translation import tr, tr_noop
+from app.translation import tr, tr_noop, tr_plural
 from metagraph.graph.clip_mark import COLORS, STARS
 
 MENU = "C&lips"
@@ -163,7 +162,9 @@ def _rating(library: LibraryFeature, number: int) -> Command:
         f"&{number}  {stars(number)}" if number else tr("&0  No stars"),
         partial(library.mark, "rating", number),
         (f"Ctrl+Shift+{number}",),
-        tip=tr("Give the selected clips {stars}", stars=many(number, "star")),
+        tip=tr(
+            "Give the selected clips {stars}", stars=tr_plural("{count:,} star", "{count:,} stars", number)
+        ),
         enabled=partial(clips_selected, library),
     )
 

@@ -9,12 +9,12 @@ from typing import Any
 from app.features.library.clip_facts import ClipFacts
 from app.features.library.clip_order import first_use, natural, stances
 from app.look.domain_words import LAYER_LONG_TITLES, MANY_OF_KIND
-from app.translation import tr
+from app.translation import tr, translated
 from metagraph.graph.model import KINDS, LAYERS, ClipEntry
 
 NONE = "none"
 Group = tuple[Any, str]  # what it is sorted by, and its title
-UNUSED: Group = ((1,), tr("Not placed yet"))
+UNUSED: Group = translated(lambda: ((1,), tr("Not placed yet")))
 
 
 def _folder(facts: ClipFacts, entry: ClipEntry) -> Group:
@@ -44,11 +44,13 @@ def _kind(facts: ClipFacts, entry: ClipEntry) -> Group:
     return ((0, min(kinds)), MANY_OF_KIND[KINDS[min(kinds)]]) if kinds else UNUSED
 
 
-GROUPS: dict[str, tuple[str, Callable[[ClipFacts, ClipEntry], Group] | None]] = {
-    NONE: (tr("No groups"), None),
-    "folder": (tr("Folder"), _folder),
-    "stance": (tr("Stance"), _stance),
-    "tag": (tr("Tag"), _tag),
-    "layer": (tr("Layer"), _layer),
-    "kind": (tr("Kind"), _kind),
-}
+GROUPS: dict[str, tuple[str, Callable[[ClipFacts, ClipEntry], Group] | None]] = translated(
+    lambda: {
+        NONE: (tr("No groups"), None),
+        "folder": (tr("Folder"), _folder),
+        "stance": (tr("Stance"), _stance),
+        "tag": (tr("Tag"), _tag),
+        "layer": (tr("Layer"), _layer),
+        "kind": (tr("Kind"), _kind),
+    }
+)

@@ -27,9 +27,8 @@ from app.features.library.clip_layout import ClipLayout
 from app.features.library.clip_rows import ENTRY, ClipRows, Index
 from app.features.library.clip_scrub import ClipScrub
 from app.features.library.clip_sizes import SIZES, Style, cell_of
-from app.look.plural import many
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_plural
 from app.widgets.mime import drag_picture, load_of, mime
 
 Move = QAbstractItemView.CursorAction
@@ -331,7 +330,11 @@ class ClipList(QListView):
         drag = QDrag(self)
         drag.setMimeData(mime(clips=[e.id for e in chosen]))
         names = self.delegate.names
-        words = " ".join(names.of(chosen[0])) if len(chosen) == 1 else many(len(chosen), "clip")
+        words = (
+            " ".join(names.of(chosen[0]))
+            if len(chosen) == 1
+            else tr_plural("{count:,} clip", "{count:,} clips", len(chosen))
+        )
         picture = self.delegate.pictures.thumbnails.picture(chosen[0].id, bare=True)
         drag.setPixmap(drag_picture(words.strip(), self, picture))
         drag.setHotSpot(QPoint(-14, -10))  # beside the pointer: what lies under that stays in sight

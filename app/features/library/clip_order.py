@@ -9,7 +9,7 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from app.features.library.clip_facts import ClipFacts
-from app.translation import tr
+from app.translation import tr, translated
 from metagraph.graph.clip_mark import COLORS
 from metagraph.graph.model import KINDS, LAYERS, ClipEntry
 from metagraph.motion.moving import PARTS
@@ -66,18 +66,20 @@ def _by(first: Key) -> Key:
     return lambda facts, entry: (first(facts, entry), natural(entry.name))
 
 
-ORDERS: dict[str, tuple[str, Key]] = {
-    GIVEN: (tr("As imported"), lambda facts, entry: ()),
-    "name": (tr("Name"), lambda facts, entry: natural(entry.name)),
-    "length": (tr("Length"), _by(lambda facts, entry: entry.duration)),
-    "moves": (tr("What moves"), _by(_moves)),
-    "use": (tr("Layer and kind"), _by(first_use)),
-    "stance": (tr("Stance"), _by(_stance)),
-    "uses": (tr("Times used"), _by(lambda facts, entry: -len(facts.uses(entry)))),
-    "problems": (tr("Problems"), _by(lambda facts, entry: -facts.problems(entry))),
-    "rating": (tr("Stars"), _by(lambda facts, entry: -facts.mark(entry).rating)),
-    "color": (tr("Colour label"), _by(_color)),
-    "favourite": (tr("Favourites first"), _by(lambda facts, entry: not facts.mark(entry).favourite)),
-    "folder": (tr("Folder and file"), _folder),
-    "missing": (tr("Missing ones first"), _by(lambda facts, entry: entry.motion is not None)),
-}
+ORDERS: dict[str, tuple[str, Key]] = translated(
+    lambda: {
+        GIVEN: (tr("As imported"), lambda facts, entry: ()),
+        "name": (tr("Name"), lambda facts, entry: natural(entry.name)),
+        "length": (tr("Length"), _by(lambda facts, entry: entry.duration)),
+        "moves": (tr("What moves"), _by(_moves)),
+        "use": (tr("Layer and kind"), _by(first_use)),
+        "stance": (tr("Stance"), _by(_stance)),
+        "uses": (tr("Times used"), _by(lambda facts, entry: -len(facts.uses(entry)))),
+        "problems": (tr("Problems"), _by(lambda facts, entry: -facts.problems(entry))),
+        "rating": (tr("Stars"), _by(lambda facts, entry: -facts.mark(entry).rating)),
+        "color": (tr("Colour label"), _by(_color)),
+        "favourite": (tr("Favourites first"), _by(lambda facts, entry: not facts.mark(entry).favourite)),
+        "folder": (tr("Folder and file"), _folder),
+        "missing": (tr("Missing ones first"), _by(lambda facts, entry: entry.motion is not None)),
+    }
+)

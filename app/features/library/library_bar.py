@@ -9,19 +9,21 @@ from app.features.library.clip_sizes import Style, steps
 from app.look import icons
 from app.look.theme import theme
 from app.look.theme_choice import ThemeChoice
-from app.translation import tr
+from app.translation import tr, translated
 from app.widgets.making import make_widget
 from app.widgets.one_stop import OneStop
 from app.widgets.quiet_fields import Scrub
 
-BUTTONS: dict[Style, tuple[str, str, str]] = {
-    "cards": ("grid", tr("Cards"), tr("Pictures, as large as the slider says; small ones are lines")),
-    "columns": (
-        "list",
-        tr("Columns"),
-        tr("A list with columns; a click on a title sorts, its menu shows and hides"),
-    ),
-}
+BUTTONS: dict[Style, tuple[str, str, str]] = translated(
+    lambda: {
+        "cards": ("grid", tr("Cards"), tr("Pictures, as large as the slider says; small ones are lines")),
+        "columns": (
+            "list",
+            tr("Columns"),
+            tr("A list with columns; a click on a title sorts, its menu shows and hides"),
+        ),
+    }
+)
 
 
 class LibraryBar(QWidget):

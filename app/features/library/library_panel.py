@@ -35,12 +35,11 @@ from app.features.library.library_bar import LibraryBar
 from app.features.library.library_menu import LibraryMenu
 from app.features.library.library_settings import LibrarySettings
 from app.features.library.search_field import Search
-from app.look.plural import many
 from app.project.document import Document
 from app.project.load import readable
 from app.stage.session import Session
 from app.stage.thumbnails import Thumbnails
-from app.translation import tr
+from app.translation import tr, tr_noop, tr_plural
 from app.widgets.flow import Flow
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
@@ -48,7 +47,7 @@ from app.widgets.one_stop import OneStop
 from metagraph.graph.model import ClipEntry, Project
 from metagraph.graph.problem import Problem
 
-EMPTY = tr("Drop a folder of clips here\n\n{}")
+EMPTY = tr_noop("Drop a folder of clips here\n\n{}")
 PLACED = {"all": None, "unlabelled": False, "labelled": True}  # what the chips ask for
 MENU_ASKS = ("layer", "kind", "color", "stars", "favourite", "noted", "broken")
 AHEAD = 20  # clips looked at in one go for what they move
@@ -217,7 +216,7 @@ class LibraryPanel(QWidget):
         page = QWidget(self)
         box = QVBoxLayout(page)
         box.addStretch(2)
-        self.empty = QLabel(EMPTY.format(readable()), page)
+        self.empty = QLabel(tr(EMPTY).format(readable()), page)
         self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.empty.setProperty("dim", True)
         self.empty.setWordWrap(True)
@@ -293,7 +292,9 @@ class LibraryPanel(QWidget):
         loose = sum(1 for c in project.clips if c not in project.uses and c not in project.drawn)
         self.chips["unlabelled"].setText(tr("Unlabelled {loose}", loose=loose) if total else tr("Unlabelled"))
         self.search.setPlaceholderText(
-            tr("Search {clips}", clips=many(total, "clip")) if total else tr("Search")
+            tr("Search {clips}", clips=tr_plural("{count:,} clip", "{count:,} clips", total))
+            if total
+            else tr("Search")
         )
         nothing = not total
         found = len(self.rows.entries)
@@ -303,7 +304,7 @@ class LibraryPanel(QWidget):
         if hidden:
             self.empty.setText(tr("No clip matches.\nClear the search or the filters."))
         else:
-            self.empty.setText(EMPTY.format(readable()))
+            self.empty.setText(tr(EMPTY).format(readable()))
         self.stack.setCurrentIndex(1 if nothing or hidden else 0)
 
     def next_unlabelled(self, clip: str) -> str | None:

@@ -29,14 +29,13 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.lines.line_files import LISTS, SOUNDS, Lines, add_lines, read_lines
-from app.look.plural import many
 from app.look.theme import Theme, theme
 from app.project.chosen import keep_chosen
 from app.project.document import Document, Edit
 from app.project.jobs import Jobs
 from app.stage.performance import Performance
 from app.stage.session import Session
-from app.translation import tr, tr_error, tr_told
+from app.translation import tr, tr_error, tr_noop, tr_phrase, tr_plural, translated
 from app.widgets.flow import Flow
 from app.widgets.making import make_widget
 from metagraph.graph.edit_error import EditError
@@ -45,10 +44,10 @@ from metagraph.graph.model import Project
 from metagraph.graph.requests import Line, Say
 from metagraph.playback.planning.line_lengths import spoken_seconds
 
-COLUMNS = (tr("Id"), tr("Words"), tr("Sound"), tr("Length"), tr("With it"))
+COLUMNS = translated(lambda: (tr("Id"), tr("Words"), tr("Sound"), tr("Length"), tr("With it")))
 ID, WORDS, SOUND, LENGTH, ASKS = range(5)
 WIDEST = 180  # pixels of the ids at most
-EMPTY = tr(
+EMPTY = tr_noop(
     "Drop sound files here, or a list (CSV: id, text, sound).\nAn agent then says a line by its id, and "
     "the lips follow its sound."
 )
@@ -149,7 +148,7 @@ class LinesPanel(QWidget):
         self.table.deleted.connect(self.remove)
         self.table.said.connect(self.say)
         layout.addWidget(self.table, 1)
-        self.empty = QLabel(EMPTY, self, alignment=Qt.AlignmentFlag.AlignCenter)
+        self.empty = QLabel(tr(EMPTY), self, alignment=Qt.AlignmentFlag.AlignCenter)
         self.empty.setProperty("dim", True)
         layout.addWidget(self.empty, 1)
         document.changed.connect(self._edited)
@@ -209,7 +208,7 @@ class LinesPanel(QWidget):
         self.empty.setVisible(not project.lines)
         self.search.setVisible(bool(project.lines))
         silent = sum(1 for x in project.lines.values() if not x.audio)
-        words = many(len(project.lines), "line") if project.lines else ""
+        words = tr_plural("{count:,} line", "{count:,} lines", len(project.lines)) if project.lines else ""
         self.words.setText(
             tr("{lines}, {silent} without sound", lines=words, silent=silent) if silent else words
         )
@@ -220,7 +219,7 @@ class LinesPanel(QWidget):
         project = self.document.project
         lost = bool(line.audio) and ident not in project.voices
         seconds = spoken_seconds(project, ident, line.text)
-        asks = many(len(line.asks), "request") if line.asks else ""
+        asks = tr_plural("{count:,} request", "{count:,} requests", len(line.asks)) if line.asks else ""
         texts = (ident, line.text, Path(line.audio).name if line.audio else "", f"{seconds:.1f} s", asks)
         for column, text in enumerate(texts):
             item = self.table.item(n, column)
@@ -292,7 +291,9 @@ class LinesPanel(QWidget):
             return project
 
         if chosen:
-            self._try(tr("Remove {what}", what=many(len(chosen), "line")), edit)
+            self._try(
+                tr("Remove {what}", what=tr_plural("{count:,} line", "{count:,} lines", len(chosen))), edit
+            )
 
     def add_words(self) -> None:
         """Add a line and let its words be typed."""
@@ -322,10 +323,13 @@ class LinesPanel(QWidget):
 
         def done(read: Lines) -> None:
             if read.lines:
-                self._try(tr("Add {what}", what=many(len(read.lines), "line")), lambda p: add_lines(p, read))
+                self._try(
+                    tr("Add {what}", what=tr_plural("{count:,} line", "{count:,} lines", len(read.lines))),
+                    lambda p: add_lines(p, read),
+                )
             if read.notes:
                 more = tr(" (and {count} more)", count=len(read.notes) - 1) if len(read.notes) > 1 else ""
-                self.told.emit(tr_told(read.notes[0]) + more)
+                self.told.emit(tr_phrase(read.notes[0]) + more)
 
         self.jobs.start(
             tr("Reading lines"),

@@ -18,15 +18,14 @@ from PySide6.QtWidgets import (
 
 from app.features.manual import manual_many
 from app.features.manual.manual_canvas import ManualCanvas
-from app.look.plural import many
-from app.translation import tr
+from app.translation import tr, tr_noop, tr_plural
 from app.widgets.form_fields import Chooser, Field
 from app.widgets.making import make_widget
 from metagraph.graph.manual import groups as manual_groups
 from metagraph.graph.manual.machine import Alias
 from metagraph.graph.name_search import fits
 
-NO_ENTRY = tr("no entry: nothing leads to it")
+NO_ENTRY = tr_noop("no entry: nothing leads to it")
 IDENT = Qt.ItemDataRole.UserRole
 
 
@@ -103,13 +102,13 @@ class AliasPage(QWidget):
         self.words.setText(
             tr(
                 "An alias stands for {inside}; {leave} can be taken from each.",
-                inside=many(len(inside), "state"),
-                leave=many(leave, "link"),
+                inside=tr_plural("{count:,} state", "{count:,} states", len(inside)),
+                leave=tr_plural("{count:,} link", "{count:,} links", leave),
             )
         )
         self.every.setChecked(first.every)
         self.again.setChecked(first.again)
-        entries: list[tuple[str, object]] = [(NO_ENTRY, "")]
+        entries: list[tuple[str, object]] = [(tr(NO_ENTRY), "")]
         entries += [(manual.states[i].name, i) for i in manual.states if i in inside or i == first.entry]
         self.entry.show_entries(entries, first.entry or "")
         self.list.blockSignals(True)

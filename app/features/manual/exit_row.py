@@ -7,17 +7,19 @@ from typing import Any, Literal
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
-from app.translation import tr
+from app.translation import tr, translated
 from app.widgets.form_fields import MIXED, Chooser, Mixed, Seconds, common
 from metagraph.graph.manual.machine import Link
 
 Way = Literal["none", "end", "part", "time"]
-WORDS: dict[Way, str] = {
-    "none": tr("none"),
-    "end": tr("when the source ends"),
-    "part": tr("at a share of it"),
-    "time": tr("at a time of its clip"),
-}
+WORDS: dict[Way, str] = translated(
+    lambda: {
+        "none": tr("none"),
+        "end": tr("when the source ends"),
+        "part": tr("at a share of it"),
+        "time": tr("at a time of its clip"),
+    }
+)
 
 
 def way_of(link: Link) -> Way:
@@ -61,7 +63,7 @@ class ExitRow(QWidget):
         when = common([x.condition.when for x in links])
         none = {"request": tr("at once"), "finished": tr("at its end")}.get(str(when), tr("none"))
         entries = [(none if way == "none" else words, way) for way, words in WORDS.items()]
-        self.way.show_entries(entries, None if ways is Mixed else ways, MIXED)
+        self.way.show_entries(entries, None if ways is Mixed else ways, tr(MIXED))
         self.time.setVisible(ways == "time")
         self.part.setVisible(ways == "part")
         if ways == "time":

@@ -15,9 +15,8 @@ from app.features.manual.arranging import arranged
 from app.features.manual.drags.host import ManualHost
 from app.features.manual.manual_painter import facts, words_of
 from app.features.manual.manual_scene import ManualHit
-from app.look.plural import many
 from app.project.load import Load
-from app.translation import tr, tr_told
+from app.translation import tr, tr_phrase, tr_plural
 from metagraph.graph.manual import edits as manual_edits
 from metagraph.graph.manual.machine import ANY, Link
 from metagraph.graph.model import Project
@@ -88,7 +87,7 @@ def duplicate(canvas: ManualHost) -> None:
 
 
 def _states(piece: manual_edits.CopiedPiece) -> str:
-    return many(len(piece.states), "state")
+    return tr_plural("{count:,} state", "{count:,} states", len(piece.states))
 
 
 def _paste(canvas: ManualHost, piece: manual_edits.CopiedPiece, x: float, y: float, words: str) -> None:
@@ -247,7 +246,7 @@ def _fill_alias(canvas: ManualHost, add: Callable[..., None], alias: str, chosen
     """Offer what can be done with an alias. chosen: the states that were selected before."""
     add(tr("Select its states"), lambda: manual_many.select_members(canvas, alias))
     if chosen:
-        count = many(len(chosen), "selected state")
+        count = tr_plural("{count:,} selected state", "{count:,} selected states", len(chosen))
         add(tr("Add {count}", count=count), lambda: manual_many.choose(canvas, alias, chosen))
         add(tr("Take away {count}", count=count), lambda: manual_many.choose(canvas, alias, chosen, False))
 
@@ -260,7 +259,7 @@ def _show_all(canvas: ManualHost) -> None:
 def drop_words(project: Project, load: Load) -> tuple[bool, str]:
     """Return whether a drop makes states, and what it does or why not."""
     why = manual_edits.refusal(project, load.clips) if load.clips else None
-    words = tr_told(why or "") or (
+    words = tr_phrase(why or "") or (
         tr("drop to make {count} states here", count=load.count)
         if load.count > 1
         else tr("drop to make a state here")

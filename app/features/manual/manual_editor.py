@@ -11,15 +11,14 @@ from app.features.manual import manual_commands as commands
 from app.features.manual import manual_many
 from app.features.manual.manual_canvas import ManualCanvas
 from app.features.manual.manual_inspector import Inspector
-from app.look.plural import many
-from app.translation import tr, tr_told
+from app.translation import tr, tr_noop, tr_phrase, tr_plural
 from app.widgets.form_fields import Chooser
 from app.widgets.making import make_widget
 from metagraph.graph.model import Project
 from metagraph.graph.name_search import fits
 from metagraph.graph.problem import Problem
 
-FIND = tr("Select the states whose names hold these words (/): sit wave, sit -wave, sit | stand")
+FIND = tr_noop("Select the states whose names hold these words (/): sit wave, sit -wave, sit | stand")
 
 
 class ManualEditor(QWidget):
@@ -31,7 +30,7 @@ class ManualEditor(QWidget):
         self.inspector = Inspector(canvas, canvas.performance)
         self.words = QLabel(self)
         self.words.setProperty("dim", True)
-        self.search = make_widget(QLineEdit, self, toolTip=FIND)
+        self.search = make_widget(QLineEdit, self, toolTip=tr(FIND))
         self.search.setPlaceholderText(tr("Find states"))
         self.search.setAccessibleName(tr("Find states"))
         self.search.setClearButtonEnabled(True)
@@ -91,9 +90,9 @@ class ManualEditor(QWidget):
         self.words.setText(
             tr(
                 "{states}, {links} for {ways}    {zoom}",
-                states=many(len(manual.states), "state"),
-                links=many(len(manual.links), "link"),
-                ways=many(len(manual.ways), "connection"),
+                states=tr_plural("{count:,} state", "{count:,} states", len(manual.states)),
+                links=tr_plural("{count:,} link", "{count:,} links", len(manual.links)),
+                ways=tr_plural("{count:,} connection", "{count:,} connections", len(manual.ways)),
                 zoom=zoom,
             )
         )
@@ -141,8 +140,8 @@ class ManualEditor(QWidget):
         for p in problems:
             ident = p.state or p.link
             if ident and p.severity != "hint":
-                message = tr_told(p.message)
-                troubles.setdefault(ident, f"{message[:1].upper()}{message[1:]}. {tr_told(p.remedy)}")
+                message = tr_phrase(p.message)
+                troubles.setdefault(ident, f"{message[:1].upper()}{message[1:]}. {tr_phrase(p.remedy)}")
         self.canvas.set_troubles(troubles)
         self.inspector.show_selection()
 

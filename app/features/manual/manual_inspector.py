@@ -28,10 +28,9 @@ from app.features.manual.exit_row import ExitRow
 from app.features.manual.manual_canvas import ManualCanvas
 from app.features.manual.manual_mask import StateMask
 from app.look.domain_words import LAYER_LONG_TITLES
-from app.look.plural import many
 from app.look.theme import theme
 from app.stage.performance import Performance
-from app.translation import tr
+from app.translation import tr, tr_plural, translated
 from app.widgets.choice_row import LimbRow
 from app.widgets.form_fields import MIXED, Chooser, Field, Mixed, Seconds, common
 from app.widgets.making import make_widget
@@ -41,7 +40,7 @@ from metagraph.graph.manual.machine import Link, State
 from metagraph.graph.model import LIMBS, Project
 from metagraph.playback.manual_playback import action_of
 
-WHEN = ((tr("when its source has finished"), "finished"), (tr("on request"), "request"))
+WHEN = translated(lambda: ((tr("when its source has finished"), "finished"), (tr("on request"), "request")))
 
 
 class Inspector(QScrollArea):
@@ -255,9 +254,9 @@ class Inspector(QScrollArea):
         self.words.setText(
             tr(
                 "{states}, {links} for {ways}. Select one to change it, or many to change all.",
-                states=many(len(manual.states), "state"),
-                links=many(len(manual.links), "link"),
-                ways=many(len(manual.ways), "connection"),
+                states=tr_plural("{count:,} state", "{count:,} states", len(manual.states)),
+                links=tr_plural("{count:,} link", "{count:,} links", len(manual.links)),
+                ways=tr_plural("{count:,} connection", "{count:,} connections", len(manual.ways)),
             )
         )
         self.start.show_entries(
@@ -280,7 +279,10 @@ class Inspector(QScrollArea):
         project, one = self.document.project, len(states) == 1
         first = states[0]
         self.name.setEnabled(one)
-        self.name.show_text(first.name if one else many(len(states), "state"), tuple(s.id for s in states))
+        self.name.show_text(
+            first.name if one else tr_plural("{count:,} state", "{count:,} states", len(states)),
+            tuple(s.id for s in states),
+        )
         clips = {
             project.clips[s.clip].name if s.clip in project.clips else tr("a clip that is gone")
             for s in states
@@ -288,7 +290,7 @@ class Inspector(QScrollArea):
         self.clip.setText(
             tr("plays {clip}", clip=next(iter(clips)))
             if len(clips) == 1
-            else tr("play {clips}", clips=many(len(clips), "clip"))
+            else tr("play {clips}", clips=tr_plural("{count:,} clip", "{count:,} clips", len(clips)))
         )
         loop = common([s.loop for s in states])
         self.loop.setTristate(loop is Mixed)
@@ -298,7 +300,7 @@ class Inspector(QScrollArea):
         self.last.show_value(common([round(b, 4) for _, b in spans]))
         self.limb.show_limb(common([s.limb for s in states]))
         masks = common([(s.joints, s.joint_weights) for s in states])
-        self.joints.setText(MIXED if masks is Mixed else _moved(*masks))
+        self.joints.setText(tr(MIXED) if masks is Mixed else _moved(*masks))
         self.joints.setEnabled(project.skeleton is not None)
         self.layer.setText(tr(first.layer))
         start = self.canvas.scene().manual.start
@@ -312,11 +314,11 @@ class Inspector(QScrollArea):
         source, target = (project.state(i) or project.alias(i) for i in (links[0].source, links[0].target))
         begins = escape(source.name) if source else tr("Any state")
         names = f"{begins} → {escape(target.name) if target else '?'}"
-        self.ends.setText(names if one else many(len(links), "link"))
+        self.ends.setText(names if one else tr_plural("{count:,} link", "{count:,} links", len(links)))
         when = common([x.condition.when for x in links])
-        self.when.show_entries(WHEN, None if when is Mixed else when, MIXED)
+        self.when.show_entries(WHEN, None if when is Mixed else when, tr(MIXED))
         trigger = common([x.condition.trigger for x in links])
-        self.trigger.show_text(MIXED if trigger is Mixed else trigger, tuple(x.id for x in links))
+        self.trigger.show_text(tr(MIXED) if trigger is Mixed else trigger, tuple(x.id for x in links))
         self.form.setRowVisible(self.trigger, when != "finished")
         self.form.setRowVisible(self.weight, when != "request")
         self.weight.show_value(common([x.condition.weight for x in links]))
@@ -379,7 +381,7 @@ class Inspector(QScrollArea):
     def _retrigger(self) -> None:
         links, words = self.links(), self.trigger.text()
         mixed = bool(links) and common([x.condition.trigger for x in links]) is Mixed
-        if links and not (mixed and words == MIXED) and any(x.condition.trigger != words for x in links):
+        if links and not (mixed and words == tr(MIXED)) and any(x.condition.trigger != words for x in links):
             self._link(tr("Change trigger"), condition={"trigger": words})
 
     def _weigh(self, value: float) -> None:

@@ -7,8 +7,7 @@ from pathlib import Path
 from PySide6.QtWidgets import QApplication, QFileDialog, QWidget
 
 from app.features.manual.drags.host import ManualHost
-from app.look.plural import many
-from app.translation import tr, tr_error
+from app.translation import tr, tr_error, tr_noop, tr_plural
 from metagraph.errors import FileError
 from metagraph.formats import manual_table
 from metagraph.formats.clips import is_face_recording
@@ -16,7 +15,7 @@ from metagraph.graph.manual import groups as manual_groups
 from metagraph.graph.manual.machine import Link
 from metagraph.graph.model import Project
 
-TABLES = tr("Tables (*.csv *.tsv *.txt)")
+TABLES = tr_noop("Tables (*.csv *.tsv *.txt)")
 SUFFIXES = (".csv", ".tsv")
 
 
@@ -108,7 +107,7 @@ def copy_table(canvas: ManualHost) -> None:
 
 
 def choose_table(canvas: ManualHost, parent: QWidget, start: str) -> None:
-    name, _ = QFileDialog.getOpenFileName(parent, tr("Import links from a table"), start, TABLES)
+    name, _ = QFileDialog.getOpenFileName(parent, tr("Import links from a table"), start, tr(TABLES))
     if name:
         import_table(canvas, Path(name))
 
@@ -128,9 +127,17 @@ def _fill(canvas: ManualHost, rows: list[manual_table.Row], name: str) -> None:
 
 def words(out: manual_table.Filled, name: str) -> str:
     """Say what came of a table, and of its rows that could not be read the first."""
-    said = tr("{links} drawn from {name}", links=many(out.links, "link"), name=name)
+    said = tr(
+        "{links} drawn from {name}",
+        links=tr_plural("{count:,} link", "{count:,} links", out.links),
+        name=name,
+    )
     if out.changed:
         said += tr(", {changed:,} changed", changed=out.changed)
     if out.problems:
-        said += tr("; {rows} left out: {first}", rows=many(len(out.problems), "row"), first=out.problems[0])
+        said += tr(
+            "; {rows} left out: {first}",
+            rows=tr_plural("{count:,} row", "{count:,} rows", len(out.problems)),
+            first=out.problems[0],
+        )
     return said

@@ -11,12 +11,12 @@ from PySide6.QtGui import QColor, QPainter, QPen
 from app.features.manual import manual_painter as painter
 from app.features.manual.manual_scene import ManualHit
 from app.stage.playback_source import Shown
-from app.translation import tr
+from app.translation import tr, tr_noop
 from metagraph.graph.model import Layer
 from metagraph.playback.manual_playback import clip_seconds
 
 TOLD = 8  # selected links, up to which each tells what it waits for
-EMPTY = tr("Drop clips here to make states. Drag from a state's border to draw a link.")
+EMPTY = tr_noop("Drop clips here to make states. Drag from a state's border to draw a link.")
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ def paint_over(p: QPainter, look: painter.ManualLook, marks: Marks, rect: QRectF
         p.setPen(strong if marks.dropping else dim)
         p.setFont(look.font)
         where = Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignBottom
-        p.drawText(rect.adjusted(20, 20, -20, -20), where, marks.dropping or EMPTY)
+        p.drawText(rect.adjusted(20, 20, -20, -20), where, marks.dropping or tr(EMPTY))
 
 
 def _nodes(p: QPainter, look: painter.ManualLook, marks: Marks) -> None:

@@ -14,9 +14,8 @@ from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPen, QPixmap, QPolygonF
 
 from app.features.manual.manual_scene import LOOP, ManualScene, ManualView
-from app.look.plural import many
 from app.look.theme import Theme
-from app.translation import tr
+from app.translation import tr, tr_plural
 from metagraph.graph.manual.machine import ANY, Alias, Link, State
 from metagraph.graph.model import Project
 
@@ -281,7 +280,7 @@ def paint_alias(painter: QPainter, look: ManualLook, alias: Alias, rect: QRectF)
         return
     room = 14 * scale if scale >= SMALL else 3
     inner = rect.adjusted(room, 0, -room, 0)
-    words = tr("every state") if alias.every else many(count, "state")
+    words = tr("every state") if alias.every else tr_plural("{count:,} state", "{count:,} states", count)
     if alias.entry is not None:
         words += tr(", enters {name}", name=look.scene.manual.states[alias.entry].name)
     lines = [(alias.name, max(9.5, 12 * scale), True, t.text)]

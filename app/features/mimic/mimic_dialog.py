@@ -23,10 +23,9 @@ from PySide6.QtWidgets import (
     QVBoxLayout,
 )
 
-from app.look.plural import many
 from app.look.theme import strengthen
 from app.project.jobs import Job
-from app.translation import tr, tr_error
+from app.translation import tr, tr_error, tr_noop, tr_plural
 from metagraph.formats.keypoints.reader import read_keypoints
 from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import LAYERS, Project
@@ -37,7 +36,7 @@ from metagraph.mimicry.performing import REST, Mimicry, mimic_performance, place
 if TYPE_CHECKING:
     from app.shell.context import Shell
 
-FILTER = tr("Keypoints of OpenPose or MediaPipe (*.json *.jsonl);;All files (*)")
+FILTER = tr_noop("Keypoints of OpenPose or MediaPipe (*.json *.jsonl);;All files (*)")
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "keypoints" / "conversation.openpose.json"
 _NUMBERED = re.compile(r"_\d+_keypoints\.json$", re.I)
 
@@ -55,7 +54,8 @@ class MimicDialog(QDialog):
         self.setMinimumWidth(480)
         layout = QVBoxLayout(self)
         deep = tr("with depth") if keypoints.dims == 3 else tr("without depth")
-        facts = QLabel(f"{name}: {many(len(keypoints), 'frame')}, {keypoints.seconds:.1f} s, {deep}", self)
+        frames = tr_plural("{count:,} frame", "{count:,} frames", len(keypoints))
+        facts = QLabel(f"{name}: {frames}, {keypoints.seconds:.1f} s, {deep}", self)
         facts.setWordWrap(True)
         layout.addWidget(facts)
         for note in keypoints.notes:
@@ -181,7 +181,7 @@ def _taken(shell: Shell, found: Mimicry, stage: str | None) -> None:
     shell.tell(
         tr(
             "Saw {stances}: the requests are in the performance below.",
-            stances=many(len(found.sightings), "stance"),
+            stances=tr_plural("{count:,} stance", "{count:,} stances", len(found.sightings)),
         )
     )
 
@@ -200,7 +200,7 @@ def open_keypoints(shell: Shell, path: str | Path | None = None) -> None:
     """Ask for keypoints (or take `path`), read them on a thread and open the dialog."""
     if not path:
         start = str(QSettings().value("mimic/folder") or shell.document.folder or Path.home())
-        path, _ = QFileDialog.getOpenFileName(shell.widget, tr("Mimic keypoints"), start, FILTER)
+        path, _ = QFileDialog.getOpenFileName(shell.widget, tr("Mimic keypoints"), start, tr(FILTER))
         if not path:
             return
         QSettings().setValue("mimic/folder", str(Path(path).parent))

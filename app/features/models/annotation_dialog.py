@@ -29,12 +29,12 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.models.meaning_choices import ChoiceTable, Entries, MeaningRow
-from app.look.plural import listed, many
+from app.look.plural import listed
 from app.look.theme import KIND_MARKS, strengthen, theme
 from app.project.annotation_reading import Reading, begin, into, told
 from app.project.document import Document
 from app.stage.session import Session
-from app.translation import grouped, tr, tr_error, tr_noop
+from app.translation import group_thousands, tr, tr_error, tr_noop, tr_plural, translated
 from app.widgets.act_strip import Strip, clock
 from app.widgets.form_fields import Seconds
 from app.widgets.making import make_widget
@@ -47,24 +47,28 @@ if TYPE_CHECKING:
     from app.shell.context import Shell
 
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "annotation" / "conversation.eaf"
-FILTER = tr("ELAN annotations (*.eaf);;All files (*)")
+FILTER = tr_noop("ELAN annotations (*.eaf);;All files (*)")
 MOST = 1000  # labels that can be said otherwise; those beyond are rare
 REMEMBERED = 400  # tiers and labels that are kept for the next project
 WORTH = 10  # acts from which a model is learned unless said otherwise
 OTHER = "other"
-LEGEND = (("gesture", tr("gesture")), ("fidget", tr("fidget")), ("transition", tr("change of stance")))
-ROLE_TIPS = {
-    "left arm": tr("What the left arm does: gestures, fidgets, changes of stance"),
-    "right arm": tr("What the right arm does: gestures, fidgets, changes of stance"),
-    "arms": tr("Gestures of one or both arms that the annotation does not tell apart"),
-    "head action": tr("Nods, shakes and the like"),
-    "head stance": tr("How the head is held, or changes between that"),
-    "body": tr("How body, legs and spine stand, or changes between that"),
-    "speech": tr(
-        "When the one who is watched speaks: the models learn what is done talking, listening and idle"
-    ),
-    "partner's speech": tr("When the other speaks"),
-}
+LEGEND = translated(
+    lambda: (("gesture", tr("gesture")), ("fidget", tr("fidget")), ("transition", tr("change of stance")))
+)
+ROLE_TIPS = translated(
+    lambda: {
+        "left arm": tr("What the left arm does: gestures, fidgets, changes of stance"),
+        "right arm": tr("What the right arm does: gestures, fidgets, changes of stance"),
+        "arms": tr("Gestures of one or both arms that the annotation does not tell apart"),
+        "head action": tr("Nods, shakes and the like"),
+        "head stance": tr("How the head is held, or changes between that"),
+        "body": tr("How body, legs and spine stand, or changes between that"),
+        "speech": tr(
+            "When the one who is watched speaks: the models learn what is done talking, listening and idle"
+        ),
+        "partner's speech": tr("When the other speaks"),
+    }
+)
 ROLE_TITLES = (
     tr_noop("Left arm"),
     tr_noop("Right arm"),
@@ -73,13 +77,15 @@ ROLE_TITLES = (
     tr_noop("Partner's speech"),
     tr_noop("Ignore"),
 )  # beside layers, as they are shown
-ROLE_ENTRIES: Entries = [
-    (tr(role.capitalize()), role, ROLE_TIPS.get(role, "")) for role in (*ROLES, *SPEECH, IGNORE)
-]
-MEANING_TIPS = {
-    "stance": tr("The label names the stance that is held: where another begins, the stance changes"),
-    **dict.fromkeys(PHASES, tr("A phase of a gesture: phases that follow each other are one gesture")),
-}
+ROLE_ENTRIES: Entries = translated(
+    lambda: [(tr(role.capitalize()), role, ROLE_TIPS.get(role, "")) for role in (*ROLES, *SPEECH, IGNORE)]
+)
+MEANING_TIPS = translated(
+    lambda: {
+        "stance": tr("The label names the stance that is held: where another begins, the stance changes"),
+        **dict.fromkeys(PHASES, tr("A phase of a gesture: phases that follow each other are one gesture")),
+    }
+)
 
 
 def meaning_entries(meaning: str) -> list[tuple[str, object, str]]:
@@ -152,8 +158,8 @@ class AnnotateDialog(QDialog):
         count = sum(len(t.intervals) for t in annotation.tiers)
         facts = [
             clock(round(annotation.end, 1)),
-            many(len(annotation.tiers), "tier"),
-            many(count, "interval"),
+            tr_plural("{count:,} tier", "{count:,} tiers", len(annotation.tiers)),
+            tr_plural("{count:,} interval", "{count:,} intervals", count),
         ]
         if len(people) > 1:
             facts.append(
@@ -306,7 +312,10 @@ class AnnotateDialog(QDialog):
             tip = f"{of}: {some}" if some else tr("{of}: nothing in it", of=of)
             rows.append(
                 MeaningRow(
-                    (tier.name, grouped(len(tier.intervals))), tr(role.capitalize()), role == IGNORE, tip
+                    (tier.name, group_thousands(len(tier.intervals))),
+                    tr(role.capitalize()),
+                    role == IGNORE,
+                    tip,
                 )
             )
         self.tiers.show_rows(rows, tr("There is no tier in this annotation."))
@@ -314,7 +323,7 @@ class AnnotateDialog(QDialog):
     def _show_labels(self) -> None:
         rows = [
             MeaningRow(
-                (x.text or tr("(empty)"), tr(x.layer), grouped(x.count)),
+                (x.text or tr("(empty)"), tr(x.layer), group_thousands(x.count)),
                 meaning_words(x.meaning),
                 x.meaning == IGNORE,
                 x.text,
@@ -333,7 +342,9 @@ class AnnotateDialog(QDialog):
             fresh = first or not box.isEnabled()
             box.setEnabled(count > 0)
             name = tr(layer.capitalize())
-            box.setText(f"{name} ({many(count, 'action')})" if count else name)
+            box.setText(
+                f"{name} ({tr_plural('{count:,} action', '{count:,} actions', count)})" if count else name
+            )
             if fresh or not count:
                 box.setChecked(count >= WORTH)
         tagged = any(act.tags for acts in seen.values() for act in acts)
@@ -417,7 +428,7 @@ def open_annotation(
     """
     if not path:
         start = str(shell.document.folder or Path.home())
-        path, _ = QFileDialog.getOpenFileName(shell.widget, tr("Import annotation"), start, FILTER)
+        path, _ = QFileDialog.getOpenFileName(shell.widget, tr("Import annotation"), start, tr(FILTER))
         if not path:
             return
     file = SAMPLE if str(path) == "sample" else Path(path)
@@ -445,6 +456,11 @@ def open_annotation(
 
 def _taken(shell: Shell, observed: Mapping[Layer, Sequence[Act]], performance: str | None) -> None:
     count = sum(len(acts) for acts in observed.values())
-    shell.tell(tr("Read {count} from the annotation.", count=many(count, "action")))
+    shell.tell(
+        tr(
+            "Read {count} from the annotation.",
+            count=tr_plural("{count:,} action", "{count:,} actions", count),
+        )
+    )
     shell.panel("models").show_imported(observed, performance)
     shell.show("models")

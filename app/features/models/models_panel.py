@@ -27,12 +27,11 @@ from PySide6.QtWidgets import (
 from app.features.models.compare_plot import ComparePlot
 from app.features.models.heatmap import HeatMap
 from app.features.models.state_names import state_name
-from app.look.plural import many
 from app.look.theme import KIND_MARKS
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_noop, tr_plural
 from app.widgets.act_strip import Strip
 from app.widgets.form_fields import Chooser, Seconds
 from app.widgets.making import make_widget
@@ -55,7 +54,7 @@ SAMPLE = 60.0  # seconds of the sample
 TALL = 430  # pixels the panel likes to have, its title included
 IMPORTED = "imported"  # what was read last, whether or not it was kept
 MERGE = "matrix"
-TEACH = tr(
+TEACH = tr_noop(
     "<b>Nobody has been watched yet:</b> this is the {origin}. Annotate a video in ELAN, with a tier for "
     "each arm, the head and the body and labels such as <i>gesture, fidget, stance-transition, "
     "nodding</i>. <a href='learn'>Import the .eaf file</a> or drop it on the window: what follows what is "
@@ -241,7 +240,7 @@ class ModelsPanel(QWidget):
         self.title.setText(tr("{layer}: what follows what", layer=tr(layer.capitalize())))
         default = tr("default, from the paper") if layer == "arms" else tr("default")
         of = tr("learned or edited") if own else default
-        self.origin.setText(f"{of} · {many(len(shown.states), 'state')}")
+        self.origin.setText(f"{of} · {tr_plural('{count:,} state', '{count:,} states', len(shown.states))}")
         self.back.setEnabled(own)
         kinds = {kind for _, kind in project.graphs[layer].index}
         closed = (
@@ -289,7 +288,7 @@ class ModelsPanel(QWidget):
             if own
             else tr("default model of the {layer}", layer=layer)
         )
-        self.teach.setText(TEACH.format(origin=origin))
+        self.teach.setText(tr(TEACH).format(origin=origin))
 
     def _choose(self, place: int) -> None:
         self.source = self.chooser.itemData(place)

@@ -22,12 +22,21 @@ from PySide6.QtWidgets import (
 
 from app.look.theme import strengthen
 from app.project.document import Document
-from app.translation import grouped, tr, tr_noop
+from app.translation import group_thousands, tr, tr_noop, translated
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph.conversation.edits import set_rates
 from metagraph.graph.conversation.model import Rates
 
-HEADS = (tr("What goes together"), tr("Matched"), tr("Of"), tr("Rate"), tr("95 % interval"), tr("By chance"))
+HEADS = translated(
+    lambda: (
+        tr("What goes together"),
+        tr("Matched"),
+        tr("Of"),
+        tr("Rate"),
+        tr("95 % interval"),
+        tr("By chance"),
+    )
+)
 FIELDS = {
     tr_noop("clause with either hand"): "clause",
     tr_noop("response with a nod"): "response",
@@ -85,8 +94,8 @@ class RatesDialog(QDialog):
             seen = row.total > 0
             texts = (
                 tr(row.hypothesis)[:1].upper() + tr(row.hypothesis)[1:],
-                grouped(row.matched),
-                grouped(row.total),
+                group_thousands(row.matched),
+                group_thousands(row.total),
                 _share(row.rate) if seen else "–",
                 f"{_share(row.low)} – {_share(row.high)}" if seen else "–",
                 _share(row.chance) if seen else "–",

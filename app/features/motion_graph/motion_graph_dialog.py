@@ -34,12 +34,11 @@ from app.features.motion_graph.synthesis_jobs import (
     takes_of,
 )
 from app.features.motion_graph.takes_list import TakesList
-from app.look.plural import many
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.project.new_clips import pieces, save
 from app.stage.session import Session
-from app.translation import grouped, tr, tr_error
+from app.translation import group_thousands, tr, tr_error, tr_noop, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import DoubleSpinBox, SpinBox
 from metagraph.common.compiling import there
@@ -49,10 +48,10 @@ from metagraph.graph.model import Project
 
 KS = (2, 3, 4)  # of the table
 LONG = 4000  # ms after which a wait is explained
-WAIT = tr(
+WAIT = tr_noop(
     "Working… The first time after installing, the search is compiled for this machine: up to a minute."
 )
-LOADING = tr(
+LOADING = tr_noop(
     "Working… New motion needs a compiler, which is being loaded (60 MB, once); then the search is compiled "
     "for this machine. That takes a minute or two."
 )
@@ -323,12 +322,12 @@ class MotionGraphDialog(QDialog):
     def _explain(self) -> None:
         """Say why it takes so long, if it does."""
         if self._job is not None and not self.said.text():
-            self.said.setText(WAIT if there() else LOADING)
+            self.said.setText(tr(WAIT) if there() else tr(LOADING))
 
     def _ended(self) -> None:
         self._job = None
         self._long.stop()
-        if self.said.text() in (WAIT, LOADING):
+        if self.said.text() in (tr(WAIT), tr(LOADING)):
             self.said.setText("")
         self.progress.hide()
         self.stop.hide()
@@ -364,7 +363,7 @@ class MotionGraphDialog(QDialog):
     def _show_table(self, rows: Any) -> None:
         for row, k in enumerate(KS):
             found = rows.get(k)
-            texts = [str(k), *(("–",) * 4 if found is None else map(grouped, found))]
+            texts = [str(k), *(("–",) * 4 if found is None else map(group_thousands, found))]
             if found is not None and found[0]:
                 texts[3] += f"  ({found[2] / found[0]:.0%})".replace("%", " %")
             for column, text in enumerate(texts):
@@ -521,6 +520,6 @@ class MotionGraphDialog(QDialog):
         self.said.setText(
             tr(
                 "{clips} in the library, not labelled yet: Graph > Label clips… proposes what each is.",
-                clips=many(len(loaded), "clip"),
+                clips=tr_plural("{count:,} clip", "{count:,} clips", len(loaded)),
             )
         )

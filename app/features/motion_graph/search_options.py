@@ -21,17 +21,19 @@ from app.features.motion_graph.synthesis_jobs import Wish
 from app.features.motion_graph.takes_list import side_words
 from app.look.theme import strengthen
 from app.project.document import Document
-from app.translation import tr
+from app.translation import tr, translated
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.graph.conversation.model import SOUNDS, Segment, Side, Sound, heard_by
 
 WINDOW = 15.0  # seconds, as in the paper's evaluation
-KINDS: tuple[tuple[Sound, str], ...] = (
-    ("clause", tr("Clauses")),
-    ("response", tr("Responses")),
-    ("hesitation", tr("Partner's hesitations")),
-    ("idle", tr("Idle")),
+KINDS: tuple[tuple[Sound, str], ...] = translated(
+    lambda: (
+        ("clause", tr("Clauses")),
+        ("response", tr("Responses")),
+        ("hesitation", tr("Partner's hesitations")),
+        ("idle", tr("Idle")),
+    )
 )
 
 

@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from app.features.motion_graph.soft_wishes import spoken
-from app.look.plural import many
-from app.translation import tr
+from app.translation import tr, tr_plural
 from metagraph.graph.conversation.model import SOUNDS, Segment, Side, Sound, heard_by
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
@@ -81,7 +80,9 @@ def left_out(project: Project) -> str:
         (len(moving) - len(alike), tr("of another skeleton")),
         (len(project.clips) - len(moving), tr("whose file is missing")),
     )
-    told = [f"{many(count, 'clip')} {why}" for count, why in reasons if count]
+    told = [
+        f"{tr_plural('{count:,} clip', '{count:,} clips', count)} {why}" for count, why in reasons if count
+    ]
     return tr("Left out: {told}.", told=", ".join(told)) if told else ""
 
 
@@ -153,7 +154,7 @@ class FoundMotion:
             if not self.jumps
             else tr("{jumps} transitions, {rate:.2f} a second", jumps=self.jumps, rate=rate)
             if self.jumps > 1
-            else many(1, "transition")
+            else tr_plural("{count:,} transition", "{count:,} transitions", 1)
         )
         again = tr(
             "{repeated:.0%} of it shown again within 3 s, {rest}",

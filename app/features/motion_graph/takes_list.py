@@ -19,12 +19,12 @@ from PySide6.QtWidgets import (
 
 from app.features.motion_graph.synthesis_jobs import FOLDER, LONG, left_out, speech_of, usable
 from app.project.document import Document
-from app.translation import tr
+from app.translation import tr, tr_noop
 from metagraph.graph.conversation.edits import change_side
 from metagraph.graph.conversation.model import Conversation
 from metagraph.graph.model import Project
 
-NONE = tr("nothing known")
+NONE = tr_noop("nothing known")
 ROW = 30  # pixels
 HEARD = 2  # the column of what was heard
 
@@ -118,7 +118,7 @@ class TakesList(QWidget):
     def _heard(self, project: Project, clip: str) -> QTableWidgetItem:
         """Say which side of which conversation was recorded along with a clip; a click asks for another."""
         recorded = speech_of(project, clip)
-        words = NONE
+        words = tr(NONE)
         if recorded is not None:
             talk = project.conversations[recorded[0]]
             words = side_words(talk, recorded[1])
@@ -140,7 +140,7 @@ class TakesList(QWidget):
             for ident, talk in project.conversations.items()
             for n in range(len(talk.sides))
         ]
-        for key, words in [(None, NONE), *sides]:
+        for key, words in [(None, tr(NONE)), *sides]:
             action = self.menu.addAction(words, partial(self._tell_speech, clip, key))
             action.setCheckable(True)
             action.setChecked(key == now)

@@ -6,12 +6,11 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QToolButton, QWidget
 
 from app.look import icons
-from app.look.plural import many
 from app.look.theme import theme
 from app.shell.context import Contribution, HeaderItem, Panel, Shell
 from app.stage.compatibility_state import Compatibility
 from app.stage.problem_watch import ProblemWatch
-from app.translation import tr
+from app.translation import tr, tr_plural
 from app.widgets.restyling import set_sheet
 
 
@@ -66,7 +65,11 @@ class ProblemButton(QToolButton):
             look.error if any(p.severity == "error" for p in grave) else look.warning if grave else look.dim
         )
         self.setText(
-            many(len(grave), "problem") if grave else many(hints, "hint") if hints else tr("No problems")
+            tr_plural("{count:,} problem", "{count:,} problems", len(grave))
+            if grave
+            else tr_plural("{count:,} hint", "{count:,} hints", hints)
+            if hints
+            else tr("No problems")
         )
         self.setIcon(icons.icon("warning", color))
         set_sheet(self, f"color: {color}")

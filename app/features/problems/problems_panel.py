@@ -38,11 +38,10 @@ from PySide6.QtWidgets import (
 )
 
 from app.look import icons
-from app.look.plural import many
 from app.look.theme import theme
 from app.stage.fixes import Fix
 from app.stage.session import Session
-from app.translation import tr, tr_noop, tr_told
+from app.translation import tr, tr_noop, tr_phrase, tr_plural
 from metagraph.graph.problem import Problem
 
 MOST = 500  # rows; a project with more has one cause, seen long before
@@ -211,7 +210,7 @@ class ProblemsPanel(QWidget):
             inside = stance.name if stance else drawn.name if drawn else ""
             place = ", ".join(x for x in (tr(problem.layer or ""), inside) if x) or tr("project")
             fix = fixes.get(problem)
-            message, remedy = tr_told(problem.message), tr_told(problem.remedy)
+            message, remedy = tr_phrase(problem.message), tr_phrase(problem.remedy)
             item = QTreeWidgetItem([message, place, remedy, fix.words if fix is not None else ""])
             item.setIcon(0, icons.icon("warning", colors[problem.severity]))
             item.setForeground(0, QColor(look.text if problem.severity != "hint" else look.dim))
@@ -230,7 +229,9 @@ class ProblemsPanel(QWidget):
         self.stack.setCurrentIndex(1 if self.problems else 0)
         count = len(self.fixable())
         self.foot.setVisible(count > 1)
-        self.all.setText(tr("Mend {problems}", problems=many(count, "problem")))
+        self.all.setText(
+            tr("Mend {problems}", problems=tr_plural("{count:,} problem", "{count:,} problems", count))
+        )
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if event.type() == QEvent.Type.Resize and watched is self.tree.viewport():

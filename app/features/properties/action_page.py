@@ -19,11 +19,10 @@ from PySide6.QtWidgets import (
 from app.features.properties.page_form import Edit, form_in
 from app.features.properties.timing_plot import TimingPlot
 from app.features.properties.variation_rows import ActionRows
-from app.look.plural import many
 from app.look.theme import KIND_MARKS, KIND_TITLES, theme
 from app.project.document import Document
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_plural
 from app.widgets.choice_row import LimbRow
 from app.widgets.form_fields import MIXED, Chooser, Field, Mixed, Seconds, common
 from app.widgets.halves import Halves
@@ -146,7 +145,9 @@ class ActionPage(Halves):
         kind, layer = common([a.kind for a in actions]), common([a.layer for a in actions])
         self.name.setReadOnly(not one)
         of = tuple(a.id for a in actions)
-        self.name.show_text(actions[0].name if one else many(len(actions), "action"), of)
+        self.name.show_text(
+            actions[0].name if one else tr_plural("{count:,} action", "{count:,} actions", len(actions)), of
+        )
         title = f"{KIND_MARKS[kind]} {tr(KIND_TITLES[kind])}" if kind is not Mixed else tr("Mixed kinds")
         self.kind.setText(f"{title} · {titled(layer) if layer is not Mixed else tr('layers')}")
         set_sheet(self.kind, f"color: {t.kinds[kind]}" if kind is not Mixed else "")
@@ -182,12 +183,12 @@ class ActionPage(Halves):
         self.limb.show_limb(common([a.limb for a in actions]))
         tags = common([a.tags for a in actions])
         self.tags.show_text("" if tags is Mixed else ", ".join(tags), of)
-        self.tags.setPlaceholderText(MIXED if tags is Mixed else tr("positive, greeting, …"))
+        self.tags.setPlaceholderText(tr(MIXED) if tags is Mixed else tr("positive, greeting, …"))
         self.likelihood.show_value(common([a.likelihood for a in actions]))
         self.variation.show_actions(project, actions)
         self._fill_stances(actions, kind)
         masks = common([(a.joints, a.joint_weights) for a in actions])
-        self.joints.setText(MIXED if masks is Mixed else _moved(*masks))
+        self.joints.setText(tr(MIXED) if masks is Mixed else _moved(*masks))
         self.joints.setEnabled(project.skeleton is not None)
         self._show_trouble()
 
@@ -213,7 +214,7 @@ class ActionPage(Halves):
         ):
             shared = common(values)
             box.show_entries(
-                [(s.name, s.id) for s in stances], shared, MIXED if shared is Mixed else tr("choose one")
+                [(s.name, s.id) for s in stances], shared, tr(MIXED) if shared is Mixed else tr("choose one")
             )
             box.setEnabled(bool(stances))
         self.form.setRowVisible(self.ends, kind == "transition")

@@ -9,11 +9,10 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QLabel, QWidget
 
 from app.features.properties.page_form import page_box
-from app.look.plural import many
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_plural
 from app.widgets.vocabulary import word
 
 
@@ -58,7 +57,7 @@ class ClipPage(QWidget):
                 )
             )
         else:
-            self.title.setText(many(len(entries), "clip"))
+            self.title.setText(tr_plural("{count:,} clip", "{count:,} clips", len(entries)))
             self.words.setText(tr("{total:.1f} s together", total=total))
         lines = []
         for action in [a for c in clips for a in project.uses.get(c, ())][:20]:

@@ -13,7 +13,7 @@ from PySide6.QtGui import QColor, QHelpEvent
 from PySide6.QtWidgets import QToolTip, QWidget
 
 from app.look.theme import Theme
-from app.translation import tr, tr_told
+from app.translation import tr, tr_phrase
 from metagraph.graph.model import Action, Project
 
 if TYPE_CHECKING:
@@ -132,7 +132,7 @@ class JumpStrip(pg.PlotWidget):
         seconds = float(self.plotItem.vb.mapSceneToView(at).x())
         seconds = min(max(0.0, seconds), float(self.seen.times[-1]))
         more = tr("\nThe marks are the proposed times. Hold Alt while dragging to leave them out.")
-        return tr_told(words_at(*self.subject, self.seen, seconds)) + more
+        return tr_phrase(words_at(*self.subject, self.seen, seconds)) + more
 
     def viewportEvent(self, event: QEvent) -> bool:
         if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent):

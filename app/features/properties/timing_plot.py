@@ -25,21 +25,23 @@ from app.look.theme import Theme, theme
 from app.project.document import Document
 from app.stage.compatibility_state import Compatibility, proposed_fields
 from app.stage.session import Session
-from app.translation import tr, tr_told
+from app.translation import tr, tr_phrase, translated
 from app.widgets.restyling import set_sheet
 from metagraph.graph.model import Action, Project
 from metagraph.motion.clip import Clip
 from metagraph.playback.timing.handles import BANDS, HANDLES, PHASES, moved, times_of
 from metagraph.playback.timing.speed_curves import speed_of
 
-WORDS = {
-    "start": tr("start"),
-    "end": tr("end"),
-    "in": tr("blend in"),
-    "out": tr("blend out"),
-    "exit": tr("earliest exit"),
-    "stroke": tr("stroke"),
-}
+WORDS = translated(
+    lambda: {
+        "start": tr("start"),
+        "end": tr("end"),
+        "in": tr("blend in"),
+        "out": tr("blend out"),
+        "exit": tr("earliest exit"),
+        "stroke": tr("stroke"),
+    }
+)
 SNAP = 7  # pixels within which a handle comes to rest at a moment that does not jump
 
 
@@ -152,7 +154,7 @@ class TimingPlot(QWidget):
         first, last = seen.cost("start", start), seen.cost("end", end)
         costs = {"Repeats": last} if seen.loops else {"Begins": first, "ends": last}
         far = far_ends(project, action)
-        self.verdict.setText(tr_told(verdict(costs, far)))
+        self.verdict.setText(tr_phrase(verdict(costs, far)))
         fine = max(costs.values()) <= 1 and not far
         set_sheet(self.verdict, f"color: {t.dim if fine else t.warning}")
         times, reason = times_words(seen), seen.proposed.reason

@@ -11,7 +11,7 @@ from typing import Any
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QCheckBox, QFormLayout, QHBoxLayout, QToolButton, QWidget
 
-from app.translation import tr
+from app.translation import tr, translated
 from app.widgets.form_fields import MIXED, Mixed, Seconds, common
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import SpinBox
@@ -20,11 +20,13 @@ from metagraph.graph.model import Action, Project, Settings
 from metagraph.playback.timing.phases import phases
 
 PHASE_FIELDS = ("ready", "stroke_end", "relax")
-PHASE_WORDS = {
-    "ready": tr("The preparation ends"),
-    "stroke_end": tr("The hold begins"),
-    "relax": tr("The hold ends, the retraction begins"),
-}
+PHASE_WORDS = translated(
+    lambda: {
+        "ready": tr("The preparation ends"),
+        "stroke_end": tr("The hold begins"),
+        "relax": tr("The hold ends, the retraction begins"),
+    }
+)
 AS_THE_GRAPH = -1
 
 
@@ -93,7 +95,7 @@ class ActionRows(QWidget):
         least = -2 if spacing is Mixed else AS_THE_GRAPH
         if self.spacing.minimum() != least:  # which lays the form out anew
             self.spacing.setMinimum(least)
-        self.spacing.setSpecialValueText(MIXED if spacing is Mixed else tr("as usual"))
+        self.spacing.setSpecialValueText(tr(MIXED) if spacing is Mixed else tr("as usual"))
         shown = least if spacing is Mixed or spacing is None else spacing
         if self.spacing.value() != shown or self.spacing.lineEdit().isModified():
             self.spacing.setValue(shown)

@@ -17,11 +17,10 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.look.plural import many
 from app.look.theme import strengthen
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
-from app.translation import tr, tr_error
+from app.translation import tr, tr_error, tr_plural, translated
 from app.widgets.making import make_widget
 from app.widgets.tree_items import items_below, top_items
 from metagraph.formats.repairs import Repaired, Reread, repairs_of, reread
@@ -29,14 +28,16 @@ from metagraph.formats.takes import BIND_POSE, LONE_FRAME, NAME, ONE_FRAME, UNIT
 from metagraph.graph.edit_error import EditError
 
 PLACE = Qt.ItemDataRole.UserRole
-TITLES = {
-    BIND_POSE: tr("Drop bind poses at the ends"),
-    LONE_FRAME: tr("Mend frames unlike both their neighbours"),
-    UNIT: tr("Find the unit of length"),
-    UP: tr("Turn from Z up to Y up"),
-    ONE_FRAME: tr("Skip bind poses of one frame"),
-    NAME: tr("Clean names"),
-}
+TITLES = translated(
+    lambda: {
+        BIND_POSE: tr("Drop bind poses at the ends"),
+        LONE_FRAME: tr("Mend frames unlike both their neighbours"),
+        UNIT: tr("Find the unit of length"),
+        UP: tr("Turn from Z up to Y up"),
+        ONE_FRAME: tr("Skip bind poses of one frame"),
+        NAME: tr("Clean names"),
+    }
+)
 TICKED, OPEN = Qt.CheckState.Checked, Qt.CheckState.Unchecked
 
 
@@ -136,7 +137,11 @@ class RepairsDialog(QDialog):
     def _count(self, *_: object) -> None:
         count = len(self.changes())
         self.go.setEnabled(count > 0)
-        self.go.setText(tr("Apply {changes}", changes=many(count, "change")) if count else tr("Apply"))
+        self.go.setText(
+            tr("Apply {changes}", changes=tr_plural("{count:,} change", "{count:,} changes", count))
+            if count
+            else tr("Apply")
+        )
 
     def apply(self) -> None:
         """Read the clips again with and without those repairs, on a thread; one undo step."""
@@ -158,7 +163,10 @@ class RepairsDialog(QDialog):
             failures.extend(result.failures)
             try:
                 if result.count:
-                    left, repairs = sum(not made for _, made in changes), many(len(changes), "repair")
+                    left, repairs = (
+                        sum(not made for _, made in changes),
+                        tr_plural("{count:,} repair", "{count:,} repairs", len(changes)),
+                    )
                     words = (
                         tr("Leave out {repairs}", repairs=repairs)
                         if left == len(changes)

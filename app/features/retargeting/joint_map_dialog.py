@@ -26,7 +26,7 @@ from PySide6.QtWidgets import (
 
 from app.look.theme import DARK, LIGHT, strengthen
 from app.project.jobs import Jobs
-from app.translation import tr, tr_error
+from app.translation import tr, tr_error, tr_noop
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.stick_figures import StickFigures
@@ -36,7 +36,7 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.joint_map import JointMap, known_roles
 
 JOINT = Qt.ItemDataRole.UserRole
-NONE = tr("– none –")
+NONE = tr_noop("– none –")
 AT_ONCE = 12  # rows that get their boxes in one go
 SHOWN = 150  # frames of a clip that are played
 
@@ -163,7 +163,7 @@ class JointMapDialog(QDialog):
             self.tree.setColumnWidth(column, width)
         header.setSectionResizeMode(3, QHeaderView.ResizeMode.Fixed)
         self.tree.currentItemChanged.connect(self._mark)
-        self.names = QStringListModel([NONE, *self.target.names], self)
+        self.names = QStringListModel([tr(NONE), *self.target.names], self)
         self.rows: dict[str, QTreeWidgetItem] = {}
         self.combos: dict[str, QComboBox] = {}
         for name in self.source.names:

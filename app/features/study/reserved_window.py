@@ -14,9 +14,9 @@ from app.shell.header import Header
 from app.shell.places import Places
 from app.shell.workspace_keeper import Workspaces
 from app.stage.compatibility_state import Compatibility
-from app.translation import tr
+from app.translation import tr, tr_noop
 
-CLOSED = tr("Not during a study: everybody works on the same clips.")
+CLOSED = tr_noop("Not during a study: everybody works on the same clips.")
 
 
 class ReservedWindow:
@@ -30,7 +30,7 @@ class ReservedWindow:
     def enter(self) -> None:
         """Close the project's files to new clips, rest all commands, and show the panels that tasks need."""
         shell, services = self.shell, self.shell.services
-        services[Files].closed = CLOSED
+        services[Files].closed = tr(CLOSED)
         services[Learned].paused = True
         if not self.labels:  # jumps found, and times proposed, for one condition alone would not be fair
             services[Compatibility].forget()

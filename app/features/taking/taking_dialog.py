@@ -20,7 +20,7 @@ from shiboken6 import isValid
 from app.look.theme import Theme, strengthen
 from app.project.document import Document
 from app.project.jobs import Jobs
-from app.translation import tr, tr_error, tr_noop, tr_told
+from app.translation import tr, tr_error, tr_noop, tr_phrase
 from app.widgets.making import make_widget
 from metagraph.formats.project.pieces import Piece
 from metagraph.graph.editing.taking import Taken, Taking, words_of_taking
@@ -100,11 +100,11 @@ class TakingDialog(QDialog):
             self.summary.setText(tr_error(error))
 
     def _show(self, taking: Taking) -> None:
-        self.summary.setText(tr_told(words_of_taking(taking)))
+        self.summary.setText(tr_phrase(words_of_taking(taking)))
         self.rest.setText(
             "\n".join(
                 [
-                    *map(tr_told, self.piece.notes),
+                    *map(tr_phrase, self.piece.notes),
                     tr("Lines, performances and conversations stay in the other project."),
                 ]
             )
@@ -129,9 +129,9 @@ class TakingDialog(QDialog):
             top.setExpanded(kind != "clip" or len(things) < 12)
 
     def _row(self, thing: Taken) -> QTreeWidgetItem:
-        item = QTreeWidgetItem([thing.name, tr(thing.layer or ""), tr_told(thing.words)])
+        item = QTreeWidgetItem([thing.name, tr(thing.layer or ""), tr_phrase(thing.words)])
         item.setToolTip(0, thing.name)
-        item.setToolTip(2, tr_told(thing.words))
+        item.setToolTip(2, tr_phrase(thing.words))
         return item
 
     def _take(self) -> None:

@@ -11,13 +11,13 @@ from PySide6.QtWidgets import QMenu
 
 from app.features.timeline.drags.cut import CutDrag
 from app.look.theme import Theme
-from app.translation import tr
+from app.translation import tr, tr_noop
 from app.widgets.lane_geometry import LEFT, elided, lanes
 from metagraph.graph.conversation.model import Conversation, side_name
 from metagraph.graph.timeline import Cut, Shot
 
 EDGE = 4.0  # pixels on either side of a cut that take hold of it
-HINT = tr("No cuts: the camera is yours. Double-click here, or 1 to 9, cuts to a picture")
+HINT = tr_noop("No cuts: the camera is yours. Double-click here, or 1 to 9, cuts to a picture")
 NAME = "cameras"
 
 
@@ -136,7 +136,7 @@ class CameraLane:
         if talk is None:
             return ""
         if here is None:
-            return HINT
+            return tr(HINT)
         cut = self.cuts[here]
         return tr(
             "{picture}, from {at:.2f} s\nDrag a border, double-click or 1 to 9 to cut",
@@ -162,7 +162,7 @@ class CameraLane:
         painter.setFont(font)
         if not cuts:
             painter.setPen(QColor(t.dim))
-            words = elided(HINT, font.toString(), int(width - LEFT - 14))
+            words = elided(tr(HINT), font.toString(), int(width - LEFT - 14))
             painter.drawText(
                 QRectF(LEFT + 7, lane.top(), width, lane.height()), Qt.AlignmentFlag.AlignVCenter, words
             )

@@ -4,7 +4,8 @@ where nothing plays them yet. Said in words before it happens.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import partial
 
 from PySide6.QtCore import QEvent, QObject, QPointF, Qt
 from PySide6.QtGui import (
@@ -20,11 +21,10 @@ from PySide6.QtWidgets import QWidget
 
 from app.features.timeline.lane_view import Lanes
 from app.look.names import plain
-from app.look.plural import many
 from app.look.theme import theme
 from app.project.importing import Importing
 from app.project.load import Load
-from app.translation import tr, tr_error
+from app.translation import tr, tr_error, tr_plural
 from app.widgets.lane_geometry import lane_at
 from app.widgets.lane_paint import badge
 from app.widgets.mime import load_of
@@ -46,7 +46,7 @@ class LaneDrop:
     seconds: float
     stance: str | None = None
     possible: bool = False
-    words: str = tr("drop on the lane of a layer")
+    words: str = field(default_factory=partial(tr, "drop on the lane of a layer"))
 
 
 def lane_drop(
@@ -63,11 +63,15 @@ def lane_drop(
             return LaneDrop(
                 layer, seconds, stance, False, tr("a stance's loop is no action: ask for the stance")
             )
-        what = plain(actions[0].name) if len(actions) == 1 else many(len(actions), "action")
+        what = (
+            plain(actions[0].name)
+            if len(actions) == 1
+            else tr_plural("{count:,} action", "{count:,} actions", len(actions))
+        )
         return LaneDrop(layer, seconds, stance, True, tr("ask for {what} {at}", what=what, at=at))
     if load.clips and all(playing(project, layer, clip) is not None for clip in load.clips):
         first = plain(project.clips[load.clips[0]].name)
-        what = first if load.count == 1 else many(load.count, "clip")
+        what = first if load.count == 1 else tr_plural("{count:,} clip", "{count:,} clips", load.count)
         return LaneDrop(layer, seconds, stance, True, tr("ask for {what} {at}", what=what, at=at))
     if found is None:
         return LaneDrop(
@@ -77,7 +81,11 @@ def lane_drop(
         what = tr("this clip") if load.clips else tr("this file")
         words = tr("place {what} as a gesture of {name}, and ask for it {at}", what=what, name=name, at=at)
     else:
-        what = many(load.count, "clip") if load.clips else many(load.count, "file")
+        what = (
+            tr_plural("{count:,} clip", "{count:,} clips", load.count)
+            if load.clips
+            else tr_plural("{count:,} file", "{count:,} files", load.count)
+        )
         words = tr("place {what} as gestures of {name}, and ask for them {at}", what=what, name=name, at=at)
     return LaneDrop(layer, seconds, stance, True, words)
 
@@ -171,7 +179,7 @@ class LaneDrops(QObject):
             return
         if project is not self.document.project:
             self.document.edit(
-                tr("Place {clips}", clips=many(len(load.clips), "clip")),
+                tr("Place {clips}", clips=tr_plural("{count:,} clip", "{count:,} clips", len(load.clips))),
                 lambda p: asked_for(p, drop, load)[0],
             )
         for ask in asked:

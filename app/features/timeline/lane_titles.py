@@ -16,13 +16,15 @@ from PySide6.QtWidgets import QMenu
 from app.features.timeline.drags.border import BorderDrag
 from app.look.theme import Theme
 from app.stage.performance import Performance
-from app.translation import tr, tr_noop
+from app.translation import tr, tr_noop, translated
 from app.widgets.lane_geometry import LEFT, NAMES, RULER, TITLES, Sizes, lanes
 from metagraph.graph.model import LAYERS, Layer
 from metagraph.graph.timeline import Lane
 
 SETTING = "timeline/heights"
-HEIGHTS = {tr("Compact"): 0.6, tr("Normal"): 1.0, tr("Tall"): 1.8}  # of a lane's usual height
+HEIGHTS = translated(
+    lambda: {tr("Compact"): 0.6, tr("Normal"): 1.0, tr("Tall"): 1.8}
+)  # of a lane's usual height
 SAID = (tr_noop("body"), tr_noop("arms"), tr_noop("head"))  # of layers, within a sentence
 GRIP = 4.0  # pixels on either side of a border that take hold of it
 LOCK = 20.0  # pixels at the right of a title that are its padlock's

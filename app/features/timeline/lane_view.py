@@ -36,7 +36,7 @@ from app.features.timeline.what_if import WhatIf, seed_of
 from app.look.theme import theme
 from app.stage.performance import Performance
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_noop
 from app.widgets.gesture import Hand
 from app.widgets.lane_geometry import (
     LEFT,
@@ -57,7 +57,7 @@ from metagraph.graph.model import LAYERS
 
 LEAST, LEAST_BESIDE = 38, 32  # pixels of a layer in which its two rows are read; just so, beside other seeds'
 COPIES = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier
-TEXT = tr(
+TEXT = tr_noop(
     "Requests, and what plays. Up and Down choose a request, Left and Right move it, Enter changes it, "
     "Insert asks for something. M adds a marker, I and O begin and end the loop range."
 )
@@ -89,7 +89,7 @@ class Lanes(LaneSpan):
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAccessibleName(tr("Timeline"))
-        self.setAccessibleDescription(TEXT)
+        self.setAccessibleDescription(tr(TEXT))
         performance.changed.connect(self.update)
         performance.timeline.changed.connect(self.update)
         performance.changed.connect(self.show_lanes)

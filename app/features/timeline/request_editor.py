@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.stage.performance import Performance
-from app.translation import tr, tr_error, tr_noop
+from app.translation import tr, tr_error, tr_noop, translated
 from app.widgets.lane_geometry import outcome
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
 from app.widgets.request_menu import MODE_WORDS, MOOD_WORDS, mood_words, request_words
@@ -31,47 +31,51 @@ from metagraph.graph.timeline import lane_of
 from metagraph.graph.words import FEELINGS
 
 SIDES = (tr_noop("left"), tr_noop("right"), tr_noop("both"))  # of an arm, or of two
-UNSET = tr("as it comes")
-LABELS = {
-    "at": tr("At"),
-    "stroke": tr("Stroke at"),
-    "duration": tr("Wanted for"),
-    "hold": tr("Hold"),
-    "late": tr("Late by at most"),
-    "priority": tr("Priority"),
-    "tags": tr("Tags"),
-    "limb": tr("Arm"),
-    "prepare": tr("Prepare"),
-    "resume": tr("Go on after a cut"),
-    "action": tr("Action"),
-    "stance": tr("Stance"),
-    "to": tr("Look at"),
-    "amount": tr("How far"),
-    "strict": tr("Without averting"),
-    "line": tr("Line"),
-    "text": tr("Words"),
-    "gestures": tr("With its gestures"),
-    "mode": tr("Mode"),
-    "mood": tr("Mood"),
-    "intensity": tr("Intensity"),
-    "name": tr("Point"),
-    "stay": tr("Stay there"),
-}
-TIPS = {
-    "at": tr("Seconds of the performance; it may come later when something else plays"),
-    "stroke": tr("When its most telling moment should come, instead of when it begins"),
-    "late": tr("Seconds by which its stroke, or else its start, may come late, or it does not play"),
-    "hold": tr("How long the hold lasts; the motion before and after keeps its speed"),
-    "prepare": tr("Off: the preparation is skipped, and it begins shortly before its stroke"),
-    "priority": tr("Higher wins over lower; what the models play gives way to all"),
-    "duration": tr("How long the activity is wanted"),
-    "tags": tr("Words apart by commas; all must be among the action's tags"),
-    "resume": tr("When something more important cuts it, its rest plays afterwards"),
-    "strict": tr("The gaze stays there without looking away now and then"),
-    "mood": tr("Which actions are likely, how large and fast they are played, posture and face"),
-    "intensity": tr("How large it is played; 1 as it was made"),
-    "stay": tr("The models do not leave the stance, until another one is asked for"),
-}
+UNSET = tr_noop("as it comes")
+LABELS = translated(
+    lambda: {
+        "at": tr("At"),
+        "stroke": tr("Stroke at"),
+        "duration": tr("Wanted for"),
+        "hold": tr("Hold"),
+        "late": tr("Late by at most"),
+        "priority": tr("Priority"),
+        "tags": tr("Tags"),
+        "limb": tr("Arm"),
+        "prepare": tr("Prepare"),
+        "resume": tr("Go on after a cut"),
+        "action": tr("Action"),
+        "stance": tr("Stance"),
+        "to": tr("Look at"),
+        "amount": tr("How far"),
+        "strict": tr("Without averting"),
+        "line": tr("Line"),
+        "text": tr("Words"),
+        "gestures": tr("With its gestures"),
+        "mode": tr("Mode"),
+        "mood": tr("Mood"),
+        "intensity": tr("Intensity"),
+        "name": tr("Point"),
+        "stay": tr("Stay there"),
+    }
+)
+TIPS = translated(
+    lambda: {
+        "at": tr("Seconds of the performance; it may come later when something else plays"),
+        "stroke": tr("When its most telling moment should come, instead of when it begins"),
+        "late": tr("Seconds by which its stroke, or else its start, may come late, or it does not play"),
+        "hold": tr("How long the hold lasts; the motion before and after keeps its speed"),
+        "prepare": tr("Off: the preparation is skipped, and it begins shortly before its stroke"),
+        "priority": tr("Higher wins over lower; what the models play gives way to all"),
+        "duration": tr("How long the activity is wanted"),
+        "tags": tr("Words apart by commas; all must be among the action's tags"),
+        "resume": tr("When something more important cuts it, its rest plays afterwards"),
+        "strict": tr("The gaze stays there without looking away now and then"),
+        "mood": tr("Which actions are likely, how large and fast they are played, posture and face"),
+        "intensity": tr("How large it is played; 1 as it was made"),
+        "stay": tr("The models do not leave the stance, until another one is asked for"),
+    }
+)
 ORDER = tuple(LABELS)
 
 
@@ -176,7 +180,7 @@ class RequestEditor(QDialog):
         """Return a number of seconds; at its lowest it is left open."""
         spin = DoubleSpinBox(self, decimals=2, singleStep=0.1, suffix=" s")
         spin.setRange(-0.01, 600.0 if name in ("hold", "late") else 1e6)
-        spin.setSpecialValueText(UNSET)
+        spin.setSpecialValueText(tr(UNSET))
         spin.setValue(-0.01 if value is None else value)
         spin.setKeyboardTracking(False)
         spin.valueChanged.connect(lambda v: self._set(name, None if v < 0 else round(v, 3)))
@@ -185,7 +189,7 @@ class RequestEditor(QDialog):
     def _intensity(self, value: float | None) -> QDoubleSpinBox:
         """Return a number from 0 to 2; at its lowest it is left open."""
         spin = DoubleSpinBox(self, decimals=2, singleStep=0.1, minimum=-0.01, maximum=2.0, prefix="× ")
-        spin.setSpecialValueText(UNSET)
+        spin.setSpecialValueText(tr(UNSET))
         spin.setValue(-0.01 if value is None else value)
         spin.setKeyboardTracking(False)
         spin.valueChanged.connect(lambda v: self._set("intensity", None if v < 0 else round(v, 3)))
@@ -210,7 +214,7 @@ class RequestEditor(QDialog):
         elif name == "mode":
             items = [(tr("as it comes"), None), *((MODE_WORDS[m], m) for m in MODES)]
         elif name == "mood":
-            items = [(UNSET, None), *((MOOD_WORDS[m], m) for m in FEELINGS)]
+            items = [(tr(UNSET), None), *((MOOD_WORDS[m], m) for m in FEELINGS)]
         elif name == "line":
             items = [(tr("none"), None), *((i, i) for i in project.lines)]
             value = None if value is None else str(value)

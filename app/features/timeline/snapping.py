@@ -11,11 +11,11 @@ from PySide6.QtCore import QSettings
 
 from app.look.names import plain
 from app.stage.performance import Performance
-from app.translation import tr
+from app.translation import tr, translated
 from app.widgets.lane_geometry import Mark, Scale
 from metagraph.playback.timing.phases import phases
 
-WORDS = {"in": tr("in of the range"), "out": tr("out of the range")}
+WORDS = translated(lambda: {"in": tr("in of the range"), "out": tr("out of the range")})
 REACH = 8.0  # pixels from which something is drawn to a line; ours
 WIDE = 24.0  # pixels of a gesture from which its stroke is a line of its own
 SETTING = "timeline/magnet"

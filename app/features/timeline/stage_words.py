@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from app.look.plural import many
 from app.stage.playback_source import Shown
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_plural
 from app.widgets.lane_geometry import Mark, outcome, wanted
 from metagraph.graph.conversation.model import Conversation, side_name
 from metagraph.graph.model import LAYERS
@@ -24,7 +23,10 @@ def marks_words(marks: list[Mark]) -> str:
             outcome=outcome(marks[0].ask, marks[0].answer),
             wanted=wanted(marks[0]),
         ).strip()
-    unmet, chosen = sum(1 for m in marks if m.lost), many(len(marks), "request")
+    unmet, chosen = (
+        sum(1 for m in marks if m.lost),
+        tr_plural("{count:,} request", "{count:,} requests", len(marks)),
+    )
     if not unmet:
         return tr("{requests} selected", requests=chosen)
     return tr("{requests} selected, {unmet:,} of them could not be met", requests=chosen, unmet=unmet)
@@ -36,7 +38,11 @@ def machine_words(shown: Shown, session: Session) -> str:
         return tr("Alone. Esc for the whole machine.")
     count = cues(shown)
     words = (
-        tr("{states} in {length:g} s.", states=many(count, "state"), length=shown.length)
+        tr(
+            "{states} in {length:g} s.",
+            states=tr_plural("{count:,} state", "{count:,} states", count),
+            length=shown.length,
+        )
         if count
         else tr("Nothing plays yet: drop clips and draw links.")
     )
@@ -57,6 +63,6 @@ def talk_words(shown: Shown, talk: Conversation | None) -> str:
     return tr(
         "{who} in conversation: {gestures} of the hands, {nods}.",
         who=who,
-        gestures=many(gestures, "gesture"),
-        nods=many(nods, "nod"),
+        gestures=tr_plural("{count:,} gesture", "{count:,} gestures", gestures),
+        nods=tr_plural("{count:,} nod", "{count:,} nods", nods),
     )

@@ -23,13 +23,12 @@ from app.features.timeline.stage_words import cues, machine_words, marks_words, 
 from app.features.timeline.voices import Voices
 from app.features.timeline.what_if import WhatIf
 from app.look import icons
-from app.look.plural import many
 from app.look.theme import theme
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.performance import Performance
 from app.stage.session import Session
-from app.translation import tr, tr_error
+from app.translation import tr, tr_error, tr_noop, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
@@ -44,12 +43,12 @@ from metagraph.graph.model import Project
 from metagraph.graph.requests import Performance as KeptPerformance
 from metagraph.graph.words import FEELINGS
 
-IMPROVISED = tr("Improvised")
-MAGNET = tr(
+IMPROVISED = tr_noop("Improvised")
+MAGNET = tr_noop(
     "Snap what is dragged to markers, words, strokes, beginnings, ends and seconds (S; hold Shift for not)"
 )
-GHOSTS = tr("What other seeds would play, as rows under the lanes; a click takes one over (Shift+W)")
-RIPPLE = tr("Ripple: what follows goes along with what is moved (Shift+R)")
+GHOSTS = tr_noop("What other seeds would play, as rows under the lanes; a click takes one over (Shift+W)")
+RIPPLE = tr_noop("Ripple: what follows goes along with what is moved (Shift+R)")
 
 
 class TimelinePanel(QWidget):
@@ -75,8 +74,8 @@ class TimelinePanel(QWidget):
         row.setContentsMargins(12, 0, 12, 2)
         row.setSpacing(8)
         self._add_choice(row)
-        self.magnet = self._switch(MAGNET, tr("Snap"), self.lanes.magnet.on)
-        self.ripple = self._switch(RIPPLE, tr("Ripple"), performance.requests.ripple)
+        self.magnet = self._switch(tr(MAGNET), tr("Snap"), self.lanes.magnet.on)
+        self.ripple = self._switch(tr(RIPPLE), tr("Ripple"), performance.requests.ripple)
         for switch in (self.magnet, self.ripple):
             row.addWidget(switch)
         self._add_live(row)
@@ -149,7 +148,7 @@ class TimelinePanel(QWidget):
         self.seed.setAccessibleName(tr("Seed"))
         self.seed.valueChanged.connect(self._seeded)
         row.addWidget(self.seed)
-        self.ghosts = self._switch(GHOSTS, tr("What if"), False)
+        self.ghosts = self._switch(tr(GHOSTS), tr("What if"), False)
         self.ghosts.toggled.connect(self.what_if.set_on)
         self.what_if.changed.connect(lambda: self.ghosts.setChecked(self.what_if.on))
         row.addWidget(self.ghosts)
@@ -199,7 +198,7 @@ class TimelinePanel(QWidget):
 
     def _restage(self) -> None:
         """Show which performance is on stage, and its seed."""
-        wanted: list[tuple[str, str | int | None]] = [(IMPROVISED, None)]
+        wanted: list[tuple[str, str | int | None]] = [(tr(IMPROVISED), None)]
         wanted += [(p.name, i) for i, p in self.document.project.performances.items()]
         talk = self.document.project.conversations.get(self.session.onstage.conversation or "")
         if talk is not None:  # then it is one of those who talk whose plan is seen
@@ -313,7 +312,7 @@ class TimelinePanel(QWidget):
             question = tr(
                 "Remove '{name}' and its {requests}? It can be undone.",
                 name=kept.name,
-                requests=many(len(kept.asks), "request"),
+                requests=tr_plural("{count:,} request", "{count:,} requests", len(kept.asks)),
             )
             if (
                 QMessageBox.question(self, tr("Remove performance"), question)
@@ -402,7 +401,12 @@ class TimelinePanel(QWidget):
         lost = sum(1 for a in answers.values() if a.state == "refused")
         self.lost.setVisible(lost > 0)
         self.lost.setText(tr("⚠ {lost:,} not met", lost=lost))
-        self.lost.setAccessibleName(tr("{requests} could not be met", requests=many(lost, "request")))
+        self.lost.setAccessibleName(
+            tr(
+                "{requests} could not be met",
+                requests=tr_plural("{count:,} request", "{count:,} requests", lost),
+            )
+        )
         chosen = self.session.onstage.requests if plan else ()
         marks = [m for m in self.lanes.marks() if m.ask.id in chosen] if chosen else []
         if marks:
@@ -420,9 +424,20 @@ class TimelinePanel(QWidget):
             self.title.say(tr("In context: stance, action, back to the stance. Esc for the performance."))
         else:
             count = cues(shown)
-            words = tr("{actions} in {length:g} s", actions=many(count, "action"), length=shown.length)
+            words = tr(
+                "{actions} in {length:g} s",
+                actions=tr_plural("{count:,} action", "{count:,} actions", count),
+                length=shown.length,
+            )
             empty = tr("Nothing plays yet: drop a clip on a stance and some around it.")
             self.title.say(
                 (words if count else empty)
-                + (tr(", {requests} could not be met", requests=many(lost, "request")) if lost else "")
+                + (
+                    tr(
+                        ", {requests} could not be met",
+                        requests=tr_plural("{count:,} request", "{count:,} requests", lost),
+                    )
+                    if lost
+                    else ""
+                )
             )

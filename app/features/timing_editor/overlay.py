@@ -13,22 +13,24 @@ from app.features.timing_editor.hits import Hit
 from app.features.timing_editor.paint import Look, ruler_words
 from app.features.timing_editor.rows import RULER, TrackRows
 from app.features.timing_editor.track import Facts, Kept
-from app.translation import tr, tr_told
+from app.translation import tr, tr_phrase, translated
 from app.widgets.vocabulary import word
 from metagraph.playback.timing.handles import WORDS
 from metagraph.suggest.jumps.snapping import Snap
 
-HINTS = {
-    "start": tr("where it begins in the clip"),
-    "end": tr("where it ends in the clip"),
-    "in": tr("until here it blends in from its stance"),
-    "out": tr("from here on it blends out to its stance"),
-    "exit": tr("from here on it may be left"),
-    "stroke": tr("its most telling moment, which a stressed word is put on"),
-    "ready": tr("its preparation ends"),
-    "hold": tr("its hold begins"),
-    "relax": tr("its retraction begins"),
-}
+HINTS = translated(
+    lambda: {
+        "start": tr("where it begins in the clip"),
+        "end": tr("where it ends in the clip"),
+        "in": tr("until here it blends in from its stance"),
+        "out": tr("from here on it blends out to its stance"),
+        "exit": tr("from here on it may be left"),
+        "stroke": tr("its most telling moment, which a stressed word is put on"),
+        "ready": tr("its preparation ends"),
+        "hold": tr("its hold begins"),
+        "relax": tr("its retraction begins"),
+    }
+)
 
 
 def playhead(
@@ -126,7 +128,7 @@ def held(
         x = axis.x(snapped.at)
         painter.setPen(QPen(QColor(look.t.warning), 1.6))
         upright(painter, tracks, x, RULER - 4)
-        words = f"{words} — {tr_told(snapped.why)}"
+        words = f"{words} — {tr_phrase(snapped.why)}"
     wide = min(look.wide(words) + 18, width - axis.left)
     middle = axis.x(snapped.at) if snapped is not None else axis.left + axis.width / 2
     box = QRectF(min(max(axis.left, middle - wide / 2), max(axis.left, width - wide - 4)), 1, wide, RULER - 3)

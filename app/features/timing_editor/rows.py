@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from PySide6.QtCore import QRectF
 
-from app.translation import tr
+from app.translation import tr, translated
 
 RULER, TITLE = 22.0, 20.0
 GUTTER = 86.0  # pixels at the left in which rows are named
@@ -27,13 +27,15 @@ SIZES: dict[str, tuple[float, float, float]] = {
 }
 MOST = {"poses": 150.0, "line": 60.0, "stance": 64.0}
 JOINT = 13.0  # pixels of a joint in the dope sheet
-TITLES = {
-    "poses": tr("poses"),
-    "line": tr("line"),
-    "phases": tr("phases"),
-    "speed": tr("speed"),
-    "stance": tr("to stance"),
-}
+TITLES = translated(
+    lambda: {
+        "poses": tr("poses"),
+        "line": tr("line"),
+        "phases": tr("phases"),
+        "speed": tr("speed"),
+        "stance": tr("to stance"),
+    }
+)
 
 
 def size(row: str) -> tuple[float, float, float]:

@@ -21,11 +21,10 @@ from app.features.timing_editor.kept_rows import seconds_of, set_number
 from app.features.timing_editor.subject import Subject
 from app.features.timing_editor.view import TimingView
 from app.look.names import told_names
-from app.look.plural import many
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.stage.session import Session
-from app.translation import tr, tr_error
+from app.translation import tr, tr_error, tr_plural
 from app.widgets.form_fields import Chooser, Seconds, common
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
@@ -135,7 +134,9 @@ class TimingPanel(QWidget):
             for button in (self.onion, self.compare, self.loop):
                 button.setChecked(False)
             return
-        name = first.name if len(shown) == 1 else many(len(shown), "action")
+        name = (
+            first.name if len(shown) == 1 else tr_plural("{count:,} action", "{count:,} actions", len(shown))
+        )
         cut = name if len(name) <= LONGEST else f"{name[: LONGEST // 2]}…{name[-LONGEST // 2 + 1 :]}"
         self.name.setText(f"{KIND_MARKS[first.action.kind]} {cut}")
         self.name.setToolTip(told_names(name, first.action.name) if len(shown) == 1 else name)

@@ -11,7 +11,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from app.look.names import plain
-from app.translation import tr, tr_told
+from app.translation import tr, tr_phrase
 from app.widgets.memo import Once
 from app.widgets.vocabulary import word
 from metagraph.graph import anatomy
@@ -196,4 +196,4 @@ def _verdict(project: Project, action: Action, seen: Seen | None) -> tuple[str, 
     first, last = seen.cost("start", start), seen.cost("end", end)
     costs = {"Repeats": last} if seen.loops else {"Begins": first, "ends": last}
     far = far_ends(project, action)
-    return tr_told(verdict(costs, far)), max(costs.values()) <= 1 and not far
+    return tr_phrase(verdict(costs, far)), max(costs.values()) <= 1 and not far

@@ -42,14 +42,14 @@ from app.look.theme import theme
 from app.project.document import Document
 from app.stage.session import Session
 from app.stage.transport import Transport
-from app.translation import tr
+from app.translation import tr, tr_noop
 from app.widgets.gesture import Hand
 from app.widgets.memo import Once
 from app.widgets.vocabulary import word
 from metagraph.suggest.jumps.snapping import Snap, snaps_of
 
 ZOOM = 1.2
-TEXT = tr(
+TEXT = tr_noop(
     "Timing of the selected actions. Left and Right move the playhead by a frame, I and O begin and end the "
     "action there, plus and minus zoom, 0 shows everything."
 )
@@ -76,7 +76,7 @@ class TimingView(QWidget):
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAccessibleName(tr("Timing"))
-        self.setAccessibleDescription(TEXT)
+        self.setAccessibleDescription(tr(TEXT))
         subject.changed.connect(self.refresh)
         session.look.changed.connect(self.refresh)
         session.transport.moved.connect(lambda _: self.update())

@@ -8,9 +8,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.look.plural import clips_words, many
+from app.look.plural import clips_words
 from app.project.jobs import Job
-from app.translation import tr, tr_error
+from app.translation import tr, tr_error, tr_plural
 from metagraph.common.file_names import file_stem
 from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.gltf.writer import write_glb
@@ -63,7 +63,10 @@ def make_twins(shell: Shell) -> None:
         try:
             count = sum(len(twin.actions) for twin, _ in made) or len(made)
             document.edit(
-                tr("Make {twins}", twins=many(count, "mirrored twin")),
+                tr(
+                    "Make {twins}",
+                    twins=tr_plural("{count:,} mirrored twin", "{count:,} mirrored twins", count),
+                ),
                 lambda p: with_twins(p, made),
             )
         except EditError as error:
@@ -76,7 +79,11 @@ def make_twins(shell: Shell) -> None:
             )
         else:
             session.selection.select_clips(tuple(c for c in after.clips if c not in before.clips))
-        words = many(count, "mirrored twin") if actions else tr("{clips} mirrored", clips=clips_words(count))
+        words = (
+            tr_plural("{count:,} mirrored twin", "{count:,} mirrored twins", count)
+            if actions
+            else tr("{clips} mirrored", clips=clips_words(count))
+        )
         names = ", ".join(twin.name for twin, _ in made[:3]) + (" …" if len(made) > 3 else "")
         shell.tell(
             tr("{words}: {names}. Written to {folder}.", words=words, names=names, folder=folder / FOLDER)

@@ -13,7 +13,7 @@ from typing import Any
 import msgspec
 
 from metagraph.common.file_names import file_stems
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.common.xml_text import replaced_note
 from metagraph.engines.engine_machine import Machine, State, animations, machines, write_machine_glb
 from metagraph.engines.targets.losses import MACHINE
@@ -72,11 +72,11 @@ def write_blocks(order: ExportOrder) -> Made:
         try:
             content = write_bml(numbered).encode()
         except RequestError as error:
-            notes.append(told("'{name}' is left out: {why}", name=name, why=error_words(error)))
+            notes.append(phrase("'{name}' is left out: {why}", name=name, why=error_words(error)))
             continue
         lost = replaced_note([msgspec.to_builtins(numbered)])
         if lost is not None:
-            notes.append(told("{file}: {what}", file=path.name, what=lost))
+            notes.append(phrase("{file}: {what}", file=path.name, what=lost))
         write_atomically(path, content)
         files.append(path)
     words = order.folder / f"{order.stem}.vocabulary.json"
@@ -201,52 +201,52 @@ def _unsaid(project: Project) -> int:
     return sum(isinstance(x, a.Bml) for p in project.performances.values() for x in p.asks)
 
 
-_ALONE = told("written by its documentation; the system was not at hand to run it")
+_ALONE = phrase("written by its documentation; the system was not at hand to run it")
 TARGETS = (
     ExportTarget(
         "bml",
-        told("BML blocks"),
-        told("a block for each kept performance and each line, and the vocabulary they may use"),
+        phrase("BML blocks"),
+        phrase("a block for each kept performance and each line, and the vocabulary they may use"),
         write_blocks,
         (
             Loss(
-                told(
+                phrase(
                     "what was asked, not what is played: the planner that hears a block chooses "
                     "actions of its own"
                 )
             ),
-            Loss(told("when an ask became known is not kept")),
-            Loss(told("{n} asks that are blocks themselves are left out"), _unsaid),
+            Loss(phrase("when an ask became known is not kept")),
+            Loss(phrase("{n} asks that are blocks themselves are left out"), _unsaid),
         ),
-        group=told("Agents"),
+        group=phrase("Agents"),
     ),
     ExportTarget(
         "smartbody",
-        told("SmartBody gesture map"),
-        told("a Python script that maps lexemes to animations, and a BVH for each"),
+        phrase("SmartBody gesture map"),
+        phrase("a Python script that maps lexemes to animations, and a BVH for each"),
         write_smartbody,
         (
             *MACHINE,
-            Loss(told("transitions and fidgets: SmartBody moves between postures by itself")),
-            Loss(told("a gesture has one lexeme and one type: its first two tags")),
+            Loss(phrase("transitions and fidgets: SmartBody moves between postures by itself")),
+            Loss(phrase("a gesture has one lexeme and one type: its first two tags")),
         ),
         _ALONE,
-        told("Agents"),
+        phrase("Agents"),
     ),
     ExportTarget(
         "sumerian",
         "Sumerian Hosts (gesture.json)",
-        told("gesture.json with in, hold and out, and one GLB"),
+        phrase("gesture.json with in, hold and out, and one GLB"),
         write_sumerian,
         (
             *MACHINE,
             Loss(
-                told(
+                phrase(
                     "stances, fidgets and transitions are in the GLB alone; gesture.json has no word for them"
                 )
             ),
         ),
         _ALONE,
-        told("Agents"),
+        phrase("Agents"),
     ),
 )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import zipfile
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.engines.targets.runtimes import RUNTIMES, written
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
 from metagraph.formats.atomic import write_atomically
@@ -29,15 +29,15 @@ def write(order: ExportOrder) -> Made:
 TARGETS = (
     ExportTarget(
         "blender",
-        told("Blender add-on"),
-        told(
+        phrase("Blender add-on"),
+        phrase(
             "JSON and GLB, and the add-on that reads them, labels actions, sends them back "
             "and follows a session"
         ),
         write,
         (
             Loss(
-                told(
+                phrase(
                     "no planner: Blender shows single actions, and a whole performance only live or "
                     "from a bake"
                 )

@@ -34,7 +34,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Literal
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.engines.engine_machine import Arrow, Machine, State, machines, write_machine_glb
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
 from metagraph.engines.targets.meshes import mesh_of
@@ -300,29 +300,29 @@ def _left_early(project: Project) -> int:
 
 LOSSES: tuple[Loss, ...] = (
     Loss(
-        told(
+        phrase(
             "Godot 4: layers are added to the skeleton's rest; retargeting on import changes it, and with it the poses"
         )
     ),
     Loss(
-        told(
+        phrase(
             "Godot 3: layers are not added: spine and legs are the body's alone, arms the arms', head and face the head's"
         )
     ),
-    Loss(told("{n} actions that may be left early are left at their end"), _left_early),
-    Loss(told("what plays is not begun anew when it is asked for again")),
-    Loss(told("where no transition joins two stances, the way between them need not be the planner's")),
+    Loss(phrase("{n} actions that may be left early are left at their end"), _left_early),
+    Loss(phrase("what plays is not begun anew when it is asked for again")),
+    Loss(phrase("where no transition joins two stances, the way between them need not be the planner's")),
 )
 TARGETS = (
     ExportTarget(
         "godot-tree",
         "Godot AnimationTree (.tres)",
-        told(
+        phrase(
             "an AnimationTree's root for Godot 4 and one for Godot 3, a guide to their states, and one GLB with "
             "an animation for each state"
         ),
         write,
         (*MACHINE, WEIGHTS, CROSSFADE, *LOSSES),
-        told("the tree for Godot 4 was not run there; the one for Godot 3 was, in 3.2.3"),
+        phrase("the tree for Godot 4 was not run there; the one for Godot 3 was, in 3.2.3"),
     ),
 )

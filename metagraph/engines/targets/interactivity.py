@@ -13,7 +13,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.engines.engine_machine import Machine, State, animations, machines
 from metagraph.engines.targets.losses import MACHINE
 from metagraph.engines.targets.meshes import mesh_of
@@ -249,12 +249,12 @@ TARGETS = (
     ExportTarget(
         "interactivity",
         "glTF + KHR_interactivity",
-        told("one GLB that plays by itself, and a list of the events it hears"),
+        phrase("one GLB that plays by itself, and a list of the events it hears"),
         write,
         (
             *MACHINE,
-            Loss(told("layers do not add: body, arms and head each move their own joints alone")),
-            Loss(told("no blends: one animation stops where the next begins")),
+            Loss(phrase("layers do not add: body, arms and head each move their own joints alone")),
+            Loss(phrase("no blends: one animation stops where the next begins")),
         ),
     ),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.engines.targets.target import Loss
 from metagraph.graph.model import Project
 
@@ -41,37 +41,37 @@ def _weighted(project: Project) -> int:
 
 MACHINE: tuple[Loss, ...] = (
     Loss(
-        told(
+        phrase(
             "no planner: nothing is drawn by tags, limb or likelihood, nothing is scheduled ahead, "
             "no stroke is timed; each action is asked for"
         )
     ),
-    Loss(told("no statistics: nobody performs when nothing is asked")),
-    Loss(told("no life layers: breathing, gaze, blinks and lips are not played")),
-    Loss(told("holds play as they were made, and preparations are not skipped")),
-    Loss(told("of the loops of {n} stances the first plays of itself, the others when asked for"), _varied),
+    Loss(phrase("no statistics: nobody performs when nothing is asked")),
+    Loss(phrase("no life layers: breathing, gaze, blinks and lips are not played")),
+    Loss(phrase("holds play as they were made, and preparations are not skipped")),
+    Loss(phrase("of the loops of {n} stances the first plays of itself, the others when asked for"), _varied),
     Loss(
-        told(
+        phrase(
             "{n} transitions that are not the first between their stances play only when asked for "
             "by themselves"
         ),
         _ways,
     ),
     Loss(
-        told(
+        phrase(
             "{n} actions that move part of their layer hold the rest as their stance begins, instead "
             "of letting it play on"
         ),
         _masked,
     ),
     Loss(
-        told(
+        phrase(
             "soft weights of joints in {n} actions are part of their clips, as far from how the "
             "stance begins, and cannot be changed there"
         ),
         _soft,
     ),
-    Loss(told("{n} loops that play with a seam jump where they repeat"), _seams),
+    Loss(phrase("{n} loops that play with a seam jump where they repeat"), _seams),
 )
-WEIGHTS = Loss(told("{n} weights of layers on body parts other than 0 and 1 count as 1"), _weighted)
-CROSSFADE = Loss(told("blends are plain crossfades: a clip is held back and hurried while it blends"))
+WEIGHTS = Loss(phrase("{n} weights of layers on body parts other than 0 and 1 count as 1"), _weighted)
+CROSSFADE = Loss(phrase("blends are plain crossfades: a clip is held back and hurried while it blends"))

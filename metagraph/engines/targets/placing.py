@@ -22,7 +22,7 @@ import msgspec
 from metagraph.common.budgets import TEXT_FILE
 from metagraph.common.files import is_file, is_inside, read_file
 from metagraph.common.network_paths import reason
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.engines.export_error import ExportError
 from metagraph.errors import FileError
 from metagraph.formats.atomic import FORSAKEN, write_atomically
@@ -146,8 +146,8 @@ class Staging:
             remedy = "Choose a folder you may write to."
             raise FileError(
                 folder,
-                told("cannot be made ({value})", value=getattr(error, "strerror", None) or error),
-                told("on making the folder"),
+                phrase("cannot be made ({value})", value=getattr(error, "strerror", None) or error),
+                phrase("on making the folder"),
                 remedy,
             ) from None
 
@@ -189,8 +189,8 @@ class Staging:
             remedy = "Close what has it open, or choose a folder you may write to, with space left."
             raise FileError(
                 where,
-                told("cannot be written ({value})", value=error.strerror or error),
-                told("on exporting"),
+                phrase("cannot be written ({value})", value=error.strerror or error),
+                phrase("on exporting"),
                 remedy,
             ) from None
         except BaseException:

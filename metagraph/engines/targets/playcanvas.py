@@ -11,7 +11,7 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.engines.engine_machine import Arrow, Machine, machines, write_machine_glb
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
 from metagraph.engines.targets.meshes import mesh_of
@@ -119,7 +119,7 @@ def guide(built: tuple[Machine, ...]) -> dict[str, Any]:
 TARGETS = (
     ExportTarget(
         "playcanvas", "PlayCanvas (AnimStateGraph)",
-        told("a state graph, the numbers of its actions and stances, and one GLB with an "
+        phrase("a state graph, the numbers of its actions and stances, and one GLB with an "
         "animation for each state"),
         write, (*MACHINE, WEIGHTS, CROSSFADE),
     ),

@@ -9,7 +9,7 @@ from functools import cache
 from importlib import import_module
 from pathlib import Path
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.engines.export import sound, stem_of
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets.placing import Staging
@@ -83,7 +83,7 @@ def write(
     if contents.compress and not chosen.unpacks:
         able = ", ".join(t.name for t in targets().values() if t.unpacks)
         raise ExportError(
-            told(
+            phrase(
                 "'{name}' is not read by what unpacks a GLB: export it without --compress, or for {able}",
                 name=name,
                 able=able,

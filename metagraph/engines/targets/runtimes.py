@@ -7,14 +7,14 @@ from collections.abc import Callable
 from pathlib import Path
 
 from metagraph import engines
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.engines.export import write
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
 from metagraph.errors import FileError
 
 RUNTIMES = Path(engines.__file__).with_name("runtimes")
 REQUESTS = "../../../../docs/live.md"  # where a README finds them here; an export carries them along
-BML = Loss(told("requests in Behaviour Markup Language are read by the desktop alone"))
+BML = Loss(phrase("requests in Behaviour Markup Language are read by the desktop alone"))
 
 
 def written(order: ExportOrder) -> Made:
@@ -54,9 +54,9 @@ def copied(source: Path, target: Path, leave: tuple[str, ...] = ()) -> list[Path
         except OSError as error:
             raise FileError(
                 place,
-                told("cannot be written ({strerror})", strerror=error.strerror),
-                told("on copying the runtime"),
-                told("Choose a place you may write to, with space left."),
+                phrase("cannot be written ({strerror})", strerror=error.strerror),
+                phrase("on copying the runtime"),
+                phrase("Choose a place you may write to, with space left."),
             ) from None
         out.append(place)
     return out
@@ -86,54 +86,54 @@ TARGETS = (
     ExportTarget(
         "metagraph",
         "Metagraph (JSON + GLB)",
-        told("one JSON, the graph, and one GLB, its clips"),
+        phrase("one JSON, the graph, and one GLB, its clips"),
         written,
-        group=told("Played as the preview does"),
+        group=phrase("Played as the preview does"),
         unpacks=True,
     ),
     ExportTarget(
         "javascript",
         "JavaScript, three.js",
-        told("JSON and GLB, and in metagraph/ the runtime: ES modules for browsers, Node and three.js"),
+        phrase("JSON and GLB, and in metagraph/ the runtime: ES modules for browsers, Node and three.js"),
         _with("javascript", "metagraph"),
         (BML,),
-        group=told("Played as the preview does"),
+        group=phrase("Played as the preview does"),
         unpacks=True,
     ),
     ExportTarget(
         "godot",
-        told("Godot 4 add-on"),
-        told("JSON and GLB, and in addons/metagraph/ the runtime in GDScript"),
+        phrase("Godot 4 add-on"),
+        phrase("JSON and GLB, and in addons/metagraph/ the runtime in GDScript"),
         _with("godot", "."),
         (BML,),
-        group=told("Played as the preview does"),
+        group=phrase("Played as the preview does"),
     ),
     ExportTarget(
         "unity",
-        told("Unity package"),
-        told("JSON and GLB, and in Metagraph/ the runtime in C#"),
+        phrase("Unity package"),
+        phrase("JSON and GLB, and in Metagraph/ the runtime in C#"),
         _with("unity", "Metagraph"),
         (BML,),
-        untried=told("compiled and checked outside Unity; not run in Unity"),
-        group=told("Played as the preview does"),
+        untried=phrase("compiled and checked outside Unity; not run in Unity"),
+        group=phrase("Played as the preview does"),
         unpacks=True,
     ),
     ExportTarget(
         "cpp",
         "C++17",
-        told("JSON and GLB, and in metagraph/ the runtime: headers that need the standard library alone"),
+        phrase("JSON and GLB, and in metagraph/ the runtime: headers that need the standard library alone"),
         _with("cpp", "metagraph"),
         (BML,),
-        group=told("Played as the preview does"),
+        group=phrase("Played as the preview does"),
         unpacks=True,
     ),
     ExportTarget(
         "unreal",
-        told("Unreal 5 plugin"),
-        told("JSON and GLB, and in Plugins/Metagraph/ a plugin with the runtime in C++"),
+        phrase("Unreal 5 plugin"),
+        phrase("JSON and GLB, and in Plugins/Metagraph/ a plugin with the runtime in C++"),
         _plugin,
         (BML,),
-        untried=told("compiled and played against stand-ins for Unreal's types; not run in Unreal"),
-        group=told("Played as the preview does"),
+        untried=phrase("compiled and played against stand-ins for Unreal's types; not run in Unreal"),
+        group=phrase("Played as the preview does"),
     ),
 )

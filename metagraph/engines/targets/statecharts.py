@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from typing import Any
 from xml.etree import ElementTree as Xml
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.engines.engine_machine import Arrow, Machine, State, machines, write_machine_glb
 from metagraph.engines.targets.losses import MACHINE
 from metagraph.engines.targets.meshes import mesh_of
@@ -20,14 +20,14 @@ from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Ma
 from metagraph.formats.atomic import write_atomically
 
 HOST = Loss(
-    told(
+    phrase(
         "it decides only: who runs it plays each state's animation, blends for as long as the arrow "
         "says, and adds the layers"
     )
 )
-FORGETFUL = Loss(told("what is asked while an action plays that may not be left yet is not remembered"))
+FORGETFUL = Loss(phrase("what is asked while an action plays that may not be left yet is not remembered"))
 TOLD = Loss(
-    told("what is asked while an action plays that may not be left yet is told as missed, not remembered")
+    phrase("what is asked while an action plays that may not be left yet is told as missed, not remembered")
 )
 
 
@@ -191,14 +191,14 @@ TARGETS = (
     ExportTarget(
         "xstate",
         "XState (JSON)",
-        told("one state chart for XState 5, and one GLB with an animation for each state"),
+        phrase("one state chart for XState 5, and one GLB with an animation for each state"),
         write_xstate,
         (*MACHINE, HOST, TOLD),
     ),
     ExportTarget(
         "scxml",
         "SCXML",
-        told("one W3C state chart, and one GLB with an animation for each state"),
+        phrase("one W3C state chart, and one GLB with an animation for each state"),
         write_scxml,
         (*MACHINE, HOST, FORGETFUL),
     ),

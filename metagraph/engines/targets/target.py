@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from metagraph.common.wording import Told, told
+from metagraph.common.wording import Phrase, phrase
 from metagraph.engines.export import Chosen, nothing_chosen
 from metagraph.graph.model import Project
 from metagraph.motion.character_mesh import Character
@@ -28,8 +28,8 @@ class Loss:
         number = 1 if self.count is None else self.count(project)
         if not number:
             return None
-        template = self.words.template if isinstance(self.words, Told) else self.words
-        return told(template, n=number) if "{n}" in template else self.words
+        template = self.words.template if isinstance(self.words, Phrase) else self.words
+        return phrase(template, n=number) if "{n}" in template else self.words
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ class ExportTarget:
     write: Callable[[ExportOrder], Made]
     losses: tuple[Loss, ...] = ()
     untried: str = ""
-    group: str = told("Formats")
+    group: str = phrase("Formats")
     unpacks: bool = False
 
 

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from metagraph.common.file_names import file_stems
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.engines.engine_machine import Arrow, Machine, State, animations, machines
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
 from metagraph.engines.targets.meshes import mesh_of
@@ -52,11 +52,11 @@ INTEGER, TRIGGER = 3, 9  # types of parameters
 Row = tuple[int, int, str, Mapping[str, Any]]
 
 MOMENT = Loss(
-    told(
+    phrase(
         "what is asked for after the moment from which an action may be left waits until it has ended: an exit time is one moment"
     )
 )
-UNTRIED = told("written field by field as Unity writes its own files; there was no Unity to open it with")
+UNTRIED = phrase("written field by field as Unity writes its own files; there was no Unity to open it with")
 
 
 def controller(
@@ -384,7 +384,7 @@ TARGETS = (
     ExportTarget(
         "unity-controller",
         "Unity Animator Controller",
-        told(
+        phrase(
             "an Animator Controller with Avatar Masks and clips as Unity's own text assets, a guide to them, and "
             "the mesh as a GLB"
         ),

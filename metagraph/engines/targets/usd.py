@@ -13,7 +13,7 @@ from typing import Any
 
 import msgspec
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.engines.export import exported_clips
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.runtimes import written
@@ -146,16 +146,18 @@ TARGETS = (
     ExportTarget(
         "usd",
         "USD (UsdSkel)",
-        told(
+        phrase(
             "a stage: skeleton, skinned mesh with blend shapes, an animation for each "
             "clip, the graph; JSON and "
             "GLB beside it"
         ),
         write,
         (
-            Loss(told("no planner: the stage holds clips and graph for programs that ask; one clip plays")),
+            Loss(phrase("no planner: the stage holds clips and graph for programs that ask; one clip plays")),
             Loss(
-                told("no life layers: breathing, gaze, blinks and lips are not in the clips; a bake has them")
+                phrase(
+                    "no life layers: breathing, gaze, blinks and lips are not in the clips; a bake has them"
+                )
             ),
         ),
     ),

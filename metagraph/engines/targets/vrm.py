@@ -16,7 +16,7 @@ import msgspec
 import numpy as np
 
 from metagraph.common.files import read_file
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
@@ -99,7 +99,7 @@ def meta_of(project: Project, folder: Path | None) -> tuple[dict[str, Any], bool
         said = msgspec.json.decode(read_file(path, _LARGEST), type=dict[str, Any])
     except msgspec.MsgspecError as error:
         raise FileError(
-            path, told("it is no JSON object ({error})", error=error), told("its content"), _remedy()
+            path, phrase("it is no JSON object ({error})", error=error), phrase("its content"), _remedy()
         ) from None
     for key, value in said.items():
         fits = (
@@ -112,8 +112,8 @@ def meta_of(project: Project, folder: Path | None) -> tuple[dict[str, Any], bool
             allowed = f"one of {', '.join(_WORDS[key])}" if key in _WORDS else "known to VRM"
             raise FileError(
                 path,
-                told("what it says is not {allowed}", allowed=allowed),
-                told("field '{key}'", key=key),
+                phrase("what it says is not {allowed}", allowed=allowed),
+                phrase("field '{key}'", key=key),
                 _remedy(),
             )
     return {**meta, **usual, **said, "licenseUrl": LICENCE}, True
@@ -169,7 +169,7 @@ def _write(order: ExportOrder) -> Made:
     lacking = [role for role in REQUIRED if role not in roles]
     if lacking:
         raise ExportError(
-            told(
+            phrase(
                 "VRM needs a humanoid: no joint was found for {names}. Say which it is under the "
                 "character's joints",
                 names=", ".join(lacking[:3]),
@@ -178,10 +178,10 @@ def _write(order: ExportOrder) -> Made:
     _, at = skeleton.globals(skeleton.rest)
     axes = axes_of(skeleton, roles, at)
     if axes[2] @ [0, 0, 1] < 0.95:
-        raise ExportError(told("VRM's figures look along +Z in their rest pose, and this one does not"))
+        raise ExportError(phrase("VRM's figures look along +Z in their rest pose, and this one does not"))
     body, notes = mesh_of(order)
     if body is None:
-        raise ExportError(told("VRM is a character: choose a mesh that fits the clips, and export with it"))
+        raise ExportError(phrase("VRM is a character: choose a mesh that fits the clips, and export with it"))
     order.tell(0, 2, "clips")
     bones = humanoid(skeleton, roles)
     meta, said = meta_of(project, order.contents.base)
@@ -219,12 +219,12 @@ def _grounded(pose: Pose, skeleton: Skeleton, roles: Mapping[str, int]) -> Pose:
 TARGETS = (
     ExportTarget(
         "vrm",
-        told("VRM 1.0 avatar"),
-        told("a VRM: the character in a T, its bones, expressions and licence, clips as animations"),
+        phrase("VRM 1.0 avatar"),
+        phrase("a VRM: the character in a T, its bones, expressions and licence, clips as animations"),
         _write,
         (
-            Loss(told("no meta-graph: an avatar's program moves it, the clips are there by their names")),
-            Loss(told("no life layers: breathing, gaze, blinks and lips are the program's")),
+            Loss(phrase("no meta-graph: an avatar's program moves it, the clips are there by their names")),
+            Loss(phrase("no life layers: breathing, gaze, blinks and lips are the program's")),
         ),
     ),
 )

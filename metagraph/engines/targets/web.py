@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.engines.targets.runtimes import BML, RUNTIMES, copied, written
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
 from metagraph.engines.targets.web_tools import NET, THREE, at_hand, bundled, import_map, three
@@ -54,7 +54,7 @@ def write(order: ExportOrder) -> Made:
         if theirs is None:
             said = _FROM_THE_NET
             notes.append(
-                told(
+                phrase(
                     "three.js is not at hand: the page loads version {version} from the net, and the browser "
                     "checks its digest. With npm installed, exporting again puts it beside the page",
                     version=THREE,
@@ -80,13 +80,13 @@ def write(order: ExportOrder) -> Made:
 TARGETS = (
     ExportTarget(
         "web",
-        told("Web page"),
-        told(
+        phrase("Web page"),
+        phrase(
             "a folder for any static server: a page, the character as an element for any other, JSON and GLB"
         ),
         write,
-        (BML, Loss(told("the picture: light and floor are the page's own, the motion is the same"))),
-        group=told("Played as the preview does"),
+        (BML, Loss(phrase("the picture: light and floor are the page's own, the motion is the same"))),
+        group=phrase("Played as the preview does"),
         unpacks=True,
     ),
 )

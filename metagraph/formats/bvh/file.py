@@ -23,7 +23,7 @@ from metagraph.common.budgets import (
     Allowance,
 )
 from metagraph.common.files import read_file
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.bvh.decimal_text import decimals
@@ -37,7 +37,7 @@ from metagraph.motion.skeleton import Skeleton, unique_names
 Array = NDArray[Any]
 
 _LONGEST_HEADER = 16 * MIB
-_DAMAGED = told("The file is damaged: export it again.")
+_DAMAGED = phrase("The file is damaged: export it again.")
 _TO_Y_UP = rotation.from_axis_angle([1, 0, 0], -np.pi / 2)
 
 
@@ -66,17 +66,17 @@ def read_bvh(path: str | Path, scale: float | None = None, as_is: Collection[str
     if head[:9].upper() != b"HIERARCHY":
         raise FileError(
             path,
-            told("it does not begin with HIERARCHY"),
-            told("line 1"),
-            told("Check that it is a BVH file."),
+            phrase("it does not begin with HIERARCHY"),
+            phrase("line 1"),
+            phrase("Check that it is a BVH file."),
         )
     motion = re.search(rb"(?im)^[ \t]*MOTION[ \t]*\r?$", data)
     if motion is None:
         raise FileError(
-            path, told("it has no MOTION section"), told("its end"), told("Export it with its motion.")
+            path, phrase("it has no MOTION section"), phrase("its end"), phrase("Export it with its motion.")
         )
     if motion.start() > _LONGEST_HEADER:
-        raise FileError(path, told("its HIERARCHY is longer than any"), told("its HIERARCHY"), _DAMAGED)
+        raise FileError(path, phrase("its HIERARCHY is longer than any"), phrase("its HIERARCHY"), _DAMAGED)
     joints = _Header(path, data[: motion.start()].decode("utf-8", "replace")).joints()
     notes: list[str] = []
     values, fps = _motion(path, data, motion.end(), sum(len(j.channels) for j in joints), notes)
@@ -88,7 +88,7 @@ def _afford(path: Path, size: int, frames: int, joints: list[_Joint]) -> None:
     """Refuse what would take far more memory than the file has: joints without channels cost it nothing."""
 
     def refuse(where: str) -> None:
-        raise FileError(path, OUT_OF_PROPORTION, where, told("Leave out the joints that do not move."))
+        raise FileError(path, OUT_OF_PROPORTION, where, phrase("Leave out the joints that do not move."))
 
     placed = sum(any(name[1] == "p" for name in joint.channels) for joint in joints)
     Allowance(size, refuse).spend(frames * (len(joints) * 64 + placed * 96), f"its {len(joints)} joints")
@@ -108,11 +108,11 @@ class _Header:
         self.opened: int | None = None  # whose brace comes next
 
     def fail(self, cause: str, line: int, remedy: str = _DAMAGED) -> NoReturn:
-        raise FileError(self.path, cause, told("line {line}", line=line), remedy)
+        raise FileError(self.path, cause, phrase("line {line}", line=line), remedy)
 
     def next(self) -> tuple[str, int]:
         if self.at >= len(self.words):
-            self.fail(told("the HIERARCHY section ends too early"), self.words[-1][1] if self.words else 1)
+            self.fail(phrase("the HIERARCHY section ends too early"), self.words[-1][1] if self.words else 1)
         self.at += 1
         return self.words[self.at - 1]
 
@@ -121,9 +121,9 @@ class _Header:
         try:
             value = float(word)
         except ValueError:
-            self.fail(told("'{word}' is not a number", word=word[:40]), line)
+            self.fail(phrase("'{word}' is not a number", word=word[:40]), line)
         if not abs(value) < 1e9:
-            self.fail(told("{word} is not a sensible number", word=word[:40]), line)
+            self.fail(phrase("{word} is not a sensible number", word=word[:40]), line)
         return value
 
     def joints(self) -> list[_Joint]:
@@ -133,7 +133,7 @@ class _Header:
             word, line = self.next()
             kind = word.upper()
             if self.opened is not None and kind != "{":
-                self.fail(told("expected '{{', found '{word}'", word=word[:40]), line)
+                self.fail(phrase("expected '{{', found '{word}'", word=word[:40]), line)
             match kind:
                 case "ROOT" | "JOINT" | "END":
                     self._begin(word, kind, line)
@@ -146,83 +146,83 @@ class _Header:
                 case "CHANNELS":
                     self._channels(line)
                 case _:
-                    self.fail(told("'{word}' is not expected here", word=word[:40]), line)
+                    self.fail(phrase("'{word}' is not expected here", word=word[:40]), line)
         self._whole()
         return self.found
 
     def _begin(self, word: str, kind: str, line: int) -> None:
         """Read the name of a joint or an End Site."""
         if kind == "ROOT" and self.stack:
-            self.fail(told("a ROOT stands inside another joint"), line)
+            self.fail(phrase("a ROOT stands inside another joint"), line)
         if kind != "ROOT" and (not self.stack or self.stack[-1] < 0):
-            self.fail(told("a {word} stands outside any joint", word=word[:10]), line)
+            self.fail(phrase("a {word} stands outside any joint", word=word[:10]), line)
         name = []
         while self.at < len(self.words) and self.words[self.at][0] != "{":
             name.append(self.next()[0])
             if len(name) > 64:
-                self.fail(told("no '{{' follows {kind}", kind=kind), line)
+                self.fail(phrase("no '{{' follows {kind}", kind=kind), line)
         if kind == "END":
             self.opened = -1
             return
         if len(self.found) >= JOINTS:
-            self.fail(told("it has more than the {JOINTS} joints of any character", JOINTS=JOINTS), line)
+            self.fail(phrase("it has more than the {JOINTS} joints of any character", JOINTS=JOINTS), line)
         self.found.append(_Joint(" ".join(name), self.stack[-1] if self.stack else -1, line))
         self.opened = len(self.found) - 1
 
     def _open(self, line: int) -> None:
         if self.opened is None:
-            self.fail(told("'{' without a joint"), line)
+            self.fail(phrase("'{' without a joint"), line)
         if len(self.stack) >= JOINTS_DEEP:
             self.fail(
-                told("its joints hang on each other more than {most} deep", most=JOINTS_DEEP),
+                phrase("its joints hang on each other more than {most} deep", most=JOINTS_DEEP),
                 line,
-                told("Leave out ropes, hair and cloth, or export the character alone."),
+                phrase("Leave out ropes, hair and cloth, or export the character alone."),
             )
         self.stack.append(self.opened)
         self.opened = None
 
     def _close(self, line: int) -> None:
         if not self.stack:
-            self.fail(told("'}' without a '{'"), line)
+            self.fail(phrase("'}' without a '{'"), line)
         self.stack.pop()
 
     def _offset(self, line: int) -> None:
         if not self.stack:
-            self.fail(told("OFFSET outside any joint"), line)
+            self.fail(phrase("OFFSET outside any joint"), line)
         offset = (self.number(), self.number(), self.number())
         if self.stack[-1] >= 0:
             self.found[self.stack[-1]].offset = offset
 
     def _channels(self, line: int) -> None:
         if not self.stack or self.stack[-1] < 0:
-            self.fail(told("CHANNELS outside any joint"), line)
+            self.fail(phrase("CHANNELS outside any joint"), line)
         joint = self.found[self.stack[-1]]
         word, _ = self.next()
         if not word.isdecimal() or len(word) > 9 or int(word) > 64:
-            self.fail(told("'{word}' is not a number of channels", word=word[:40]), line)
+            self.fail(phrase("'{word}' is not a number of channels", word=word[:40]), line)
         if joint.channels:
-            self.fail(told("joint '{name}' has CHANNELS twice", name=joint.name), line)
+            self.fail(phrase("joint '{name}' has CHANNELS twice", name=joint.name), line)
         for _ in range(int(word)):
             channel, at = self.next()
             if not re.fullmatch(r"(?i)[xyz](position|rotation|scale)", channel):
                 self.fail(
-                    told("'{channel}' is not a channel", channel=channel[:40]),
+                    phrase("'{channel}' is not a channel", channel=channel[:40]),
                     at,
-                    told("Make the number after CHANNELS fit the names that follow."),
+                    phrase("Make the number after CHANNELS fit the names that follow."),
                 )
             if channel.lower() in joint.channels and channel[1].lower() == "p":
-                self.fail(told("channel {channel} comes twice", channel=channel), at)
+                self.fail(phrase("channel {channel} comes twice", channel=channel), at)
             joint.channels.append(channel.lower())
 
     def _whole(self) -> None:
         """Refuse a section that ends within a joint, has none, or leaves one without a place."""
         if self.stack:
-            self.fail(told("{count} '}}' are missing", count=len(self.stack)), self.words[-1][1])
+            self.fail(phrase("{count} '}}' are missing", count=len(self.stack)), self.words[-1][1])
         if not self.found:
-            self.fail(told("there is no ROOT"), 1)
+            self.fail(phrase("there is no ROOT"), 1)
         for joint in self.found:
             if not joint.offset:
-                self.fail(told("joint '{name}' has no OFFSET", name=joint.name), joint.line)
+                self.fail(phrase("joint '{name}' has no OFFSET", name=joint.name), joint.line)
 
 
 def _motion(path: Path, data: bytes, at: int, channels: int, notes: list[str]) -> tuple[Array, float]:
@@ -233,48 +233,50 @@ def _motion(path: Path, data: bytes, at: int, channels: int, notes: list[str]) -
     if head is None:
         raise FileError(
             path,
-            told("'Frames:' and 'Frame Time:' do not follow MOTION"),
-            told("line {line}", line=_line(data, at)),
+            phrase("'Frames:' and 'Frame Time:' do not follow MOTION"),
+            phrase("line {line}", line=_line(data, at)),
             _DAMAGED,
         )
     where = f"line {_line(data, head.start(1))}"
     try:
         promised, step = int(head[1]), float(head[2])
     except ValueError:
-        raise FileError(path, told("'Frames:' and 'Frame Time:' are not numbers"), where, _DAMAGED) from None
+        raise FileError(
+            path, phrase("'Frames:' and 'Frame Time:' are not numbers"), where, _DAMAGED
+        ) from None
     if not FRAME_SECONDS[0] <= step <= FRAME_SECONDS[1]:
         raise FileError(
             path,
-            told("a frame time of {step:g} s makes no sense", step=step),
-            told("line {line}", line=_line(data, head.start(2))),
-            told("Write the seconds per frame, such as 0.0333333."),
+            phrase("a frame time of {step:g} s makes no sense", step=step),
+            phrase("line {line}", line=_line(data, head.start(2))),
+            phrase("Write the seconds per frame, such as 0.0333333."),
         )
     if channels == 0:
         raise FileError(
             path,
-            told("no joint has any CHANNELS"),
-            told("its HIERARCHY"),
-            told("Export it with rotation channels."),
+            phrase("no joint has any CHANNELS"),
+            phrase("its HIERARCHY"),
+            phrase("Export it with rotation channels."),
         )
     start = head.end()
     numbers = _numbers(path, data, start, channels)
     rows, rest = divmod(len(numbers), channels)
     if rows > FRAMES or (rows - 1) * step > CLIP_SECONDS:
-        cause = told("it has {rows:,} frames, {value:.0f} s", rows=rows, value=rows * step)
-        raise FileError(path, cause, where, told("Cut the take into pieces."))
+        cause = phrase("it has {rows:,} frames, {value:.0f} s", rows=rows, value=rows * step)
+        raise FileError(path, cause, where, phrase("Cut the take into pieces."))
     if rows == 0 or (promised <= 0 and rows > 1):
         cause = (
-            told("'Frames:' says {promised} but {rows} rows follow", promised=promised, rows=rows)
+            phrase("'Frames:' says {promised} but {rows} rows follow", promised=promised, rows=rows)
             if rows
-            else told("it has no frames")
+            else phrase("it has no frames")
         )
-        raise FileError(path, cause, where, told("Export it with its motion."))
+        raise FileError(path, cause, where, phrase("Export it with its motion."))
     if (rest and rows + 1 < promised) or abs(rows - promised) > 1:
         line = _uneven_row(data, start, channels)
         cause = (
-            told("this row does not hold {channels} numbers", channels=channels)
+            phrase("this row does not hold {channels} numbers", channels=channels)
             if line
-            else told(
+            else phrase(
                 "'Frames:' says {promised} but {rows} rows of {channels} numbers follow",
                 promised=promised,
                 rows=rows,
@@ -284,16 +286,16 @@ def _motion(path: Path, data: bytes, at: int, channels: int, notes: list[str]) -
         raise FileError(
             path,
             cause,
-            told("line {line}", line=line) if line else where,
-            told("Make it say {rows}, or export the file again.", rows=rows) if not line else _DAMAGED,
+            phrase("line {line}", line=line) if line else where,
+            phrase("Make it say {rows}, or export the file again.", rows=rows) if not line else _DAMAGED,
         )
     if rest:
         line = _uneven_row(data, start, channels)
         if line and line < _line(data, len(data.rstrip())):
             raise FileError(
                 path,
-                told("this row does not hold {channels} numbers", channels=channels),
-                told("line {line}", line=line),
+                phrase("this row does not hold {channels} numbers", channels=channels),
+                phrase("line {line}", line=line),
                 _DAMAGED,
             )
         notes.append("its last row was cut off and was dropped")
@@ -349,14 +351,14 @@ def _numbers(path: Path, data: bytes, start: int, channels: int) -> Array:
                 text = word[:40].decode("utf-8", "replace")
                 raise FileError(
                     path,
-                    told("'{text}' is not a sensible number", text=text),
-                    told("line {value}", value=first + i),
+                    phrase("'{text}' is not a sensible number", text=text),
+                    phrase("line {value}", value=first + i),
                     _DAMAGED,
                 )
     raise FileError(
         path,
-        told("it holds bytes that are not numbers"),
-        told("line {line}", line=first),
+        phrase("it holds bytes that are not numbers"),
+        phrase("line {line}", line=first),
         _DAMAGED,
     )
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.conversations.languages import Lists, Speaking, languages_of
 from metagraph.formats.conversations.sounds import Reading, length_of, voices_of
@@ -70,11 +70,11 @@ def read_conversation(
     """
     if not 1 <= len(audio) <= most:
         raise ValueError(
-            told("a conversation has up to {most} sound files, one for each who speaks", most=most)
+            phrase("a conversation has up to {most} sound files, one for each who speaks", most=most)
         )
     if len(transcripts) > 1 and len(audio) > 1 and len(transcripts) != len(audio):
         raise ValueError(
-            told(
+            phrase(
                 "there are {count} sounds and {count2} transcripts: give one transcript, or one for "
                 "each sound",
                 count=len(audio),
@@ -83,22 +83,22 @@ def read_conversation(
         )
     if len(transcripts) > most:
         raise ValueError(
-            told("a conversation has one transcript, or one for each of up to {most} who speak", most=most)
+            phrase("a conversation has one transcript, or one for each of up to {most} who speak", most=most)
         )
     reading = Reading(cancelled=cancelled)
     said = [(path, read_transcript(path)) for path in transcripts]
     for path, transcript in said:
-        reading.notes += [told("{name}: {note}.", name=path.name, note=note) for note in transcript.notes]
+        reading.notes += [phrase("{name}: {note}.", name=path.name, note=note) for note in transcript.notes]
     voices = voices_of(reading, list(audio), bool(said), most)
     if len(voices) > 1 and 1 < len(said) != len(voices):
         raise FileError(
             audio[0],
-            told(
+            phrase(
                 "has {count} channels, and there are {count2} transcripts",
                 count=len(voices),
                 count2=len(said),
             ),
-            remedy=told("Give one transcript that names the speakers, or one for each channel."),
+            remedy=phrase("Give one transcript that names the speakers, or one for each channel."),
         )
     found = sides_of(reading.notes, voices, said, most)
     length = max(length_of(v) for v, _ in found)
@@ -179,7 +179,7 @@ def _all_of(heard: Sequence[HeardSound]) -> HeardSound | None:
 
 
 def _called(voice: Voice, said: Told) -> str:
-    return told("{name} ({voice})", name=said.name, voice=voice.called) if said.name else voice.called
+    return phrase("{name} ({voice})", name=said.name, voice=voice.called) if said.name else voice.called
 
 
 def _kept(
@@ -203,7 +203,7 @@ def _kept(
         out.append(Segment(s.kind, s.start, end, peak, s.text, to))
     if len(out) < len(given):
         reading.notes.append(
-            told(
+            phrase(
                 "{called}: {count} left out, past the end of the sound at {length:.1f} s.",
                 called=called,
                 count=count(len(given) - len(out), "segment"),
@@ -218,17 +218,17 @@ def _tell_wordless(
 ) -> None:
     if shared:
         reading.notes.append(
-            told(
+            phrase(
                 "{called}: no words are known of this side, so it says nothing. Add a transcript "
                 "that names {value} speakers.",
                 called=called,
-                value=told("both" if sides == 2 else "all"),
+                value=phrase("both" if sides == 2 else "all"),
             )
         )
         return
     if found:
         reading.notes.append(
-            told(
+            phrase(
                 "{called}: no words, so loudness tells: {count} between pauses; short sounds while "
                 "the partner talks count as responses, and hesitations are not found. Add a "
                 "transcript to tell them apart.",
@@ -240,13 +240,13 @@ def _tell_wordless(
     level = voice.heard.level
     top, floor = float(np.percentile(level, 99.5)), float(np.percentile(level, 10))
     if top < HUSH:
-        why = told("it is silent. Check the microphone, or choose another channel")
+        why = phrase("it is silent. Check the microphone, or choose another channel")
     elif top - floor < LEAST:
-        why = told(
+        why = phrase(
             "nothing stands out of a steady noise. Check the microphone, or record closer to the speaker"
         )
     elif activity(voice.heard, None, None):
-        why = told("what is heard there is the partner, or no voice. Add a transcript if somebody speaks")
+        why = phrase("what is heard there is the partner, or no voice. Add a transcript if somebody speaks")
     else:
-        why = told("no speech was found. Add a transcript if somebody speaks")
-    reading.notes.append(told("{called}: {why}.", called=called, why=why))
+        why = phrase("no speech was found. Add a transcript if somebody speaks")
+    reading.notes.append(phrase("{called}: {why}.", called=called, why=why))

@@ -7,14 +7,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.formats.conversations.words import Told
 from metagraph.formats.transcripts.words import count, listed
 from metagraph.graph.conversation.model import AUTO
 from metagraph.speech.language_detection import Spoken, language_spoken
 from metagraph.speech.language_packs import ENGLISH, Language, languages
 
-_BY_LISTS = told(
+_BY_LISTS = phrase(
     "responses, hesitations and clauses go by that language's lists, lips by its letters as English spells. "
     "Choose another language if that is wrong."
 )
@@ -36,7 +36,7 @@ class Speaking:
     def __post_init__(self) -> None:
         if self.language not in (AUTO, *self.packs):
             raise ValueError(
-                told(
+                phrase(
                     "there are no words of '{language}': known are {names}; choose one, 'auto', or "
                     "give a list of words of your own",
                     language=self.language[:40],
@@ -68,7 +68,7 @@ def languages_of(
             if found is not None and found.language not in (None, chosen):
                 assert found.language is not None
                 notes.append(
-                    told(
+                    phrase(
                         "{name}: its words look {called}; they are read as {called2}, as was chosen.",
                         name=name,
                         called=found.language.called,
@@ -111,9 +111,9 @@ def _all_alike(spoken: Sequence[Spoken]) -> list[str]:
     assert spoken[0].language is not None
     if spoken[0].language.code == ENGLISH:
         return []
-    of = listed([told("{known:,} of {words:,}", known=s.known, words=s.words) for s in spoken])
+    of = listed([phrase("{known:,} of {words:,}", known=s.known, words=s.words) for s in spoken])
     return [
-        told(
+        phrase(
             "Both speak {language}, as {of} words tell; {lists}"
             if len(spoken) == 2
             else "All speak {language}, as {of} words tell; {lists}",
@@ -135,7 +135,7 @@ def _told(
 ) -> list[str]:
     if read is None and found.how != "unknown":
         return [
-            told(
+            phrase(
                 "{name}: {count} do not tell the language; as the other's is not known, sound tells clauses "
                 "and short answers here, too.",
                 name=name,
@@ -145,7 +145,7 @@ def _told(
     if read is None:
         known = ", ".join(speaking.packs)
         return [
-            told(
+            phrase(
                 "{name}: its words are of no language that there are lists for ({known}), so sound tells "
                 "clauses and short answers, and no word is taken for a response or a hesitation. Choose the "
                 "language, or give a list of its words.",
@@ -157,7 +157,7 @@ def _told(
         if read.code == ENGLISH:
             return []
         return [
-            told(
+            phrase(
                 "{name}: its words are {language}, as {known:,} of {words:,} tell; {lists}",
                 name=name,
                 language=read.called,
@@ -167,13 +167,13 @@ def _told(
             )
         ]
     if partner is not None and partner.language is read:
-        why = told("as the other's are")
+        why = phrase("as the other's are")
     elif speaking.otherwise == read.code:
-        why = told("which the project is set to")
+        why = phrase("which the project is set to")
     else:
-        why = told("which is taken then")
+        why = phrase("which is taken then")
     return [
-        told(
+        phrase(
             "{name}: {count} are too few to tell the language by; undecided, they are read as {language}, "
             "{why}."
             if found.words < 12

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.budgets import CONVERSATION_SECONDS as LONGEST
-from metagraph.common.wording import joined, told
+from metagraph.common.wording import join_phrases, phrase
 from metagraph.errors import FileError
 from metagraph.formats.conversations.words import Voice
 from metagraph.speech.activity import HUSH
@@ -26,8 +26,8 @@ RATE = 16000  # samples a second that are kept; speech has nothing above half of
 CLIPPED = 1e-4  # share of samples cut off at full scale that is worth a word
 SAME = 1e-4  # of full scale: two channels that differ by less are one
 UNLIKE = 0.5  # seconds two files may differ in length without a word
-_SIDES = (told("left"), told("right"))
-_NUMBERS = {2: told("two"), 3: told("three"), 4: told("four")}
+_SIDES = (phrase("left"), phrase("right"))
+_NUMBERS = {2: phrase("two"), 3: phrase("three"), 4: phrase("four")}
 
 
 @dataclass
@@ -57,23 +57,23 @@ def voices_of(reading: Reading, audio: list[Path], worded: bool, most: int) -> t
     _tell_kind(reading, path, read.really)
     channels = len(read.samples)
     if channels > most:
-        asks = told("a conversation of two has one for each")
+        asks = phrase("a conversation of two has one for each")
         if most != 2:
-            asks = told("a conversation has up to {most}", most=most)
+            asks = phrase("a conversation has up to {most}", most=most)
         raise FileError(
             path,
-            told("has {channels} channels, {asks}", channels=channels, asks=asks),
-            remedy=told("Save the speakers' channels as one file, or as one for each."),
+            phrase("has {channels} channels, {asks}", channels=channels, asks=asks),
+            remedy=phrase("Save the speakers' channels as one file, or as one for each."),
         )
     called = [
-        told("{name}, {channel}", name=path.name, channel=_channel(n, channels)) for n in range(channels)
+        phrase("{name}, {channel}", name=path.name, channel=_channel(n, channels)) for n in range(channels)
     ]
     sounding = _sounding(read.samples) if channels > 1 else []
     if len(sounding) > 1 or (channels == 2 and len(sounding) == 1):
         if channels == 2 and len(sounding) == 1:
             here, silent = (_SIDES[n] for n in (sounding[0], 1 - sounding[0]))
             reading.notes.append(
-                told(
+                phrase(
                     "{name}: the {silent} channel is silent. If both speak in the {here} one, save "
                     "that alone and add a transcript that names the speakers; else check the microphone.",
                     name=path.name,
@@ -82,9 +82,9 @@ def voices_of(reading: Reading, audio: list[Path], worded: bool, most: int) -> t
                 )
             )
         elif len(sounding) < channels:
-            gone = joined([_channel(n, channels) for n in range(channels) if n not in sounding], ", ")
+            gone = join_phrases([_channel(n, channels) for n in range(channels) if n not in sounding], ", ")
             reading.notes.append(
-                told("{name}: {gone} left out, which nothing is heard in.", name=path.name, gone=gone)
+                phrase("{name}: {gone} left out, which nothing is heard in.", name=path.name, gone=gone)
             )
         kept = range(channels) if channels == 2 else sounding
         for n in kept:
@@ -94,23 +94,23 @@ def voices_of(reading: Reading, audio: list[Path], worded: bool, most: int) -> t
     if hushed and not worded:
         raise FileError(
             path,
-            told("is silent"),
-            remedy=told("Check the microphone, or what was exported, and save the sound anew."),
+            phrase("is silent"),
+            remedy=phrase("Check the microphone, or what was exported, and save the sound anew."),
         )
-    why = told(
+    why = phrase(
         "has the same sound in both channels" if channels == 2 else "has one sound in all its channels"
     )
     if hushed or channels == 1:
-        why = told("is silent" if hushed else "has one channel")
+        why = phrase("is silent" if hushed else "has one channel")
     if not worded:
         raise FileError(
             path,
-            told("{why}, so that nobody can tell who speaks", why=why),
-            remedy=told("Give a channel or a file for each, or a transcript that names the speakers."),
+            phrase("{why}, so that nobody can tell who speaks", why=why),
+            remedy=phrase("Give a channel or a file for each, or a transcript that names the speakers."),
         )
     _tell_clipped(reading, path.name, max(read.clipped))
     reading.notes.append(
-        told(
+        phrase(
             "{name} {why}: all sides share it, and only the transcript tells who speaks.",
             name=path.name,
             why=why,
@@ -121,8 +121,8 @@ def voices_of(reading: Reading, audio: list[Path], worded: bool, most: int) -> t
 
 def _channel(n: int, channels: int) -> str:
     if channels == 2:
-        return told("{side} channel", side=_SIDES[n])
-    return told("channel {number}", number=n + 1)
+        return phrase("{side} channel", side=_SIDES[n])
+    return phrase("channel {number}", number=n + 1)
 
 
 def _sounding(samples: Array) -> list[int]:
@@ -141,7 +141,7 @@ def _sounding(samples: Array) -> list[int]:
 def _tell_kind(reading: Reading, path: Path, really: str) -> None:
     if really:
         reading.notes.append(
-            told(
+            phrase(
                 "{name} is {really} in spite of its ending; it was read as that. Other programs may "
                 "refuse it: rename it.",
                 name=path.name,
@@ -160,7 +160,7 @@ def _files(reading: Reading, audio: list[Path]) -> tuple[Voice, ...]:
         channels = len(read.samples)
         if channels > 1:
             reading.notes.append(
-                told(
+                phrase(
                     "{name} has {channels} channels; as it is one of {count} files, they are mixed.",
                     name=path.name,
                     channels=channels,
@@ -175,7 +175,7 @@ def _files(reading: Reading, audio: list[Path]) -> tuple[Voice, ...]:
     if len(set(rates)) > 1:
         other = next(n for n, rate in enumerate(rates) if rate != rates[0])
         reading.notes.append(
-            told(
+            phrase(
                 "{name} has {rates} samples a second and {name2} {rates2}; each is read at its own. "
                 "If one runs away from the other, record both at the same rate.",
                 name=audio[0].name,
@@ -188,7 +188,7 @@ def _files(reading: Reading, audio: list[Path]) -> tuple[Voice, ...]:
     longest, shortest = (lengths.index(f(lengths)) for f in (max, min))
     if lengths[longest] - lengths[shortest] > UNLIKE:
         reading.notes.append(
-            told(
+            phrase(
                 "{name} lasts {lengths:.1f} s and {name2} {lengths2:.1f} s; the shorter one is "
                 "silent then. Check that both begin at the same moment.",
                 name=audio[longest].name,
@@ -212,7 +212,7 @@ def _voice(
 def _tell_clipped(reading: Reading, called: str, clipped: float) -> None:
     if clipped > CLIPPED:
         reading.notes.append(
-            told(
+            phrase(
                 "{called}: {value:.2g} % of the samples are cut off at full scale; loudness and "
                 "pitch are less sure. Record softer.",
                 called=called,

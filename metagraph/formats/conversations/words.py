@@ -13,7 +13,7 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
-from metagraph.common.wording import joined, told
+from metagraph.common.wording import join_phrases, phrase
 from metagraph.errors import FileError
 from metagraph.formats.transcripts.words import Transcript, count, listed
 from metagraph.graph.conversation.model import SHORTEST, Segment, Word
@@ -85,7 +85,7 @@ def _sharing(
         loud = [_loudness(voices, one.words, n) for n in range(len(voices))]
         out.append((voices[loud.index(max(loud))], one))
     notes.append(
-        told(
+        phrase(
             "{name} names {count} speakers of {count2} channels: some share one, and there only the "
             "transcript tells who speaks.",
             name=path.name,
@@ -120,13 +120,15 @@ def _speakers(notes: list[str], path: Path, transcript: Transcript, most: int) -
     if len(found) > most:
         kept = sorted(found, key=lambda s: -(len(s.words) or len(s.segments or ())))[:most]
         left = [s for s in found if s not in kept]
-        gone = joined([f"'{s.name[:40]}'" if s.name else told("one without a name") for s in left[:8]], ", ")
+        gone = join_phrases(
+            [f"'{s.name[:40]}'" if s.name else phrase("one without a name") for s in left[:8]], ", "
+        )
         notes.append(
-            told(
+            phrase(
                 "{name}: it has {count} speakers; left out of a conversation of {value}: {gone}.",
                 name=path.name,
                 count=len(found),
-                value=told("two") if most <= 2 else most,
+                value=phrase("two") if most <= 2 else most,
                 gone=gone,
             )
         )
@@ -151,10 +153,10 @@ def _one_a_side(
     )
     if better > here + 3 * sum(bool(s.words) for s in out):
         swapped = [(said[k][0].name, voices[n].called) for k, n in enumerate(of) if k != n]
-        each = [told("{name} fits {voice}", name=name, voice=voice) for name, voice in swapped]
+        each = [phrase("{name} fits {voice}", name=name, voice=voice) for name, voice in swapped]
         fits = listed(each)
         notes.append(
-            told(
+            phrase(
                 "{fits} better than the other way round; they were not swapped. Give them in the "
                 "order of the sides.",
                 fits=fits,
@@ -169,7 +171,7 @@ def _one_speaker(
     """Return what one speaker's words are to all sides: each word is whose channel is louder then."""
     if len(voices) == 1:
         notes.append(
-            told(
+            phrase(
                 "{name} names no two speakers, and the sound is one: all is taken for the first's. "
                 "Name the speakers in the transcript.",
                 name=path.name,
@@ -183,7 +185,7 @@ def _one_speaker(
         shares = [float(np.mean([s == n for s in sides])) for n in range(len(voices))]
         if max(shares) < 0.9:
             notes.append(
-                told(
+                phrase(
                     "{name} names no two speakers; each word is given to the side whose channel is "
                     "louder then.",
                     name=path.name,
@@ -194,11 +196,11 @@ def _one_speaker(
                 for n, v in enumerate(voices)
             )
         first = shares.index(max(shares))
-    rest = told("the other side has none, so its loudness tells what it says")
+    rest = phrase("the other side has none, so its loudness tells what it says")
     if len(voices) > 2:
-        rest = told("the others have none, so their loudness tells what they say")
+        rest = phrase("the others have none, so their loudness tells what they say")
     notes.append(
-        told(
+        phrase(
             "{name} has the words of one speaker, of {called}; {rest}.",
             name=path.name,
             called=voices[first].called,
@@ -248,18 +250,18 @@ def within(notes: list[str], called: str, said: Told, length: float) -> list[Wor
     gone = len(words) - len(out)
     cut = sum(w.end > length + 0.05 for w in words[: len(out)])
     if gone and not out and said.path is not None:
-        cause = told(
+        cause = phrase(
             "all its {count} lie past the end of the sound, which lasts {length:.1f} s",
             count=count(gone, "word"),
             length=length,
         )
-        raise FileError(said.path, cause, said.name, told("Choose this sound's own transcript."))
+        raise FileError(said.path, cause, said.name, phrase("Choose this sound's own transcript."))
     if gone or cut:
-        parts = [told("{count} left out", count=count(gone, "word"))] if gone else []
-        parts += [told("{count} cut", count=count(cut, "word"))] if cut else []
+        parts = [phrase("{count} left out", count=count(gone, "word"))] if gone else []
+        parts += [phrase("{count} cut", count=count(cut, "word"))] if cut else []
         does = listed(parts)
         notes.append(
-            told(
+            phrase(
                 "{called}: {does}, past the end of the sound at {length:.1f} s. Check that the "
                 "transcript is of this sound.",
                 called=called,
@@ -276,7 +278,7 @@ def tell_unheard(notes: list[str], called: str, words: Sequence[Word], voice: Vo
     heard = sum(any(s.start - 0.2 < (w.start + w.end) / 2 < s.end + 0.2 for s in spoken) for w in words)
     if len(words) >= 5 and heard < 0.5 * len(words):
         notes.append(
-            told(
+            phrase(
                 "{called}: {count} of {count2} lie where nothing is heard. Check that transcript and "
                 "sound belong together and begin at the same moment.",
                 called=called,

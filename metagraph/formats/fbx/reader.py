@@ -10,7 +10,7 @@ import numpy as np
 
 from metagraph.common.budgets import MOTION_FILE
 from metagraph.common.files import check_file
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.fbx import child as fbx_child
 from metagraph.formats.fbx.processes import ReaderError, convert
@@ -21,7 +21,7 @@ from metagraph.formats.takes import unique_takes
 from metagraph.motion.clip import Clip
 
 TIMEOUT = 120.0  # seconds for one file
-_AGAIN = told("Export it again from the program that made it, as binary FBX 2014 or later, or as GLB.")
+_AGAIN = phrase("Export it again from the program that made it, as binary FBX 2014 or later, or as GLB.")
 
 
 def read_fbx_clips(path: str | Path, timeout: float = TIMEOUT, as_is: Collection[str] = ()) -> list[Clip]:
@@ -35,27 +35,27 @@ def read_fbx_clips(path: str | Path, timeout: float = TIMEOUT, as_is: Collection
     if importlib.util.find_spec("ufbx") is None:
         raise FileError(
             path,
-            told("reading FBX needs the ufbx library, which is not installed"),
-            told("on opening it"),
-            told("Run: pip install 'metagraph-studio[fbx]'"),
+            phrase("reading FBX needs the ufbx library, which is not installed"),
+            phrase("on opening it"),
+            phrase("Run: pip install 'metagraph-studio[fbx]'"),
         )
     data = _converted(path, timeout)
     gltf = parse_gltf(path, data)
     if not gltf.json.animations:
         raise FileError(
             path,
-            told("it holds no animation"),
-            told("its animations"),
-            told("Export it with its animation baked."),
+            phrase("it holds no animation"),
+            phrase("its animations"),
+            phrase("Export it with its animation baked."),
         )
     with np.errstate(all="ignore"):
         clips = read_clips(gltf, build_rig(gltf, as_is), as_is)
     if not clips:
         raise FileError(
             path,
-            told("none of its takes moves the skeleton"),
-            told("its animations"),
-            told("Export it with its animation baked."),
+            phrase("none of its takes moves the skeleton"),
+            phrase("its animations"),
+            phrase("Export it with its animation baked."),
         )
     return unique_takes(clips)
 
@@ -67,9 +67,9 @@ def _converted(path: Path, timeout: float) -> bytes:
     except OSError as error:
         raise FileError(
             path,
-            told("the reader of FBX files did not start ({strerror})", strerror=error.strerror),
-            told("on opening it"),
-            told("Install Metagraph again."),
+            phrase("the reader of FBX files did not start ({strerror})", strerror=error.strerror),
+            phrase("on opening it"),
+            phrase("Install Metagraph again."),
         ) from error
     except ReaderError as error:
         raise _told(path, error, timeout) from None
@@ -80,28 +80,28 @@ def _told(path: Path, error: ReaderError, timeout: float) -> FileError:
     if code is None:
         return FileError(
             path,
-            told("it could not be read within {timeout:.0f} s", timeout=timeout),
-            told("on reading it"),
+            phrase("it could not be read within {timeout:.0f} s", timeout=timeout),
+            phrase("on reading it"),
             _AGAIN,
         )
     if code == fbx_child.MISSING:
         return FileError(
             path,
-            told("the ufbx library is installed but does not load"),
-            told("on opening it"),
-            told("Run: pip install --force-reinstall 'metagraph-studio[fbx]'"),
+            phrase("the ufbx library is installed but does not load"),
+            phrase("on opening it"),
+            phrase("Run: pip install --force-reinstall 'metagraph-studio[fbx]'"),
         )
     if code == fbx_child.REFUSED:
         return FileError(
-            path, told("it is not a sound FBX file ({words})", words=words), told("its content"), _AGAIN
+            path, phrase("it is not a sound FBX file ({words})", words=words), phrase("its content"), _AGAIN
         )
     if code < 0:
         return FileError(
             path,
-            told("the FBX library crashed on it (signal {value})", value=-code),
-            told("its content"),
+            phrase("the FBX library crashed on it (signal {value})", value=-code),
+            phrase("its content"),
             _AGAIN,
         )
     return FileError(
-        path, told("it could not be converted ({words})", words=words), told("its content"), _AGAIN
+        path, phrase("it could not be converted ({words})", words=words), phrase("its content"), _AGAIN
     )

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.gltf.columns import MODES, NO_MODE, SCALE, UNKNOWN, WEIGHTS, ChannelTable
 from metagraph.formats.gltf.file import Gltf
@@ -88,9 +88,9 @@ def check(gltf: Gltf, table: ChannelTable, number: int, where: str) -> None:
         animation = gltf.json.animations[number]
         sampler = animation.channels[channel].sampler
         if inputs[channel] < 0:
-            gltf.fail(told("sampler {sampler} does not exist", sampler=sampler), where)
+            gltf.fail(phrase("sampler {sampler} does not exist", sampler=sampler), where)
         mode = animation.samplers[sampler].interpolation
-        gltf.fail(told("interpolation '{mode}' is unknown", mode=mode), where)
+        gltf.fail(phrase("interpolation '{mode}' is unknown", mode=mode), where)
 
 
 def left_out(gltf: Gltf, table: ChannelTable, number: int) -> list[str]:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.budgets import CLIP_SECONDS
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.formats.gltf.channels import JointChannels, check, left_out, morph_channels, sound_times
 from metagraph.formats.gltf.columns import WEIGHTS, ChannelTable
 from metagraph.formats.gltf.file import Gltf, extras
@@ -74,7 +74,7 @@ def _planned(
     accessor, as they were read.
     """
     animation = gltf.json.animations[number]
-    where = told("animation {a} '{name}'", a=number, name=animation.name)
+    where = phrase("animation {a} '{name}'", a=number, name=animation.name)
     check(gltf, table, number, where)
     first, after = channels.of_take(number)
     morphs, notes = morph_channels(table, number), left_out(gltf, table, number)
@@ -87,7 +87,7 @@ def _planned(
     spend_keys(gltf, 8 * sum(map(len, own)), where)
     start, end = min(float(k[0]) for k in own), max(float(k[-1]) for k in own)
     if not end - start <= CLIP_SECONDS:
-        gltf.fail(told("it lasts {value:.3g} s", value=end - start), where)
+        gltf.fail(phrase("it lasts {value:.3g} s", value=end - start), where)
     wanted = extras(animation.extras).get("fps")
     fps = frame_rate(own, float(wanted) if isinstance(wanted, int | float) and 1 <= wanted <= 1000 else None)
     frames = max(1, round((end - start) * fps) + 1)
@@ -146,7 +146,7 @@ def _clips(
 
 def _not_finite(gltf: Gltf, rig: GltfRig, plan: _Plan, joint: int) -> NoReturn:
     name = rig.skeleton.names[joint]
-    gltf.fail(told("a key is not a number"), told("{where}, node '{name}'", where=plan.where, name=name))
+    gltf.fail(phrase("a key is not a number"), phrase("{where}, node '{name}'", where=plan.where, name=name))
 
 
 def _clip(
@@ -169,7 +169,7 @@ def _clip(
         bad = np.flatnonzero(~np.isfinite(translations).all((0, 2)))
         if len(bad):
             _not_finite(gltf, rig, plan, translated[int(bad[0])])
-        gltf.fail(told("a translation is out of range"), plan.where)
+        gltf.fail(phrase("a translation is out of range"), plan.where)
     morphs, weights = morph_weights(gltf, plan.morphs, keys, plan.grid, plan.where)
     stem = gltf.path.stem
     name, renaming = take_repair(plan.name, take_name(plan.name, stem), stem, as_is)
@@ -191,7 +191,7 @@ def _clip(
 def _key_times(gltf: Gltf, accessor: int, where: str) -> Array:
     times = np.asarray(gltf.array(accessor, where, "SCALAR"), np.float64)
     if not len(times):
-        gltf.fail(told("accessor {accessor} holds no key times", accessor=accessor), where)
+        gltf.fail(phrase("accessor {accessor} holds no key times", accessor=accessor), where)
     if not np.isfinite(times).all() or (np.diff(times) < 0).any():
-        gltf.fail(told("the key times of accessor {accessor} do not ascend", accessor=accessor), where)
+        gltf.fail(phrase("the key times of accessor {accessor} do not ascend", accessor=accessor), where)
     return times

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from metagraph.common.budgets import MOTION_FILE, OUT_OF_PROPORTION, PATH_LENGTH, Allowance
 from metagraph.common.files import read_file
 from metagraph.common.network_paths import reason
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.gltf.columns import WIDTHS, ChannelTable, PlainAccessors, decoded
 from metagraph.formats.gltf.meshopt import MeshoptError, unpacked
@@ -29,7 +29,7 @@ from metagraph.formats.gltf.values import Accessor, Buffer, BufferView, Document
 
 Array = NDArray[Any]
 
-DAMAGED = told("The file is damaged: export it again.")
+DAMAGED = phrase("The file is damaged: export it again.")
 _COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _DTYPES = {code: np.dtype(name) for code, name in _COMPONENTS.items()}
 # Required extensions that change nothing we read, or that the reader understands.
@@ -63,8 +63,8 @@ class Gltf:
         for name in document.extensions_required:
             if not name.startswith(_KNOWN):
                 self.fail(
-                    told("it needs the glTF extension {name}, which is not supported", name=name),
-                    told("its required extensions"),
+                    phrase("it needs the glTF extension {name}, which is not supported", name=name),
+                    phrase("its required extensions"),
                     _REMEDIES.get(name, "Export it again without it."),
                 )
 
@@ -81,7 +81,7 @@ class Gltf:
         """Return `items[index]`, or fail naming what refers to it."""
         if index >= len(items):
             self.fail(
-                told(
+                phrase(
                     "{kind} {index} does not exist (there are {count})",
                     kind=kind,
                     index=index,
@@ -97,7 +97,7 @@ class Gltf:
             value: Buffer = self.item(self.json.buffers, index, "buffer", where)
             if value.uri is None:
                 if index or self._binary is None:
-                    self.fail(told("buffer {index} has no data", index=index), where)
+                    self.fail(phrase("buffer {index} has no data", index=index), where)
                 self._buffers[index] = self._binary
             else:
                 self._buffers[index] = memoryview(self.resource(value.uri, f"buffer {index}"))
@@ -117,15 +117,15 @@ class Gltf:
                     else unquote(body).encode("latin-1")
                 )
             except (binascii.Error, ValueError) as error:
-                self.fail(told("its data URI cannot be decoded ({error})", error=error), where)
+                self.fail(phrase("its data URI cannot be decoded ({error})", error=error), where)
         name = unquote(uri[:PATH_LENGTH])
         if name in self._named:
             return self._named[name]
         if (why := reason(name, self.path.parent)) is not None:  # never: its files lie beside it
             self.fail(
-                told("'{name}' is not opened: {why}", name=name[:80], why=why),
+                phrase("'{name}' is not opened: {why}", name=name[:80], why=why),
                 where,
-                told("Put that file beside the glTF file."),
+                phrase("Put that file beside the glTF file."),
             )
         try:
             folder = self.path.parent.resolve()
@@ -135,17 +135,17 @@ class Gltf:
             target, inside = self.path / name, True
         if not inside:
             self.fail(
-                told("it points to '{name}', outside the file's own folder", name=name[:80]),
+                phrase("it points to '{name}', outside the file's own folder", name=name[:80]),
                 where,
-                told("Put that file beside the glTF file."),
+                phrase("Put that file beside the glTF file."),
             )
         try:
             data = self._named[name] = read_file(target, MOTION_FILE)
         except FileError as error:
             self.fail(
-                told("'{name}' {cause}", name=name[:80], cause=error.cause),
+                phrase("'{name}' {cause}", name=name[:80], cause=error.cause),
                 where,
-                told("Put it beside the glTF file, or export one .glb file."),
+                phrase("Put it beside the glTF file, or export one .glb file."),
             )
         self._allowance.add(len(data))
         return data
@@ -158,7 +158,7 @@ class Gltf:
         data = self.buffer(view.buffer, f"buffer view {index}")
         if view.byte_offset + view.byte_length > len(data):
             self.fail(
-                told(
+                phrase(
                     "buffer view {index} ends at byte {value} of {count}",
                     index=index,
                     value=view.byte_offset + view.byte_length,
@@ -201,7 +201,7 @@ class Gltf:
         dtype, width = _DTYPES.get(accessor.component_type), WIDTHS.get(accessor.type)
         if dtype is None or width is None or (width == 16 and accessor.component_type != 5126):
             self.fail(
-                told(
+                phrase(
                     "accessor {index} has component type {component_type} and type '{type}'",
                     index=index,
                     component_type=accessor.component_type,
@@ -211,7 +211,7 @@ class Gltf:
             )
         if kind and accessor.type != kind:
             self.fail(
-                told(
+                phrase(
                     "accessor {index} holds {type}, expected {kind}",
                     index=index,
                     type=accessor.type,
@@ -260,7 +260,7 @@ class Gltf:
         end = accessor.byte_offset + stride * (accessor.count - 1) + item if accessor.count else 0
         if stride < item or end > len(data):
             self.fail(
-                told(
+                phrase(
                     "accessor {index} ends at byte {end} of a buffer view of {count}",
                     index=index,
                     end=end,
@@ -281,17 +281,17 @@ class Gltf:
     ) -> Array:
         places_type = _DTYPES.get(sparse.indices.component_type)
         if places_type is None or places_type.kind != "u":
-            self.fail(told("its sparse indices are not unsigned integers"), where)
+            self.fail(phrase("its sparse indices are not unsigned integers"), where)
         data, _ = self.view(sparse.indices.buffer_view, where)
         values, _ = self.view(sparse.values.buffer_view, where)
         if sparse.indices.byte_offset + sparse.count * places_type.itemsize > len(
             data
         ) or sparse.values.byte_offset + sparse.count * width * dtype.itemsize > len(values):
-            self.fail(told("its sparse values lie beyond their buffer view"), where)
+            self.fail(phrase("its sparse values lie beyond their buffer view"), where)
         places = np.frombuffer(data, places_type, sparse.count, sparse.indices.byte_offset)
         if sparse.count and int(places.max()) >= len(base):
             self.fail(
-                told(
+                phrase(
                     "its sparse index {int} is beyond its {count} elements",
                     int=int(places.max()),
                     count=len(base),
@@ -321,42 +321,44 @@ def parse_gltf(path: Path, data: bytes) -> Gltf:
     elif data.lstrip()[:1] != b"{":
         raise FileError(
             path,
-            told("it is neither a binary nor a text glTF file"),
-            told("its first bytes"),
-            told("Check that the file has the right ending."),
+            phrase("it is neither a binary nor a text glTF file"),
+            phrase("its first bytes"),
+            phrase("Check that the file has the right ending."),
         )
     try:
         document = decoded(text)
     except (msgspec.MsgspecError, RecursionError, ValueError) as error:
         raise FileError(
             path,
-            told("its JSON does not describe a glTF scene ({error})", error=error),
-            told("its header"),
-            told("Export it again."),
+            phrase("its JSON does not describe a glTF scene ({error})", error=error),
+            phrase("its header"),
+            phrase("Export it again."),
         ) from error
     return Gltf(path, document, binary, len(data))
 
 
 def _chunks(path: Path, data: bytes) -> tuple[memoryview, memoryview | None]:
     """Return the JSON and binary chunks of a GLB file."""
-    remedy = told("The file is cut off or damaged: copy or export it again.")
+    remedy = phrase("The file is cut off or damaged: copy or export it again.")
     if len(data) < 20:
         raise FileError(
-            path, told("it ends after {count} bytes", count=len(data)), told("its header"), remedy
+            path, phrase("it ends after {count} bytes", count=len(data)), phrase("its header"), remedy
         )
     version, _, size, kind = struct.unpack_from("<IIII", data, 4)
     if version != 2:
         raise FileError(
             path,
-            told("it is glTF version {version}", version=version),
-            told("its header"),
-            told("Export it as glTF 2.0."),
+            phrase("it is glTF version {version}", version=version),
+            phrase("its header"),
+            phrase("Export it as glTF 2.0."),
         )
     if kind != 0x4E4F534A or 20 + size > len(data):
         raise FileError(
             path,
-            told("its JSON chunk of {size} bytes does not fit its {count} bytes", size=size, count=len(data)),
-            told("its header"),
+            phrase(
+                "its JSON chunk of {size} bytes does not fit its {count} bytes", size=size, count=len(data)
+            ),
+            phrase("its header"),
             remedy,
         )
     whole = memoryview(data)
@@ -367,12 +369,12 @@ def _chunks(path: Path, data: bytes) -> tuple[memoryview, memoryview | None]:
             if at + 8 + length > len(data):
                 raise FileError(
                     path,
-                    told(
+                    phrase(
                         "its binary chunk of {length} bytes is cut off after {value}",
                         length=length,
                         value=len(data) - at - 8,
                     ),
-                    told("its binary chunk"),
+                    phrase("its binary chunk"),
                     remedy,
                 )
             binary = whole[at + 8 : at + 8 + length]

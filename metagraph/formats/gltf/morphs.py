@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.formats.gltf.file import Gltf, extras
 from metagraph.formats.gltf.sampling import Grid, sample
 
@@ -44,7 +44,7 @@ def morph_weights(
     columns: dict[str, Array] = {}
     for source, mode, node, output in channels:
         if node >= len(gltf.json.nodes):
-            gltf.fail(told("its target node {node} does not exist", node=node), where)
+            gltf.fail(phrase("its target node {node} does not exist", node=node), where)
         names = morph_names(gltf, node)
         values = gltf.array(output, where, "SCALAR")
         count = len(keys[source]) * (3 if mode == "CUBICSPLINE" else 1)
@@ -52,7 +52,7 @@ def morph_weights(
             continue
         if len(values) != count * len(names):
             gltf.fail(
-                told(
+                phrase(
                     "accessor {output} holds {count} weights, expected {count2} x {count3}",
                     output=output,
                     count=len(values),
@@ -69,5 +69,5 @@ def morph_weights(
         return (), None
     weights = np.stack(list(columns.values()), 1)
     if not np.isfinite(weights).all() or np.abs(weights).max() > 1e6:
-        gltf.fail(told("a morph weight is not a sensible number"), where)
+        gltf.fail(phrase("a morph weight is not a sensible number"), where)
     return tuple(columns), weights

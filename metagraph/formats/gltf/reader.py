@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from metagraph.common.files import guarded
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.gltf.character import character_of
 from metagraph.formats.gltf.clips import read_clips
@@ -42,18 +42,18 @@ def read_gltf_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]
     if not gltf.json.animations:
         raise FileError(
             path,
-            told("it holds no animation"),
-            told("its animations"),
-            told("Export it with its animation, or open it as a character."),
+            phrase("it holds no animation"),
+            phrase("its animations"),
+            phrase("Export it with its animation, or open it as a character."),
         )
     rig = build_rig(gltf, as_is)
     clips = read_clips(gltf, rig, as_is)
     if not clips:
         raise FileError(
             path,
-            told("none of its animations moves the skeleton"),
-            told("its animations"),
-            told("Export it with its animation."),
+            phrase("none of its animations moves the skeleton"),
+            phrase("its animations"),
+            phrase("Export it with its animation."),
         )
     return unique_takes(clips)
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.budgets import JOINTS, JOINTS_DEEP, NODES
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.formats.gltf.columns import PATHS, SCALE
 from metagraph.formats.gltf.file import Gltf
 from metagraph.formats.gltf.values import Node
@@ -88,12 +88,12 @@ def build_rig(gltf: Gltf, as_is: Collection[str] = ()) -> GltfRig:
     """
     nodes = gltf.json.nodes
     if not nodes:
-        gltf.fail(told("it holds no nodes"), told("its nodes"), told("Export it with its skeleton."))
+        gltf.fail(phrase("it holds no nodes"), phrase("its nodes"), phrase("Export it with its skeleton."))
     if len(nodes) > NODES:
         gltf.fail(
-            told("it has more than {NODES:,} nodes", NODES=NODES),
-            told("its nodes"),
-            told("Export the character alone."),
+            phrase("it has more than {NODES:,} nodes", NODES=NODES),
+            phrase("its nodes"),
+            phrase("Export the character alone."),
         )
     parents, order = _tree(gltf, nodes)
     members = _members(gltf, nodes, parents, order)
@@ -153,7 +153,7 @@ def _build(
         and np.isfinite(rest_translations).all()
         and np.abs(rest_translations).max() < 1e9
     ):
-        gltf.fail(told("its joints are scaled beyond all bounds"), told("its nodes"))
+        gltf.fail(phrase("its joints are scaled beyond all bounds"), phrase("its nodes"))
     unit, repairs = _unit(rest_matrices, as_is)
     if unit != 1.0:
         lift, shift, rest_translations = lift * unit, shift * unit, rest_translations * unit
@@ -183,13 +183,13 @@ def _joints(gltf: Gltf, members: set[int], parents: list[int], order: list[int])
     joints = _in_order(gltf, members, parents, order)
     if len(joints) > JOINTS:
         gltf.fail(
-            told(
+            phrase(
                 "it has {count} joints, more than the {JOINTS} of any character",
                 count=len(joints),
                 JOINTS=JOINTS,
             ),
-            told("its nodes"),
-            told("Export the character alone."),
+            phrase("its nodes"),
+            phrase("Export the character alone."),
         )
     places = {node: i for i, node in enumerate(joints)}
     above = np.array([places.get(parents[n], -1) for n in joints])
@@ -198,9 +198,9 @@ def _joints(gltf: Gltf, members: set[int], parents: list[int], order: list[int])
         depths.append(depths[parent] + 1 if parent >= 0 else 1)
     if max(depths) > JOINTS_DEEP:
         gltf.fail(
-            told("its joints hang on each other more than {most} deep", most=JOINTS_DEEP),
-            told("its nodes"),
-            told("Leave out ropes, hair and cloth, or export the character alone."),
+            phrase("its joints hang on each other more than {most} deep", most=JOINTS_DEEP),
+            phrase("its nodes"),
+            phrase("Leave out ropes, hair and cloth, or export the character alone."),
         )
     return joints, above
 
@@ -256,13 +256,13 @@ def _tree(gltf: Gltf, nodes: list[Node]) -> tuple[list[int], list[int]]:
         for child in node.children:
             if child >= len(nodes):
                 gltf.fail(
-                    told("child {child} does not exist", child=child),
-                    told("node {i} '{name}'", i=i, name=node.name),
+                    phrase("child {child} does not exist", child=child),
+                    phrase("node {i} '{name}'", i=i, name=node.name),
                 )
             if parents[child] >= 0 or child == i:
                 gltf.fail(
-                    told("node {child} has more than one parent", child=child),
-                    told("node {i} '{name}'", i=i, name=node.name),
+                    phrase("node {child} has more than one parent", child=child),
+                    phrase("node {i} '{name}'", i=i, name=node.name),
                 )
             parents[child] = i
     order: list[int] = []
@@ -274,7 +274,7 @@ def _tree(gltf: Gltf, nodes: list[Node]) -> tuple[list[int], list[int]]:
     if len(order) < len(nodes):
         lost = min(set(range(len(nodes))) - set(order))
         gltf.fail(
-            told("it is its own ancestor"), told("node {lost} '{name}'", lost=lost, name=nodes[lost].name)
+            phrase("it is its own ancestor"), phrase("node {lost} '{name}'", lost=lost, name=nodes[lost].name)
         )
     return parents, order
 
@@ -292,8 +292,8 @@ def _transforms(gltf: Gltf, nodes: list[Node]) -> tuple[Array, Array, Array]:
                 or np.abs(node.matrix).max() > _LARGEST
             ):
                 gltf.fail(
-                    told("its matrix is not 16 sensible numbers"),
-                    told("node {i} '{name}'", i=i, name=node.name),
+                    phrase("its matrix is not 16 sensible numbers"),
+                    phrase("node {i} '{name}'", i=i, name=node.name),
                 )
             translations[i], rotations[i], scales[i] = decompose(np.array(node.matrix).reshape(4, 4).T)
     wild = (
@@ -304,8 +304,8 @@ def _transforms(gltf: Gltf, nodes: list[Node]) -> tuple[Array, Array, Array]:
     if wild.any():
         i = int(np.flatnonzero(wild)[0])
         gltf.fail(
-            told("its translation, rotation or scale is out of range"),
-            told("node {i} '{name}'", i=i, name=nodes[i].name),
+            phrase("its translation, rotation or scale is out of range"),
+            phrase("node {i} '{name}'", i=i, name=nodes[i].name),
         )
     return translations, rotation.normalize(rotations), scales
 
@@ -317,7 +317,7 @@ def _members(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int]
     for s, skin in enumerate(doc.skins):
         for joint in dict.fromkeys(skin.joints):
             if joint >= len(nodes):
-                gltf.fail(told("joint {joint} does not exist", joint=joint), told("skin {s}", s=s))
+                gltf.fail(phrase("joint {joint} does not exist", joint=joint), phrase("skin {s}", s=s))
             skinned.add(joint)
     animated: dict[int, list[tuple[str, int]]] = {}
     table = gltf.channels
@@ -329,9 +329,9 @@ def _members(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int]
     ):
         if node >= len(nodes) or output < 0:
             a = int(np.searchsorted(table.begins, n, "right")) - 1
-            where = told("animation {a} '{name}'", a=a, name=doc.animations[a].name)
+            where = phrase("animation {a} '{name}'", a=a, name=doc.animations[a].name)
             if node >= len(nodes):
-                gltf.fail(told("its target node {node} does not exist", node=node), where)
+                gltf.fail(phrase("its target node {node} does not exist", node=node), where)
             gltf.item(doc.animations[a].samplers, int(table.samplers[n]), "sampler", where)
         animated.setdefault(node, []).append((_PATHS[path], output))
     if skinned:
@@ -475,12 +475,12 @@ def _rest_pose(
         inverse = np.asarray(gltf.array(skin.inverse_bind_matrices, f"skin {s}", "MAT4"), float)
         if len(inverse) < len(skin.joints):
             gltf.fail(
-                told(
+                phrase(
                     "{count} inverse bind matrices for {count2} joints",
                     count=len(inverse),
                     count2=len(skin.joints),
                 ),
-                told("skin {s}", s=s),
+                phrase("skin {s}", s=s),
             )
         inverse = inverse[: len(skin.joints)].reshape(-1, 4, 4).transpose(0, 2, 1)
         if not _is_sound(inverse):

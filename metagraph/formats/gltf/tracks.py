@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.formats.gltf.channels import JointChannels
 from metagraph.formats.gltf.columns import LINEAR, MODES, ROTATION, SCALE, TRANSLATION
 from metagraph.formats.gltf.file import Gltf
@@ -236,7 +236,7 @@ def stack(gltf: Gltf, outputs: Array, count: int, mode: str, width: int, where: 
         values = gltf.array(output, where)
         if values.ndim != 2 or values.shape[1] != width or len(values) < count:
             gltf.fail(
-                told(
+                phrase(
                     "accessor {output} holds {names} values, expected {count}x{width}",
                     output=output,
                     names="x".join(map(str, values.shape)),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.project.fields import DataError
 
@@ -13,29 +13,29 @@ def unwritten(path: Path, error: OSError, where: str) -> FileError:
     """Return the error of a journal that the system does not let be written."""
     return FileError(
         path,
-        told("cannot be written ({value})", value=error.strerror or error),
+        phrase("cannot be written ({value})", value=error.strerror or error),
         where,
-        told("Make room on the disk and save the project, or save it in another place."),
+        phrase("Make room on the disk and save the project, or save it in another place."),
     )
 
 
 def unsayable(path: Path, error: DataError) -> FileError:
     """Return the error of an edit that no file can hold."""
     return FileError(
-        path, told("cannot be written ({error})", error=error), error.where, told("Correct that value.")
+        path, phrase("cannot be written ({error})", error=error), error.where, phrase("Correct that value.")
     )
 
 
 def displaced(what: str, was: Path, now: Path) -> str:
     """Return what to say of a journal that was "removed" or has "moved"."""
     if what == "moved":
-        return told(
+        return phrase(
             "The folder {folder} is now {place}. Your unsaved edits are kept there; saving asks for the "
             "place.",
             folder=was.parent.name,
             place=now.parent,
         )
-    return told(
+    return phrase(
         "Another program removed or replaced the file in {folder} in which Metagraph keeps your unsaved "
         "edits. It has been written again, with all of them.",
         folder=was.parent.name,

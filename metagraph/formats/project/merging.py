@@ -12,7 +12,7 @@ from dataclasses import dataclass, fields
 from itertools import count
 from typing import Any
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.formats.project.data import from_data, to_data
 from metagraph.formats.project.fields import Data, DataError
 from metagraph.graph.ids import derived_id
@@ -26,7 +26,7 @@ _NAMED = ("lines", "performances", "timelines", "notes", "marks", "tiers", "labe
 _SETS = ("tags", "joints", "hidden", "locked")  # lists in which the order says nothing
 _TIMES = frozenset(f.name for f in fields(Timing))
 _TEXTS = ("name", "text", "path", "sha256", "notes", "note", "made_by")  # texts that may look like ids
-HERE_AND_ON_DISK = told("here"), told("on disk")  # where the window's project and its file are
+HERE_AND_ON_DISK = phrase("here"), phrase("on disk")  # where the window's project and its file are
 _LONGEST = 60  # characters of a value that is shown in a report
 
 
@@ -118,25 +118,25 @@ def _is_keyed(data: Any) -> bool:
 
 
 _KINDS = {
-    "clips": told("clip"),
-    "stances": told("stance"),
-    "actions": told("action"),
-    "states": told("state"),
-    "aliases": told("alias"),
-    "links": told("link"),
-    "asks": told("request"),
-    "markers": told("marker"),
-    "lines": told("line"),
-    "performances": told("performance"),
-    "conversations": told("conversation"),
-    "timelines": told("timeline"),
-    "points": told("point"),
-    "notes": told("note"),
-    "marks": told("mark"),
-    "tiers": told("tier"),
-    "labels": told("label"),
-    "joint_maps": told("joint map"),
-    "markov": told("model"),
+    "clips": phrase("clip"),
+    "stances": phrase("stance"),
+    "actions": phrase("action"),
+    "states": phrase("state"),
+    "aliases": phrase("alias"),
+    "links": phrase("link"),
+    "asks": phrase("request"),
+    "markers": phrase("marker"),
+    "lines": phrase("line"),
+    "performances": phrase("performance"),
+    "conversations": phrase("conversation"),
+    "timelines": phrase("timeline"),
+    "points": phrase("point"),
+    "notes": phrase("note"),
+    "marks": phrase("mark"),
+    "tiers": phrase("tier"),
+    "labels": phrase("label"),
+    "joint_maps": phrase("joint map"),
+    "markov": phrase("model"),
 }
 
 
@@ -151,23 +151,23 @@ class _Place:
         """Return the place of a field, or of a thing that is called `name`."""
         path = (*self.path, key)
         if path == ("layers",) or (path[0] in ("layers", "manual") and len(path) == 2):
-            return _Place(path, told(key) if len(path) == 2 else "")
+            return _Place(path, phrase(key) if len(path) == 2 else "")
         if name and len(path) == 2:
-            return _Place(path, told("{kind} '{name}'", kind=_KINDS[self.path[0]], name=name))
-        field = told(key.replace("_", " "))
-        return _Place(path, told("{what}, {field}", what=self.words, field=field) if self.words else field)
+            return _Place(path, phrase("{kind} '{name}'", kind=_KINDS[self.path[0]], name=name))
+        field = phrase(key.replace("_", " "))
+        return _Place(path, phrase("{what}, {field}", what=self.words, field=field) if self.words else field)
 
     def item(self, ident: str, name: str) -> _Place:
         """Return the place of one of a list of things with ids."""
         path, kind = (*self.path, ident), _KINDS[self.path[-1]]
         if self.path[0] in ("layers", "manual"):
-            layer = told(self.path[1])
-            return _Place(path, told("{kind} '{name}' ({layer})", kind=kind, name=name, layer=layer))
-        thing = told("{kind} '{name}'", kind=kind, name=name)
+            layer = phrase(self.path[1])
+            return _Place(path, phrase("{kind} '{name}' ({layer})", kind=kind, name=name, layer=layer))
+        thing = phrase("{kind} '{name}'", kind=kind, name=name)
         if len(self.path) == 1:
             return _Place(path, thing)
         about = self.words.removesuffix(", asks")
-        return _Place(path, told("{what}, {thing}", what=about, thing=thing))
+        return _Place(path, phrase("{what}, {thing}", what=about, thing=thing))
 
 
 class _Merger:
@@ -186,7 +186,7 @@ class _Merger:
         if thing and (mine is _GONE or theirs is _GONE):
             gone, left = (self.here, self.there) if mine is _GONE else (self.there, self.here)
             self.kept.append(
-                told(
+                phrase(
                     "{what}: removed {gone}, changed {left}; kept as it is {left}",
                     what=place.words,
                     gone=gone,
@@ -209,7 +209,7 @@ class _Merger:
     def differ(self, mine: Any, theirs: Any, place: _Place) -> None:
         shown = [_shown(mine), _shown(theirs)]
         if all(shown):
-            words = told(
+            words = phrase(
                 "{what}: {mine} {here}, {theirs} {there}; kept {mine}",
                 what=place.words,
                 mine=shown[0],
@@ -218,7 +218,7 @@ class _Merger:
                 there=self.there,
             )
         else:
-            words = told(
+            words = phrase(
                 "{what}: changed {here} and {there}; kept as it is {here}",
                 what=place.words,
                 here=self.here,
@@ -290,11 +290,11 @@ class _Merger:
         layers = data["layers"]
         clips = [a["clip"] for graph in layers.values() for a in graph["actions"]]
         clips += [s["clip"] for machine in data.get("manual", {}).values() for s in machine.get("states", ())]
-        self._return_to(data["clips"], clips, [side["clips"] for side in sides], told("clip"))
+        self._return_to(data["clips"], clips, [side["clips"] for side in sides], phrase("clip"))
         for layer, graph in layers.items():
             needed = [a[key] for a in graph["actions"] for key in ("stance", "end_stance") if a.get(key)]
             found = [side["layers"][layer]["stances"] for side in sides]
-            self._return_to(graph["stances"], needed, found, told("stance"))
+            self._return_to(graph["stances"], needed, found, phrase("stance"))
 
     def _return_to(
         self, there: list[Data], needed: Iterable[str], known: Iterable[list[Data]], kind: str
@@ -307,7 +307,7 @@ class _Merger:
             if ident in before:
                 there.append(before[ident])
                 self.kept.append(
-                    told(
+                    phrase(
                         "{kind} '{name}': removed on one side and used on the other; kept",
                         kind=kind,
                         name=before[ident]["name"],
@@ -347,7 +347,7 @@ def _called(key: str, *sides: Mapping[str, Any]) -> str:
 def _shown(value: Any) -> str:
     """Return a value as a report shows it; "" for one that is too long."""
     if value is _GONE:
-        return told("the default")
+        return phrase("the default")
     if isinstance(value, Mapping):
         text = ", ".join(f"{k.replace('_', ' ')} {_shown(v)}" for k, v in value.items())
         return text if 0 < len(text) <= _LONGEST else ""
@@ -357,5 +357,5 @@ def _shown(value: Any) -> str:
     if isinstance(value, str):
         return f"'{value}'" if len(value) <= _LONGEST else ""
     if value is None or isinstance(value, bool):
-        return told("none") if value is None else told("on") if value else told("off")
+        return phrase("none") if value is None else phrase("on") if value else phrase("off")
     return str(value)

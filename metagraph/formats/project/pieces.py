@@ -9,7 +9,7 @@ from pathlib import Path
 
 import msgspec
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.project.data import FORMAT, from_data, to_data
 from metagraph.formats.project.fields import DataError
@@ -17,7 +17,7 @@ from metagraph.formats.store import absolute, load_motions, moved, open_project
 from metagraph.graph.editing.taking import Taking, piece_of, take
 from metagraph.graph.model import Project
 
-CLIPBOARD = told("the clipboard")
+CLIPBOARD = phrase("the clipboard")
 _MARK = "metagraph_piece"
 
 
@@ -45,9 +45,9 @@ def read_other_project(
     if into is not None and path.resolve() == into.resolve():
         raise FileError(
             path,
-            told("is this project itself"),
-            told("the file"),
-            told("Choose another project's file."),
+            phrase("is this project itself"),
+            phrase("the file"),
+            phrase("Choose another project's file."),
         )
     opened = open_project(path, progress)
     return Piece(_at(opened.project, path, into), None, opened.notes)
@@ -80,15 +80,15 @@ def read_piece(text: str, into: Path | None) -> Piece:
     try:
         data = msgspec.json.decode(text)
         if data["project"]["metagraph"] > FORMAT:
-            raise ValueError(told("it comes from a newer Metagraph: update this one"))
+            raise ValueError(phrase("it comes from a newer Metagraph: update this one"))
         project = from_data(data["project"])
         wanted = frozenset(x for x in data["actions"] if isinstance(x, str))
     except (msgspec.DecodeError, DataError, KeyError, TypeError, ValueError, RecursionError) as error:
         raise FileError(
             CLIPBOARD,
-            told("holds nothing that can be pasted ({error})", error=error),
-            told("its text"),
-            told("Copy stances or actions in another window first."),
+            phrase("holds nothing that can be pasted ({error})", error=error),
+            phrase("its text"),
+            phrase("Copy stances or actions in another window first."),
         ) from None
     if into is not None:
         project = moved(project, None, into)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from metagraph.common.budgets import TEXT_FILE
 from metagraph.common.files import read_file
-from metagraph.common.wording import Told, told
+from metagraph.common.wording import Phrase, phrase
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.new_file import Access, access_of, open_new
@@ -57,7 +57,7 @@ def earlier_versions(path: Path) -> tuple[Version, ...]:
     return tuple(sorted(found, key=lambda version: version.number))
 
 
-def write_project(path: Path, content: bytes, versions: int, like: Access | None = None) -> Told | None:
+def write_project(path: Path, content: bytes, versions: int, like: Access | None = None) -> Phrase | None:
     """Write a project file, and keep what stood there as its most recent earlier version. Raises FileError
     where the file itself cannot be written.
 
@@ -71,7 +71,7 @@ def write_project(path: Path, content: bytes, versions: int, like: Access | None
             _keep(path.resolve(), content, min(versions, MOST))
         except (OSError, FileError) as error:
             cause = error.cause if isinstance(error, FileError) else error.strerror or str(error)
-            note = told(
+            note = phrase(
                 "{name} is saved, but its earlier version could not be kept ({cause}). Make room on the disk "
                 "and check that you may write there.",
                 name=path.name,

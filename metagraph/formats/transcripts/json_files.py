@@ -10,11 +10,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.transcripts.words import Collected, Transcript
 
-_REMEDY = told(
+_REMEDY = phrase(
     "Whisper writes 'segments', with 'words' where word timestamps were asked for; IBM writes "
     "'results' with 'timestamps'."
 )
@@ -27,13 +27,13 @@ def read_json(path: Path, text: str) -> Transcript:
     except json.JSONDecodeError as error:
         raise FileError(
             path,
-            told("is not JSON ({msg})", msg=error.msg),
-            told("line {lineno}, column {colno}", lineno=error.lineno, colno=error.colno),
-            told("Save the transcript anew."),
+            phrase("is not JSON ({msg})", msg=error.msg),
+            phrase("line {lineno}, column {colno}", lineno=error.lineno, colno=error.colno),
+            phrase("Save the transcript anew."),
         ) from None
     except (RecursionError, ValueError):
         raise FileError(
-            path, told("lists lie too deep in it, or its numbers are too long"), "", _REMEDY
+            path, phrase("lists lie too deep in it, or its numbers are too long"), "", _REMEDY
         ) from None
     out = Collected(path)
     if isinstance(data, dict) and "sides" in data:
@@ -63,7 +63,7 @@ def read_json(path: Path, text: str) -> Transcript:
         names = ", ".join(f"'{str(k)[:30]}'" for k in list(data)[:6]) or "nothing"
         raise FileError(
             path,
-            told("is JSON, but of no transcript that is known; it holds {names}", names=names),
+            phrase("is JSON, but of no transcript that is known; it holds {names}", names=names),
             "",
             _REMEDY,
         )
@@ -79,7 +79,7 @@ def _ours(out: Collected, text: str) -> Transcript:
         read = msgspec.json.decode(text, type=Conversation)
     except (msgspec.ValidationError, msgspec.DecodeError, ValueError) as error:
         raise out.fail(
-            told("is no conversation as 'metagraph speech' writes it: {error}", error=error)
+            phrase("is no conversation as 'metagraph speech' writes it: {error}", error=error)
         ) from None
     names = [side.name or str(n + 1) for n, side in enumerate(read.sides)]
     if len(set(names)) < len(names):
@@ -93,26 +93,26 @@ def _ours(out: Collected, text: str) -> Transcript:
 
 def _list(out: Collected, value: Any, where: str) -> Sequence[Any]:
     if not isinstance(value, list):
-        raise out.fail(told("is no list but {kind}", kind=_kind(value)), f"'{where}'", _REMEDY)
+        raise out.fail(phrase("is no list but {kind}", kind=_kind(value)), f"'{where}'", _REMEDY)
     return value
 
 
 def _dict(out: Collected, value: Any, where: str) -> Mapping[str, Any]:
     if not isinstance(value, dict):
-        raise out.fail(told("is no object but {kind}", kind=_kind(value)), f"'{where}'", _REMEDY)
+        raise out.fail(phrase("is no object but {kind}", kind=_kind(value)), f"'{where}'", _REMEDY)
     return value
 
 
 def _kind(value: Any) -> str:
     names = {
-        dict: told("an object"),
-        list: told("a list"),
-        str: told("a text"),
-        bool: told("true or false"),
-        int: told("a number"),
-        float: told("a number"),
+        dict: phrase("an object"),
+        list: phrase("a list"),
+        str: phrase("a text"),
+        bool: phrase("true or false"),
+        int: phrase("a number"),
+        float: phrase("a number"),
     }
-    return names.get(type(value), told("nothing"))
+    return names.get(type(value), phrase("nothing"))
 
 
 def _time(out: Collected, value: Any, where: str) -> float | None:
@@ -120,13 +120,13 @@ def _time(out: Collected, value: Any, where: str) -> float | None:
     if value is None:
         return None
     if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise out.fail(told("a time is {kind}", kind=_kind(value)), where)
+        raise out.fail(phrase("a time is {kind}", kind=_kind(value)), where)
     try:
         seconds = float(value)
     except (ValueError, OverflowError):
-        raise out.fail(told("a time is '{value}'", value=str(value)[:30]), where) from None
+        raise out.fail(phrase("a time is '{value}'", value=str(value)[:30]), where) from None
     if not math.isfinite(seconds):
-        raise out.fail(told("a time is {seconds:g}", seconds=seconds), where)
+        raise out.fail(phrase("a time is {seconds:g}", seconds=seconds), where)
     return seconds
 
 
@@ -156,7 +156,7 @@ def _whisper(out: Collected, data: Mapping[str, Any]) -> None:
         if one.get("words"):
             _words(out, _list(out, one["words"], f"{where}.words"), speaker, f"{where}.words", (start, end))
         elif start is None or end is None:
-            raise out.fail(told("has no start and end"), where)
+            raise out.fail(phrase("has no start and end"), where)
         else:
             out.add(speaker, _text(one.get("text")), start, end, where)
 
@@ -184,7 +184,7 @@ def _words(
         )
     timed = [r for r in read if r[2] is not None and r[3] is not None]
     if read and not timed and (span is None or None in span):
-        raise out.fail(told("no word has a start and an end"), where, _REMEDY)
+        raise out.fail(phrase("no word has a start and an end"), where, _REMEDY)
     first = span[0] if span is not None and span[0] is not None else timed[0][2] if timed else 0.0
     last = span[1] if span is not None and span[1] is not None else timed[-1][3] if timed else 0.0
     n = 0
@@ -232,17 +232,17 @@ def _ibm(out: Collected, data: Mapping[str, Any]) -> None:
         for m, stamp in enumerate(stamps):
             place = f"{where}.timestamps[{m}]"
             if not isinstance(stamp, list) or len(stamp) < 3 or not isinstance(stamp[0], str):
-                raise out.fail(told("is no word with its start and end"), place, _REMEDY)
+                raise out.fail(phrase("is no word with its start and end"), place, _REMEDY)
             start, end = _time(out, stamp[1], place), _time(out, stamp[2], place)
             if start is None or end is None:
-                raise out.fail(told("is no word with its start and end"), place, _REMEDY)
+                raise out.fail(phrase("is no word with its start and end"), place, _REMEDY)
             out.add(labels.get(round(start, 2), next(iter(labels.values()), "")), stamp[0], start, end, place)
             words += 1
     if untimed and not words:
         raise out.fail(
-            told("its words have no times"),
+            phrase("its words have no times"),
             "'results'",
-            told("Ask the service for timestamps (timestamps=true)."),
+            phrase("Ask the service for timestamps (timestamps=true)."),
         )
     if untimed:
-        out.notes.append(told("{untimed} results have no times and were left out", untimed=untimed))
+        out.notes.append(phrase("{untimed} results have no times and were left out", untimed=untimed))

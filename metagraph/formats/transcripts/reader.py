@@ -10,7 +10,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from metagraph.common.files import guarded
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.transcripts.json_files import read_json
 from metagraph.formats.transcripts.text_files import is_ctm, is_table, read_ctm, read_cues, read_table
@@ -27,7 +27,7 @@ def read_transcript(path: str | Path) -> Transcript:
     if not head:
         return Transcript({}, {}, ("it is empty",))
     if "\0" in head[:200]:
-        raise FileError(path, told("is no text"), told("its beginning"), REMEDY)
+        raise FileError(path, phrase("is no text"), phrase("its beginning"), REMEDY)
     if head.startswith(('File type = "ooTextFile', '"ooTextFile')) or path.suffix.casefold() == ".textgrid":
         return read_textgrid_tiers(path)
     if head.startswith("<"):
@@ -40,4 +40,6 @@ def read_transcript(path: str | Path) -> Transcript:
         return read_table(path, text)
     if is_ctm(text):
         return read_ctm(path, text)
-    raise FileError(path, told("is none of the transcripts that can be read"), told("its beginning"), REMEDY)
+    raise FileError(
+        path, phrase("is none of the transcripts that can be read"), phrase("its beginning"), REMEDY
+    )

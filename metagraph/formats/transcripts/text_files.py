@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.formats.transcripts.words import Collected, Transcript
 
 _TIME = r"(?:(\d{1,4}):)?(\d{1,2}):(\d{1,2})[.,](\d{1,3})"
@@ -55,7 +55,7 @@ def read_cues(path: Path, text: str) -> Transcript:
                 _add(out, speaker, said, start, end, f"line {cue.line + 1 + n}")
         shown = _plain(lines[-1]) if lines else shown
     if not cues:
-        out.notes.append(told("it has no cues"))
+        out.notes.append(phrase("it has no cues"))
     return out.finished()
 
 
@@ -72,20 +72,20 @@ def _cues(out: Collected, text: str) -> Iterator[_Cue]:
         found = _CUE.match(lines[n])
         if found is None:
             raise out.fail(
-                told(
+                phrase(
                     "'{value}' are not the times of a cue, as 00:00:01.500 --> 00:00:04.000",
                     value=lines[n].strip()[:60],
                 ),
-                told("line {n}", n=n + 1),
+                phrase("line {n}", n=n + 1),
             )
         times = found.groups()
         cue = _Cue(n + 1, _seconds(*times[:4]), _seconds(*times[4:]), [])
         if cue.end < cue.start:
             raise out.fail(
-                told(
+                phrase(
                     "a cue ends at {end:g} s, before it starts at {start:g} s", end=cue.end, start=cue.start
                 ),
-                told("line {n}", n=n + 1),
+                phrase("line {n}", n=n + 1),
             )
         n += 1
         while n < len(lines) and lines[n].strip() and "-->" not in lines[n]:
@@ -213,10 +213,10 @@ def read_ctm(path: Path, text: str) -> Transcript:
         row = _ctm(line)
         if row is None:
             raise out.fail(
-                told("has no recording, channel, start, duration and word"), told("line {n}", n=n + 1)
+                phrase("has no recording, channel, start, duration and word"), phrase("line {n}", n=n + 1)
             )
         if not row[3] >= 0:
-            raise out.fail(told("a word lasts {row:g} s", row=row[3]), told("line {n}", n=n + 1))
+            raise out.fail(phrase("a word lasts {row:g} s", row=row[3]), phrase("line {n}", n=n + 1))
         rows.append((n, row))
     recordings, channels = len({r[0] for _, r in rows}), len({r[1] for _, r in rows})
     for n, (recording, channel, start, length, word) in rows:
@@ -252,6 +252,6 @@ def read_table(path: Path, text: str) -> Transcript:
             continue
         row = _table_row(line)
         if row is None:
-            raise out.fail(told("has no start, end and word, parted by tabs"), told("line {n}", n=n + 1))
+            raise out.fail(phrase("has no start, end and word, parted by tabs"), phrase("line {n}", n=n + 1))
         out.add("", row[2], row[0], row[1], f"line {n + 1}")
     return out.finished()

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.formats.elan import read_elan
 from metagraph.formats.transcripts.words import LATEST, TO_ALL, Collected, Transcript, count, is_silent
 from metagraph.graph.conversation.model import EVERYBODY, SHORTEST, SPOKEN, Segment, Spoken
@@ -134,15 +134,15 @@ def _from_tiers(path: Path, tiers: Sequence[_Tier], notes: Iterable[str]) -> Tra
     if not worded and not any(t.role == "segments" for t in tiers):
         if not tiers:
             raise out.fail(
-                told("it has no tiers"),
+                phrase("it has no tiers"),
                 "",
-                told("Save it anew with a tier of words for each speaker, or go on without words."),
+                phrase("Save it anew with a tier of words for each speaker, or go on without words."),
             )
         names = ", ".join(f"'{t.name[:40]}'" for t in tiers[:8])
         raise out.fail(
-            told("no tier holds words; its tiers are {names}", names=names),
+            phrase("no tier holds words; its tiers are {names}", names=names),
             "",
-            told("Name the tier that does 'words', or 'Ann - words' of two speakers."),
+            phrase("Name the tier that does 'words', or 'Ann - words' of two speakers."),
         )
     worded = _one_each(out, worded)
     ours = {t.whose for t in tiers if t.role == "segments"}
@@ -173,7 +173,7 @@ def _one_each(out: Collected, tiers: Sequence[_Tier]) -> list[_Tier]:
     for tier in tiers:
         if tier is not best[tier.whose] and any(not is_silent(x) for x, *_ in tier.rows):
             out.notes.append(
-                told(
+                phrase(
                     "tier '{name}' left out, as '{name2}' holds more words of the same speaker",
                     name=tier.name,
                     name2=best[tier.whose].name,
@@ -231,7 +231,7 @@ def _segments(out: Collected, tier: _Tier, tiers: Sequence[_Tier]) -> tuple[Segm
     if unknown:
         kinds = ", ".join(SPOKEN)
         out.notes.append(
-            told(
+            phrase(
                 "tier '{name}': {count} left out, as '{unknown}' is none of {kinds}",
                 name=tier.name,
                 count=count(len(unknown), "segment"),
@@ -241,7 +241,7 @@ def _segments(out: Collected, tier: _Tier, tiers: Sequence[_Tier]) -> tuple[Segm
         )
     if over:
         out.notes.append(
-            told(
+            phrase(
                 "tier '{name}': {count} overlapped the one before and were cut or left out",
                 name=tier.name,
                 count=count(over, "segment"),

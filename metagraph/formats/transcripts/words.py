@@ -12,7 +12,7 @@ from pathlib import Path
 
 from metagraph.common.budgets import MARKS, TEXT_FILE
 from metagraph.common.files import read_file
-from metagraph.common.wording import Told, joined, told
+from metagraph.common.wording import Phrase, join_phrases, phrase
 from metagraph.errors import FileError
 from metagraph.graph.conversation.model import SHORTEST, Segment, Word
 
@@ -20,11 +20,11 @@ LATEST = 1e6  # seconds
 TO_ALL = "all"  # in "clause to all: ...", as our exports write whom a segment is said to
 _TEXT = 1000  # characters of a word
 SUFFIXES = (".TextGrid", ".eaf", ".vtt", ".srt", ".json", ".ctm", ".tsv")
-REMEDY = told(
+REMEDY = phrase(
     "Known are {names}: TextGrid, ELAN, WebVTT, SRT, JSON of Whisper or IBM, CTM, tables.",
     names=", ".join(SUFFIXES),
 )
-_CORRECT = told("Correct it there, or save the transcript anew.")
+_CORRECT = phrase("Correct it there, or save the transcript anew.")
 _SILENT = frozenset(
     (
         "",
@@ -87,7 +87,7 @@ class Collected:
         start, end: seconds. Raises FileError.
         """
         if not (abs(start) <= LATEST and abs(end) <= LATEST):
-            raise self.fail(told("a word's time is {start:g} to {end:g} s", start=start, end=end), where)
+            raise self.fail(phrase("a word's time is {start:g} to {end:g} s", start=start, end=end), where)
         words = self.speakers.setdefault(speaker[:200], [])
         texts = [" ".join(text.split())] if whole else _STOPPED.sub(" ", text).split()
         texts = [t for t in texts if not is_silent(t)] if not is_silent(text) else []
@@ -100,9 +100,9 @@ class Collected:
         self.count += len(texts)
         if self.count > MARKS:
             raise self.fail(
-                told("has more than {most:,} words", most=MARKS),
+                phrase("has more than {most:,} words", most=MARKS),
                 where,
-                told("Cut the recording into pieces."),
+                phrase("Cut the recording into pieces."),
             )
         if len(texts) == 1:
             words.append(Word(text=texts[0][:_TEXT], start=round(start, 4), end=round(end, 4)))
@@ -121,38 +121,38 @@ class Collected:
         out = {}
         for name, words in self.speakers.items():
             out[name], done = settled(words)
-            notes += [told("'{name}': {note}", name=name, note=note) if name else note for note in done]
+            notes += [phrase("'{name}': {note}", name=name, note=note) if name else note for note in done]
         if self.wrong:
             notes.append(
-                told(
+                phrase(
                     "{count} ended before beginning; so long as letters take is kept",
                     count=count(self.wrong, "word"),
                 )
             )
         if self.spread:
             notes.append(
-                told(
+                phrase(
                     "{count} had no times of their own; they share those of their sentence by their letters",
                     count=count(self.spread, "word"),
                 )
             )
         if not any(out.values()):
-            notes.append(told("it holds no words"))
+            notes.append(phrase("it holds no words"))
         return Transcript(out, dict(segments or {}), tuple(notes))
 
 
 def listed(words: Sequence[str]) -> str:
     """Return several words as a list in a sentence: commas, and "and" before the last."""
-    some = joined(words[:-1], ", ")
-    return told("{some} and {last}", some=some, last=words[-1]) if len(words) > 1 else words[0]
+    some = join_phrases(words[:-1], ", ")
+    return phrase("{some} and {last}", some=some, last=words[-1]) if len(words) > 1 else words[0]
 
 
-def count(number: int, what: str) -> Told:
+def count(number: int, what: str) -> Phrase:
     """Return how many words or segments, in words."""
     one = number == 1
     if what == "word":
-        return told("{number:,} word" if one else "{number:,} words", number=number)
-    return told("{number:,} segment" if one else "{number:,} segments", number=number)
+        return phrase("{number:,} word" if one else "{number:,} words", number=number)
+    return phrase("{number:,} segment" if one else "{number:,} segments", number=number)
 
 
 def is_silent(text: str) -> bool:
@@ -191,13 +191,13 @@ def settled(words: Iterable[Word]) -> tuple[tuple[Word, ...], list[str]]:
             out[n] = Word(text=out[n].text, start=out[n].start, end=out[n + 1].start)
     notes: list[str] = []
     if moved:
-        notes.append(told("{count} out of order, sorted by time", count=count(moved, "word")))
+        notes.append(phrase("{count} out of order, sorted by time", count=count(moved, "word")))
     if over:
         notes.append(
-            told("{count} overlapped the one before, which ends there now", count=count(over, "word"))
+            phrase("{count} overlapped the one before, which ends there now", count=count(over, "word"))
         )
     if gone:
-        notes.append(told("{count} lay wholly within another and were left out", count=count(gone, "word")))
+        notes.append(phrase("{count} lay wholly within another and were left out", count=count(gone, "word")))
     return tuple(out), notes
 
 

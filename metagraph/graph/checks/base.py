@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.graph import anatomy
 from metagraph.graph.checks import end_gaps
 from metagraph.graph.model import LAYERS, Action, ClipEntry, Layer, Project
@@ -30,8 +30,8 @@ def check_base(project: Project) -> Iterator[Problem]:
             yield Problem(
                 "error",
                 "base-missing",
-                told("the clip of the base pose is missing"),
-                told("Choose another base pose."),
+                phrase("the clip of the base pose is missing"),
+                phrase("Choose another base pose."),
                 clip=project.base.clip,
             )
             return
@@ -47,13 +47,13 @@ def _past_the_end(frame: int, entry: ClipEntry) -> Problem:
     return Problem(
         "error",
         "base-frame",
-        told(
+        phrase(
             "the base pose is frame {frame} of '{name}', which ends at {last}",
             frame=frame,
             name=entry.name,
             last=last,
         ),
-        told("Choose a frame inside the clip."),
+        phrase("Choose a frame inside the clip."),
         clip=entry.id,
     )
 
@@ -67,11 +67,11 @@ def _rest_pose(project: Project, skeleton: Skeleton) -> Iterator[Problem]:
         yield Problem(
             "warning",
             "base-rest",
-            told(
+            phrase(
                 "the base pose is the skeleton's rest pose, far from how the character stands; "
                 "layers will add up to a twisted pose"
             ),
-            told(
+            phrase(
                 "Take the base pose from a frame with the hands at the sides: right-click a clip, "
                 "'Use this frame as base pose'."
             ),
@@ -93,18 +93,18 @@ def _beside_stance(project: Project, skeleton: Skeleton) -> Iterator[Problem]:
     feet = [roles[r] for r in ("left_foot", "right_foot", "left_toes", "right_toes") if r in roles]
     lift = float(base_p[feet, 1].min() - stance_p[feet, 1].min()) if feet else 0.0
     if abs(lift) > FLOATS * height:
-        way = told("above") if lift > 0 else told("below")
+        way = phrase("above") if lift > 0 else phrase("below")
         yield Problem(
             "warning",
             "base-floats",
-            told(
+            phrase(
                 "the base pose stands {far:.0f} cm {way} stance '{rests}'; the character will "
                 "leave the ground",
                 far=abs(lift) * 100,
                 way=way,
                 rests=rests,
             ),
-            told("Take the base pose from a clip in which the character stands as in its stances."),
+            phrase("Take the base pose from a clip in which the character stands as in its stances."),
             clip=project.base.clip,
         )
     hips = roles.get("hips", 0)
@@ -113,13 +113,13 @@ def _beside_stance(project: Project, skeleton: Skeleton) -> Iterator[Problem]:
         yield Problem(
             "warning",
             "base-twisted",
-            told(
+            phrase(
                 "the base pose's hips are turned {degrees:.0f} degrees from stance '{rests}'; the "
                 "character will twist",
                 degrees=np.degrees(turn),
                 rests=rests,
             ),
-            told("Take the base pose from a clip facing the same way."),
+            phrase("Take the base pose from a clip facing the same way."),
             clip=project.base.clip,
         )
 

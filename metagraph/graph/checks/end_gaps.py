@@ -12,7 +12,7 @@ from weakref import ref
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.graph import anatomy
 from metagraph.graph.expand import ends_in
 from metagraph.graph.model import PARTS, Action, MetaGraph, Part, Project
@@ -57,8 +57,8 @@ def gap_words(gap: Gap, stance: str) -> str:
     """Say a gap, in the words of every place that warns of one. stance: its name."""
     far = gap.metres * 100
     if gap.edge == "begins":
-        return told("begins {far:.0f} cm from stance '{stance}'", far=far, stance=stance)
-    return told("ends {far:.0f} cm from stance '{stance}'", far=far, stance=stance)
+        return phrase("begins {far:.0f} cm from stance '{stance}'", far=far, stance=stance)
+    return phrase("ends {far:.0f} cm from stance '{stance}'", far=far, stance=stance)
 
 
 def hidden(height: float, blend: float) -> float:

@@ -14,7 +14,7 @@ from typing import Any
 
 import msgspec
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.graph import ids
 from metagraph.graph.conversation.model import (
     AUTO,
@@ -66,7 +66,7 @@ def change_conversation(project: Project, ident: str, **changes: Any) -> Project
     if "name" in changes:
         changes["name"] = _clean(str(changes["name"]))
         if not changes["name"]:
-            raise EditError(told("a conversation needs a name"))
+            raise EditError(phrase("a conversation needs a name"))
     return _with(project, ident, _valid(_conversation(project, ident), changes))
 
 
@@ -201,7 +201,7 @@ def address_segments(project: Project, ident: str, places: Collection[Place], to
     of = _conversation(project, ident)
     for side, at in places:
         if to is not None and to != EVERYBODY and (to == side or not 0 <= to < len(of.sides)):
-            raise EditError(told("nobody speaks to that one: choose another who talks in the conversation"))
+            raise EditError(phrase("nobody speaks to that one: choose another who talks in the conversation"))
         segment = msgspec.structs.replace(_segment(project, ident, side, at), to=to)
         project = _set(project, ident, side, at, segment)
     return project
@@ -216,7 +216,7 @@ def split_segment(
     of, seconds = _segment(project, ident, side, at), round(seconds, _DIGITS)
     if not of.start + SHORTEST <= seconds <= of.end - SHORTEST:
         raise EditError(
-            told(
+            phrase(
                 "a segment can be split between {first:.2f} and {last:.2f} s, inside it",
                 first=of.start + SHORTEST,
                 last=of.end - SHORTEST,
@@ -239,7 +239,7 @@ def merge_segments(project: Project, ident: str, side: int, first: int, last: in
     """
     some = _conversation(project, ident).sides[side].segments[max(0, first) : last + 1]
     if first < 0 or len(some) < 2 or len(some) != last - first + 1:
-        raise EditError(told("there is no segment after this one to merge it with"))
+        raise EditError(phrase("there is no segment after this one to merge it with"))
     kind: Sound = "clause" if any(s.kind == "clause" for s in some) else some[0].kind
     peaks = [s.peak for s in sorted(some, key=lambda s: s.kind != "clause") if s.peak is not None]
     text = joined(s.text for s in some if s.text)
@@ -260,7 +260,7 @@ def add_segment(
     start, end = max(low, start), min(high, end)
     if end - start < SHORTEST:
         raise EditError(
-            told("there is no room for a segment here; it lasts {shortest:g} s at least", shortest=SHORTEST)
+            phrase("there is no room for a segment here; it lasts {shortest:g} s at least", shortest=SHORTEST)
         )
     at = sum(1 for s in segments if s.end <= start)
     held = None if peak is None else min(max(start, peak), end)
@@ -300,14 +300,14 @@ def gap_at(conversation: Conversation, side: int, seconds: float) -> tuple[float
 def _conversation(project: Project, ident: str) -> Conversation:
     found = project.conversations.get(ident)
     if found is None:
-        raise EditError(told("that conversation is not kept in this project"))
+        raise EditError(phrase("that conversation is not kept in this project"))
     return found
 
 
 def _segment(project: Project, ident: str, side: int, at: int) -> Segment:
     segments = _conversation(project, ident).sides[side].segments
     if not 0 <= at < len(segments):
-        raise EditError(told("that segment is no longer there"))
+        raise EditError(phrase("that segment is no longer there"))
     return segments[at]
 
 
@@ -322,7 +322,7 @@ def _room(project: Project, ident: str, side: int, at: int) -> tuple[Segment, fl
 
 def _spoken(kind: Sound) -> None:
     if kind not in SPOKEN:
-        raise EditError(told("idle is what lies between segments: remove a segment to make it idle"))
+        raise EditError(phrase("idle is what lies between segments: remove a segment to make it idle"))
 
 
 def _text(words: Sequence[Word], start: float, end: float) -> str:
@@ -346,7 +346,7 @@ def _valid(before: Any, changes: dict[str, Any], **unchecked: Any) -> Any:
         }
         return msgspec.structs.replace(before, **made, **unchecked)
     except KeyError as error:
-        raise EditError(told("there is nothing called {error} to set", error=error)) from None
+        raise EditError(phrase("there is nothing called {error} to set", error=error)) from None
     except (msgspec.ValidationError, ValueError, TypeError) as error:
         raise EditError(str(error)) from None
 

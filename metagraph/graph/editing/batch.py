@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Action, Project, Timing
@@ -36,11 +36,11 @@ def paste(project: Project, source: str, targets: Collection[str], groups: Colle
     """
     given = project.action(source)
     if given is None:
-        raise EditError(told("the action to copy from is no longer in the project"))
+        raise EditError(phrase("the action to copy from is no longer in the project"))
     unknown = [g for g in groups if g not in PROPERTIES]
     if unknown:
         raise EditError(
-            told(
+            phrase(
                 "there is nothing called '{unknown}' to paste; there are {names}",
                 unknown=unknown[0],
                 names=", ".join(PROPERTIES),
@@ -110,7 +110,7 @@ def names_by_pattern(project: Project, actions: Sequence[str], pattern: str) -> 
             name = pattern.format(n=number, **words)
         except (KeyError, IndexError, ValueError, AttributeError):
             raise EditError(
-                told(
+                phrase(
                     "'{pattern}' cannot be read; in braces there may be {names}, as in {{name}} {{n:02}}",
                     pattern=pattern,
                     names=", ".join(FIELDS),
@@ -128,7 +128,7 @@ def names_replaced(
     be read, or names that would be empty.
     """
     if not find:
-        raise EditError(told("say what to look for"))
+        raise EditError(phrase("say what to look for"))
     try:
         search = re.compile(find if regex else re.escape(find))
         out = {}
@@ -138,13 +138,15 @@ def names_replaced(
                 out[ident] = _named(search.sub(put if regex else put.replace("\\", r"\\"), action.name), put)
         return out
     except re.error as error:
-        raise EditError(told("'{find}' is no regular expression: {error}", find=find, error=error)) from None
+        raise EditError(
+            phrase("'{find}' is no regular expression: {error}", find=find, error=error)
+        ) from None
 
 
 def _named(name: str, origin: str) -> str:
     clean = " ".join(name.split())
     if not clean:
-        raise EditError(told("'{origin}' would leave a name empty", origin=origin))
+        raise EditError(phrase("'{origin}' would leave a name empty", origin=origin))
     return clean
 
 
@@ -160,7 +162,7 @@ def replace_clip(project: Project, actions: Collection[str], clip: str) -> Proje
     """
     entry = project.clips.get(clip)
     if entry is None:
-        raise EditError(told("that clip is not in the project"))
+        raise EditError(phrase("that clip is not in the project"))
     changes: dict[str, dict[str, Any]] = {}
     for ident in actions:
         action = project.action(ident)

@@ -10,40 +10,40 @@ from typing import Any
 
 import msgspec
 
-from metagraph.common.wording import Told, told
+from metagraph.common.wording import Phrase, phrase
 from metagraph.graph.model import LAYERS, Project
 
 _NAMED = {
-    "clips": told("Clip"),
-    "lines": told("Line"),
-    "points": told("Point"),
-    "performances": told("Performance"),
-    "conversations": told("Conversation"),
+    "clips": phrase("Clip"),
+    "lines": phrase("Line"),
+    "points": phrase("Point"),
+    "performances": phrase("Performance"),
+    "conversations": phrase("Conversation"),
 }
 _KINDS = {
-    "stance": told("Stance loop"),
-    "gesture": told("Gesture"),
-    "fidget": told("Fidget"),
-    "transition": told("Transition"),
+    "stance": phrase("Stance loop"),
+    "gesture": phrase("Gesture"),
+    "fidget": phrase("Fidget"),
+    "transition": phrase("Transition"),
 }
 _REST = {
-    "name": told("Name"),
-    "character": told("Character"),
-    "hidden": told("Hidden"),
-    "base": told("Base"),
-    "roles": told("Roles"),
-    "parts": told("Parts"),
-    "markov": told("Markov"),
-    "settings": told("Settings"),
-    "language": told("Language"),
-    "life": told("Life"),
-    "face": told("Face"),
-    "tiers": told("Tiers"),
-    "labels": told("Labels"),
-    "notes": told("Notes"),
-    "marks": told("Marks"),
-    "joint_maps": told("Joint maps"),
-    "skeleton": told("Skeleton"),
+    "name": phrase("Name"),
+    "character": phrase("Character"),
+    "hidden": phrase("Hidden"),
+    "base": phrase("Base"),
+    "roles": phrase("Roles"),
+    "parts": phrase("Parts"),
+    "markov": phrase("Markov"),
+    "settings": phrase("Settings"),
+    "language": phrase("Language"),
+    "life": phrase("Life"),
+    "face": phrase("Face"),
+    "tiers": phrase("Tiers"),
+    "labels": phrase("Labels"),
+    "notes": phrase("Notes"),
+    "marks": phrase("Marks"),
+    "joint_maps": phrase("Joint maps"),
+    "skeleton": phrase("Skeleton"),
 }
 _UNSEEN = ("id", "digest", "clip_name", "clip_sha256")  # of no use to a reader
 
@@ -63,26 +63,26 @@ def differences(before: Project, after: Project) -> list[str]:
         lines += _keyed(word, getattr(before, name), getattr(after, name))
     for layer in LAYERS:
         old, new = before.graphs[layer], after.graphs[layer]
-        lines += _keyed(told("Stance"), old.stances, new.stances, layer)
+        lines += _keyed(phrase("Stance"), old.stances, new.stances, layer)
         lines += _keyed("", old.actions, new.actions, layer)
         if old.start != new.start:
             names = [
                 f"'{g.stances[g.start].name}'"
                 if g.start is not None and g.start in g.stances
-                else told("none")
+                else phrase("none")
                 for g in (old, new)
             ]
             first, then = (" ".join(n.split()) if n.startswith("'") else n for n in names)
-            words = told(
+            words = phrase(
                 "First stance of {layer}: {before} → {after}", layer=_plain(layer), before=first, after=then
             )
             lines.append(words)
         if old.weights != new.weights:
-            weights = told("Weights of {layer}", layer=_plain(layer))
+            weights = phrase("Weights of {layer}", layer=_plain(layer))
             lines.append(_line(weights, "changed", _what(old.weights, new.weights)))
         old_machine, new_machine = before.manual.get(layer), after.manual.get(layer)
         if old_machine != new_machine:
-            machine = told("Manual state machine ({layer})", layer=_plain(layer))
+            machine = phrase("Manual state machine ({layer})", layer=_plain(layer))
             lines.append(_line(machine, _fate(old_machine, new_machine)))
     return lines
 
@@ -90,17 +90,17 @@ def differences(before: Project, after: Project) -> list[str]:
 def _line(what: str, fate: str, how: str = "") -> str:
     """Return a line: what it is, what became of it, and which fields differ."""
     if fate == "added":
-        return told("{what} added", what=what)
+        return phrase("{what} added", what=what)
     if fate == "removed":
-        return told("{what} removed", what=what)
+        return phrase("{what} removed", what=what)
     if not how:
-        return told("{what} changed", what=what)
-    return told("{what} changed: {how}", what=what, how=" ".join(how.split()))  # values may hold anything
+        return phrase("{what} changed", what=what)
+    return phrase("{what} changed: {how}", what=what, how=" ".join(how.split()))  # values may hold anything
 
 
 def _plain(word: str) -> str:
     """Return a word of the project file, as words that know their template."""
-    return Told(word, {})
+    return Phrase(word, {})
 
 
 def _fate(old: object, new: object) -> str:
@@ -120,9 +120,9 @@ def _keyed(word: str, before: Mapping[str, Any], after: Mapping[str, Any], layer
         kind = word or _KINDS[some.kind]
         name = " ".join(_title(some, ident).split())  # names may hold anything
         title = (
-            told("{kind} '{name}' ({layer})", kind=kind, name=name, layer=_plain(layer))
+            phrase("{kind} '{name}' ({layer})", kind=kind, name=name, layer=_plain(layer))
             if layer
-            else told("{kind} '{name}'", kind=kind, name=name)
+            else phrase("{kind} '{name}'", kind=kind, name=name)
         )
         fate = _fate(old, new)
         yield _line(title, fate, _what(old, new) if fate == "changed" else "")

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.graph import anatomy, ids
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.edits import free_name
@@ -39,7 +39,7 @@ def twin_clips(project: Project, actions: Collection[str]) -> list[TwinClip]:
     both sides.
     """
     if not actions:
-        raise EditError(told("nothing to mirror"))
+        raise EditError(phrase("nothing to mirror"))
     groups: dict[str, list[Action]] = {}
     for ident in dict.fromkeys(actions):
         action = _action(project, ident)
@@ -52,7 +52,7 @@ def twin_clips(project: Project, actions: Collection[str]) -> list[TwinClip]:
 def mirrored_clips(project: Project, clips: Collection[str]) -> list[TwinClip]:
     """Return the mirror images of clips, for the library alone. Raises EditError as `twin_clips` does."""
     if not clips:
-        raise EditError(told("nothing to mirror"))
+        raise EditError(phrase("nothing to mirror"))
     names = {i: project.clips[i].name for i in dict.fromkeys(clips) if i in project.clips}
     return _mirrored(project, {i: (name, ()) for i, name in names.items()})
 
@@ -66,7 +66,9 @@ def _mirrored(project: Project, wanted: Mapping[str, tuple[str, tuple[str, ...]]
     for clip, (called, actions) in wanted.items():
         entry = project.clips.get(clip)
         if entry is None or entry.motion is None:
-            raise EditError(told("'{called}' cannot be mirrored: its clip's file is missing", called=called))
+            raise EditError(
+                phrase("'{called}' cannot be mirrored: its clip's file is missing", called=called)
+            )
         try:
             twin = mirror(entry.motion, pairs)
         except ValueError as error:
@@ -74,7 +76,7 @@ def _mirrored(project: Project, wanted: Mapping[str, tuple[str, tuple[str, ...]]
         distance = float(pose_distance(twin.skeleton, entry.motion.poses(), twin.poses()).max())
         if distance < SAME and not _faces_differ(entry.motion, twin):
             raise EditError(
-                told(
+                phrase(
                     "'{called}' has no side: it is within {far:.1f} cm of its mirror image",
                     called=called,
                     far=100 * distance,
@@ -98,12 +100,12 @@ def place_twins(project: Project, pairs: Mapping[str, str]) -> Project:
         action = _action(project, ident)
         entry, before = project.clips.get(clip), project.clips.get(action.clip)
         if entry is None:
-            raise EditError(told("the mirrored clip of '{name}' is not in the project", name=action.name))
+            raise EditError(phrase("the mirrored clip of '{name}' is not in the project", name=action.name))
         if clip == action.clip:
-            raise EditError(told("'{name}' cannot be its own twin", name=action.name))
+            raise EditError(phrase("'{name}' cannot be its own twin", name=action.name))
         if before is not None and (entry.frames, entry.fps) != (before.frames, before.fps):
             raise EditError(
-                told(
+                phrase(
                     "'{name}' is not as long as '{other}', whose twin it is to be",
                     name=entry.name,
                     other=before.name,
@@ -114,7 +116,7 @@ def place_twins(project: Project, pairs: Mapping[str, str]) -> Project:
         stance = _stance_twin(project, action.stance)
         if action.kind == "transition" and end == stance:
             raise EditError(
-                told(
+                phrase(
                     "the twin of '{name}' would end where it starts: the stances have no twins by name",
                     name=action.name,
                 )
@@ -151,7 +153,7 @@ def twin_name(name: str) -> str:
 def _action(project: Project, ident: str) -> Action:
     action = project.action(ident)
     if action is None:
-        raise EditError(told("that action is no longer in the project"))
+        raise EditError(phrase("that action is no longer in the project"))
     return action
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import msgspec
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.graph import ids
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.edits import free_name
@@ -62,7 +62,7 @@ def change_performance(project: Project, ident: str, **changes: Any) -> Project:
     if "name" in changes:
         changes["name"] = " ".join(str(changes["name"]).split())
         if not changes["name"]:
-            raise EditError(told("a performance needs a name"))
+            raise EditError(phrase("a performance needs a name"))
     if "asks" in changes:
         changes["asks"] = _numbered(changes["asks"])
     try:
@@ -83,7 +83,7 @@ def remove_performance(project: Project, ident: str) -> Project:
 def _performance(project: Project, ident: str) -> Performance:
     found = project.performances.get(ident)
     if found is None:
-        raise EditError(told("that performance is not kept in this project"))
+        raise EditError(phrase("that performance is not kept in this project"))
     return found
 
 
@@ -186,7 +186,7 @@ def set_line(project: Project, ident: str, line: Line | None) -> Project:
     """Set or, with None, remove a line of dialogue. Raises EditError for an id of nothing."""
     ident = ident.strip()
     if not ident:
-        raise EditError(told("a line needs an id to be called by"))
+        raise EditError(phrase("a line needs an id to be called by"))
     lines = (
         {i: x for i, x in project.lines.items() if i != ident}
         if line is None
@@ -207,9 +207,9 @@ def rename_line(project: Project, ident: str, new: str) -> Project:
         return project
     if not new or new in project.lines:
         raise EditError(
-            told("there is a line '{new}' already", new=new)
+            phrase("there is a line '{new}' already", new=new)
             if new
-            else told("a line needs an id to be called by")
+            else phrase("a line needs an id to be called by")
         )
     lines = {new if i == ident else i: x for i, x in project.lines.items()}
     voices = {new if i == ident else i: v for i, v in project.voices.items()}

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
-from metagraph.common.wording import joined, told
+from metagraph.common.wording import join_phrases, phrase
 from metagraph.graph import ids
 from metagraph.graph.clip_source import source_of, with_source
 from metagraph.graph.editing.retargeting import Bringing
@@ -25,10 +25,10 @@ from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint
 
 Becomes = Literal["new", "joined", "there", "renamed", "left out"]
 _NEW: dict[Kind, str] = {
-    "stance": told("a new loop"),
-    "gesture": told("a new gesture"),
-    "fidget": told("a new fidget"),
-    "transition": told("a new transition"),
+    "stance": phrase("a new loop"),
+    "gesture": phrase("a new gesture"),
+    "fidget": phrase("a new fidget"),
+    "transition": phrase("a new transition"),
 }
 
 
@@ -160,13 +160,13 @@ def _take_layer(
     for ident, stance in source.stances.items():
         if ident not in new:
             things.append(
-                Taken("stance", layer, stance.name, "joined", told("joins the stance of that name"))
+                Taken("stance", layer, stance.name, "joined", phrase("joins the stance of that name"))
             )
         elif places[ident] in needed or ident in empty:
             stances[places[ident]] = new[ident]
-            things.append(Taken("stance", layer, stance.name, "new", told("a new stance")))
+            things.append(Taken("stance", layer, stance.name, "new", phrase("a new stance")))
         else:
-            words = told("none of its actions can be taken")
+            words = phrase("none of its actions can be taken")
             things.append(Taken("stance", layer, stance.name, "left out", words))
     things += taken
     if not graph.stances:
@@ -200,13 +200,13 @@ def _action(
         return thing("left out", clips.why(action.clip)), None
     stance, end = places.get(action.stance), places.get(action.end_stance or "")
     if stance is None or (action.kind == "transition" and end is None):
-        return thing("left out", told("its stance is not in the other project")), None
+        return thing("left out", phrase("its stance is not in the other project")), None
     made, words = clips.fitted_action(replace(action, clip=clip, stance=stance, end_stance=end))
     if made is None:
         return thing("left out", words), None
     same = there.get(_same(made))
     if same is not None:
-        return thing("there", told("is here already, as '{name}'", name=same.name)), None
+        return thing("there", phrase("is here already, as '{name}'", name=same.name)), None
     ident = ids.new_id(project, "a", action.layer, action.kind, stance, end or "", clip, more=added)
     return thing("new", words or _NEW[action.kind]), replace(made, id=ident)
 
@@ -247,14 +247,14 @@ class _Clips:
         named = tuple(joints[name] for name in action.joints if name in joints)
         weights = tuple((joints[name], weight) for name, weight in action.joint_weights if name in joints)
         if action.joints and not named:
-            return None, told("none of the joints that it moves is here")
+            return None, phrase("none of the joints that it moves is here")
         words = ""
         if action.contacts:
-            words = told("{what}; its contacts are left out: find them anew", what=_NEW[action.kind])
+            words = phrase("{what}; its contacts are left out: find them anew", what=_NEW[action.kind])
         return replace(action, joints=named, joint_weights=weights, contacts=()), words
 
     def why(self, ident: str) -> str:
-        return self.lost.get(ident, told("its clip is not in the other project"))
+        return self.lost.get(ident, phrase("its clip is not in the other project"))
 
     def of(self, ident: str) -> str | None:
         """Return the id here of a clip of the other project; None where it cannot be taken."""
@@ -264,7 +264,7 @@ class _Clips:
         same = self.known.get(_content(entry))
         if same is not None:
             self.given[ident] = same
-            words = told("is here already, as '{name}'", name=self.entries[same].name)
+            words = phrase("is here already, as '{name}'", name=self.entries[same].name)
             self.things.append(Taken("clip", None, entry.name, "there", words))
             return same
         try:
@@ -281,10 +281,10 @@ class _Clips:
         self.given[ident] = made
         if name != entry.name:
             self.things.append(
-                Taken("clip", None, entry.name, "renamed", told("a new clip named '{name}'", name=name))
+                Taken("clip", None, entry.name, "renamed", phrase("a new clip named '{name}'", name=name))
             )
         else:
-            self.things.append(Taken("clip", None, name, "new", told("a new clip")))
+            self.things.append(Taken("clip", None, name, "new", phrase("a new clip")))
         return made
 
     def _fitted(self, entry: ClipEntry) -> ClipEntry:
@@ -302,7 +302,7 @@ class _Clips:
     def _brought(self, entry: ClipEntry, source: Clip) -> ClipEntry:
         if entry.brought_from:
             raise RetargetError(
-                told(
+                phrase(
                     "it was retargeted there already: import its file ({path}) here instead", path=entry.path
                 )
             )
@@ -322,26 +322,26 @@ def _content(entry: ClipEntry) -> tuple[object, ...]:
 def words_of_taking(taking: Taking) -> str:
     """Say in a line what was taken."""
     counts = [
-        _count(taking.count("stance"), told("new stance"), told("new stances")),
-        _count(taking.count("action"), told("new action"), told("new actions")),
-        _count(taking.count("clip"), told("new clip"), told("new clips")),
+        _count(taking.count("stance"), phrase("new stance"), phrase("new stances")),
+        _count(taking.count("action"), phrase("new action"), phrase("new actions")),
+        _count(taking.count("clip"), phrase("new clip"), phrase("new clips")),
     ]
-    words = joined([x for x in counts if x], ", ") if any(counts) else told("Nothing new")
+    words = join_phrases([x for x in counts if x], ", ") if any(counts) else phrase("Nothing new")
     if there := taking.count("action", ["there"]):
-        words = told(
+        words = phrase(
             "{taken}; {there} here already",
             taken=words,
-            there=_count(there, told("action is"), told("actions are")),
+            there=_count(there, phrase("action is"), phrase("actions are")),
         )
     if left := taking.count("action", ["left out"]):
-        words = told(
-            "{taken}; {left} left out", taken=words, left=_count(left, told("action"), told("actions"))
+        words = phrase(
+            "{taken}; {left} left out", taken=words, left=_count(left, phrase("action"), phrase("actions"))
         )
     elif left := taking.count("clip", ["left out"]):
-        count = _count(left, told("clip"), told("clips"))
-        words = told("{taken}; {left} left out", taken=words, left=count)
+        count = _count(left, phrase("clip"), phrase("clips"))
+        words = phrase("{taken}; {left} left out", taken=words, left=count)
     return words
 
 
 def _count(number: int, one: str, many: str) -> str:
-    return told("{number} {what}", number=number, what=one if number == 1 else many) if number else ""
+    return phrase("{number} {what}", number=number, what=one if number == 1 else many) if number else ""

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.graph import anatomy
 from metagraph.graph.manual.machine import ANY, Alias, Link, Manual, State
 from metagraph.graph.model import LAYERS, Project
@@ -28,8 +28,8 @@ def _machine(project: Project, manual: Manual) -> Iterator[Problem]:
         yield Problem(
             "error",
             "no-start",
-            told("the {layer} layer has no state to begin in", layer=told(layer)),
-            told("Right-click a state and 'Start here'."),
+            phrase("the {layer} layer has no state to begin in", layer=phrase(layer)),
+            phrase("Right-click a state and 'Start here'."),
             layer,
         )
     reached = manual.reachable()
@@ -39,7 +39,7 @@ def _machine(project: Project, manual: Manual) -> Iterator[Problem]:
             return Problem(
                 severity,
                 code,
-                told("state '{name}' {message}", name=of.name, message=message),
+                phrase("state '{name}' {message}", name=of.name, message=message),
                 remedy,
                 layer,
                 clip=of.clip,
@@ -51,8 +51,8 @@ def _machine(project: Project, manual: Manual) -> Iterator[Problem]:
             yield at(
                 "warning",
                 "unreachable",
-                told("cannot be reached"),
-                told("Draw a link to it from a state that can."),
+                phrase("cannot be reached"),
+                phrase("Draw a link to it from a state that can."),
             )
         ways = [x for x in manual.leaving(state.id) if x.target != state.id]
         if not ways and len(manual.states) > 1:
@@ -60,19 +60,19 @@ def _machine(project: Project, manual: Manual) -> Iterator[Problem]:
                 yield at(
                     "warning",
                     "no-exit",
-                    told("loops for ever: no link leads out of it"),
-                    told("Draw a link from it to another state."),
+                    phrase("loops for ever: no link leads out of it"),
+                    phrase("Draw a link from it to another state."),
                 )
             else:
                 yield at(
                     "warning",
                     "dead-end",
-                    told("cannot be left: it holds its last frame"),
-                    told("Draw a link from it to another state."),
+                    phrase("cannot be left: it holds its last frame"),
+                    phrase("Draw a link from it to another state."),
                 )
         elif ways and not state.loop and not any(x.condition.when == "finished" for x in ways):
-            message = told("holds its last frame until something is requested")
-            yield at("hint", "waits", message, told("Let one of its links be taken when it has finished."))
+            message = phrase("holds its last frame until something is requested")
+            yield at("hint", "waits", message, phrase("Let one of its links be taken when it has finished."))
     for alias in manual.aliases.values():
         yield from _alias(manual, alias)
     seen: set[tuple[str, str, str, str]] = set()
@@ -81,7 +81,7 @@ def _machine(project: Project, manual: Manual) -> Iterator[Problem]:
         same = (link.source, link.target, link.condition.when, link.condition.trigger)
         if same in seen:
             yield _about(
-                manual, link, "warning", "twice", told("is drawn twice"), told("Remove one of them.")
+                manual, link, "warning", "twice", phrase("is drawn twice"), phrase("Remove one of them.")
             )
         seen.add(same)
 
@@ -94,28 +94,28 @@ def _state(
         yield at(
             "error",
             "lost-clip",
-            told("uses a clip that is not in the project"),
-            told("Remove it, or import the clip again."),
+            phrase("uses a clip that is not in the project"),
+            phrase("Remove it, or import the clip again."),
         )
         return
     end = entry.duration if state.end is None else state.end
     latest = entry.duration + 0.5 / entry.fps
     if not (0 <= state.start <= latest and end <= latest):  # also where one of them is not a number
-        message = told(
+        message = phrase(
             "plays {start:.2f}-{end:.2f} s of a clip of {duration:.2f} s",
             start=state.start,
             end=end,
             duration=entry.duration,
         )
-        yield at("error", "trim", message, told("Bring start and end inside the clip."))
+        yield at("error", "trim", message, phrase("Bring start and end inside the clip."))
     elif end <= state.start and entry.frames > 1:
-        message = told(
+        message = phrase(
             "ends at {end:.2f} s, not after its start at {start:.2f} s", end=end, start=state.start
         )
-        yield at("error", "empty", message, told("Move its end behind its start."))
+        yield at("error", "empty", message, phrase("Move its end behind its start."))
     if unknown := anatomy.unknown_joints(project.skeleton, state):
-        message = told("moves joint '{unknown}', which the skeleton does not have", unknown=unknown[0])
-        yield at("error", "mask", message, told("Correct its joints."))
+        message = phrase("moves joint '{unknown}', which the skeleton does not have", unknown=unknown[0])
+        yield at("error", "mask", message, phrase("Correct its joints."))
 
 
 def _alias(manual: Manual, alias: Alias) -> Iterator[Problem]:
@@ -123,7 +123,7 @@ def _alias(manual: Manual, alias: Alias) -> Iterator[Problem]:
         return Problem(
             severity,
             code,
-            told("alias '{name}' {message}", name=alias.name, message=message),
+            phrase("alias '{name}' {message}", name=alias.name, message=message),
             remedy,
             manual.layer,
             state=alias.id,
@@ -134,20 +134,22 @@ def _alias(manual: Manual, alias: Alias) -> Iterator[Problem]:
         yield at(
             "warning" if used else "hint",
             "alias-empty",
-            told("stands for no state"),
-            told("Choose its states."),
+            phrase("stands for no state"),
+            phrase("Choose its states."),
         )
     elif not used:
-        yield at("hint", "alias-unused", told("has no links"), told("Draw a link from it, or remove it."))
+        yield at("hint", "alias-unused", phrase("has no links"), phrase("Draw a link from it, or remove it."))
     if alias.entry is not None and alias.entry not in manual.members(alias):
         name = (
-            manual.states[alias.entry].name if alias.entry in manual.states else told("a state that is gone")
+            manual.states[alias.entry].name
+            if alias.entry in manual.states
+            else phrase("a state that is gone")
         )
         yield at(
             "warning",
             "alias-entry",
-            told("is entered by '{name}', not one of its states", name=name),
-            told("Choose another entry."),
+            phrase("is entered by '{name}', not one of its states", name=name),
+            phrase("Choose another entry."),
         )
 
 
@@ -156,12 +158,15 @@ def _about(manual: Manual, link: Link, severity: Severity, code: str, message: s
     aliases = manual.aliases
     names = " → ".join(
         found.name if found is not None else aliases[ident].name if ident in aliases else otherwise
-        for found, ident, otherwise in ((source, link.source, told("any state")), (target, link.target, "?"))
+        for found, ident, otherwise in (
+            (source, link.source, phrase("any state")),
+            (target, link.target, "?"),
+        )
     )
     return Problem(
         severity,
         code,
-        told("link {names} {message}", names=names, message=message),
+        phrase("link {names} {message}", names=names, message=message),
         remedy,
         manual.layer,
         link=link.id,
@@ -173,34 +178,36 @@ def _link(project: Project, manual: Manual, link: Link) -> Iterator[Problem]:
         return _about(manual, link, severity, code, message, remedy)
 
     if link.condition.when == "request" and not link.condition.trigger.strip():
-        yield at("error", "no-trigger", told("waits for a request without a name"), told("Name its trigger."))
+        yield at(
+            "error", "no-trigger", phrase("waits for a request without a name"), phrase("Name its trigger.")
+        )
     if not link.condition.weight > 0:
         yield at(
             "error",
             "weight",
-            told("has the weight {weight:g} and can never be drawn", weight=link.condition.weight),
-            told("Set it above 0."),
+            phrase("has the weight {weight:g} and can never be drawn", weight=link.condition.weight),
+            phrase("Set it above 0."),
         )
     if not link.blend >= 0:
         yield at(
             "error",
             "blend",
-            told("blends for {blend:g} s", blend=link.blend),
-            told("Set its blend to 0 or more."),
+            phrase("blends for {blend:g} s", blend=link.blend),
+            phrase("Set its blend to 0 or more."),
         )
     if manual.end(link) is None:
         yield at(
             "error",
             "no-entry",
-            told("leads to an alias that has no entry"),
-            told("Choose the state that it is entered by."),
+            phrase("leads to an alias that has no entry"),
+            phrase("Choose the state that it is entered by."),
         )
     if link.source == ANY and link.condition.when == "finished":
         yield at(
             "warning",
             "any-finished",
-            told("is taken whenever any state has finished"),
-            told("Let it wait for a request."),
+            phrase("is taken whenever any state has finished"),
+            phrase("Let it wait for a request."),
         )
     source = manual.states.get(link.source)
     entry = project.clips.get(source.clip) if source is not None else None
@@ -211,7 +218,7 @@ def _link(project: Project, manual: Manual, link: Link) -> Iterator[Problem]:
         entry.duration if source.end is None else min(source.end, entry.duration),
     )
     if link.exit_time is not None and not start <= link.exit_time <= end + 0.5 / entry.fps:
-        message = told(
+        message = phrase(
             "may be taken at {exit_time:.2f} s, outside what '{name}' plays",
             exit_time=link.exit_time,
             name=source.name,
@@ -220,12 +227,12 @@ def _link(project: Project, manual: Manual, link: Link) -> Iterator[Problem]:
             "warning",
             "exit",
             message,
-            told("Bring it between {start:.2f} and {end:.2f} s.", start=start, end=end),
+            phrase("Bring it between {start:.2f} and {end:.2f} s.", start=start, end=end),
         )
     elif link.blend > end - start > 0 and not source.loop:
         yield at(
             "warning",
             "blend",
-            told("blends for {blend:.2f} s of {plays:.2f} s", blend=link.blend, plays=end - start),
-            told("Shorten its blend."),
+            phrase("blends for {blend:.2f} s of {plays:.2f} s", blend=link.blend, plays=end - start),
+            phrase("Shorten its blend."),
         )

@@ -11,7 +11,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.graph import ids
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.edits import free_name, limb_of
@@ -29,17 +29,17 @@ def machine(project: Project, layer: Layer) -> Manual:
 def refusal(project: Project, clips: Sequence[str]) -> str | None:
     """Return in words why clips cannot become states, or None when they can."""
     if not clips:
-        return told("nothing to place")
+        return phrase("nothing to place")
     for clip in clips:
         entry = project.clips.get(clip)
         if entry is None:
-            return told("a clip that is not in this project")
+            return phrase("a clip that is not in this project")
         if (
             entry.motion is not None
             and project.skeleton is not None
             and entry.motion.skeleton != project.skeleton
         ):
-            return told("'{name}' has another skeleton than this project", name=entry.name)
+            return phrase("'{name}' has another skeleton than this project", name=entry.name)
     return None
 
 
@@ -86,13 +86,13 @@ def link_refusal(project: Project, layer: Layer, source: str, target: str) -> st
     """Return in words why a link cannot be drawn, or None when it can."""
     found = machine(project, layer)
     if target == ANY:
-        return told("no link can lead to any state: draw it the other way round")
+        return phrase("no link can lead to any state: draw it the other way round")
     group = found.aliases.get(target)
     if group is not None and found.end(Link("", source, target)) is None:
-        return told("'{name}' has no entry: choose the state it is entered by first", name=group.name)
+        return phrase("'{name}' has no entry: choose the state it is entered by first", name=group.name)
     known = found.states.keys() | found.aliases.keys()
     if target not in known or (source != ANY and source not in known):
-        return told("a link joins two states of one layer")
+        return phrase("a link joins two states of one layer")
     return None
 
 
@@ -125,7 +125,7 @@ def add_links(project: Project, layer: Layer, sources: Sequence[str], targets: S
     there = {(x.source, x.target) for x in found.links.values()}
     pairs = [(a, b) for a in sources for b in targets if a != b and (a, b) not in there]
     if not pairs:
-        raise EditError(told("these links are drawn already"))
+        raise EditError(phrase("these links are drawn already"))
     links = {**found.links, **_new(project, found, pairs)}
     return project.with_manual(replace(found, links=links))
 
@@ -201,7 +201,7 @@ def set_start(project: Project, state: str) -> Project:
     """Let the layer begin in a state. Raises EditError."""
     found = project.state(state)
     if found is None:
-        raise EditError(told("that state is no longer in the project"))
+        raise EditError(phrase("that state is no longer in the project"))
     return project.with_manual(replace(project.manual[found.layer], start=state))
 
 
@@ -355,5 +355,5 @@ def _whole(place: float) -> float:
 def _clean(name: str) -> str:
     name = " ".join(name.split())
     if not name:
-        raise EditError(told("a name needs at least one letter"))
+        raise EditError(phrase("a name needs at least one letter"))
     return name

@@ -10,7 +10,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 from typing import Any
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.graph import ids
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.edits import free_name
@@ -26,7 +26,7 @@ def add_alias(project: Project, layer: Layer, states: Sequence[str], every: bool
     found = machine(project, layer)
     chosen = tuple(i for i in found.states if i in states)
     if not chosen and not (every and found.states):
-        raise EditError(told("select the states the alias is to stand for"))
+        raise EditError(phrase("select the states the alias is to stand for"))
     mine = [found.states[i] for i in chosen or found.states]
     taken = {a.name for a in found.aliases.values()}
     name = "every state" if every else shared_words([s.name for s in mine]) or "alias"
@@ -69,7 +69,7 @@ def update_aliases(project: Project, aliases: Collection[str], **changes: Any) -
     if "name" in changes:
         changes["name"] = " ".join(str(changes["name"]).split())
         if not changes["name"]:
-            raise EditError(told("a name needs at least one letter"))
+            raise EditError(phrase("a name needs at least one letter"))
     machines = dict(project.manual)
     for layer, found in project.manual.items():
         edits = {i: replace(found.aliases[i], **changes) for i in aliases if i in found.aliases}
@@ -82,7 +82,7 @@ def choose(project: Project, alias: str, states: Collection[str], on: bool = Tru
     """Let an alias stand for some states as well, or no longer."""
     found = project.alias(alias)
     if found is None:
-        raise EditError(told("that alias is no longer in the project"))
+        raise EditError(phrase("that alias is no longer in the project"))
     of = project.manual[found.layer]
     chosen = {*found.states, *states} if on else set(found.states) - set(states)
     entry = found.entry if found.entry in chosen or found.every else None
@@ -107,7 +107,7 @@ def paste_links(project: Project, layer: Layer, links: Sequence[Link], nodes: Se
     found = machine(project, layer)
     sources, targets = Counter(x.source for x in links), Counter(x.target for x in links)
     if len(sources) > 1 and len(targets) > 1:
-        raise EditError(told("copy links that leave one state, or that lead to one"))
+        raise EditError(phrase("copy links that leave one state, or that lead to one"))
     there = {(x.source, x.target) for x in found.links.values()}
     out: dict[str, Link] = {}
     for node in nodes:
@@ -122,6 +122,6 @@ def paste_links(project: Project, layer: Layer, links: Sequence[Link], nodes: Se
                 ident = ids.new_id(project, "l", layer, one.source, one.target, more=out)
                 out[ident] = replace(one, id=ident)
     if not out:
-        raise EditError(told("these links are drawn already"))
+        raise EditError(phrase("these links are drawn already"))
     after = replace(found, links={**found.links, **out})
     return project.with_manual(after)

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.graph import anatomy
 from metagraph.graph.model import REACH, Project
 from metagraph.graph.words import Layer
@@ -327,21 +327,21 @@ def times(
     last = out.leave[-1][0] if out.leave else end
     earliest = max(last, middle) if away and leave and max(last, middle) < end - blend_out else None
     if enter and leave:
-        reason = told(
+        reason = phrase(
             "moves from {first:.2f} to {last:.2f} s, and looks like its stance before and after",
             first=moving[0],
             last=moving[-1],
         )
     elif enter:
-        reason = told(
+        reason = phrase(
             "leaving costs {cost:.1f} times what is usual: a jump would be seen", cost=out.leave_cost
         )
     elif leave:
-        reason = told(
+        reason = phrase(
             "entering costs {cost:.1f} times what is usual: a jump would be seen", cost=into.enter_cost
         )
     else:
-        reason = told(
+        reason = phrase(
             "entering costs {cost:.1f} times what is usual and leaving costs {more:.1f} times what is usual: "
             "a jump would be seen",
             cost=into.enter_cost,
@@ -369,7 +369,7 @@ def loop_times(stats: Statistics, clip: Clip, roles: Mapping[str, int] | None = 
         0.0,
         None,
         good,
-        told("its seam costs {seam:.2f} times what is usual between frames", seam=seam),
+        phrase("its seam costs {seam:.2f} times what is usual between frames", seam=seam),
     )
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from metagraph.common.wording import joined, told
+from metagraph.common.wording import join_phrases, phrase
 from metagraph.graph.checks import end_gaps
 from metagraph.graph.model import Action, Project
 
@@ -89,21 +89,21 @@ def words_at(project: Project, action: Action, seen: Seen, seconds: float) -> st
     cost = seen.cost("start" if entering else "end", seconds)
     blend = action.timing.blend_in if entering or seen.loops else action.timing.blend_out
     stance = project.stance(action.stance if entering or action.end_stance is None else action.end_stance)
-    name = told("'{name}'", name=stance.name) if stance is not None else told("its stance")
+    name = phrase("'{name}'", name=stance.name) if stance is not None else phrase("its stance")
     if cost <= 1:
-        verdict = told("{cost:.1f} of what shows as a jump", cost=cost)
+        verdict = phrase("{cost:.1f} of what shows as a jump", cost=cost)
     else:
-        verdict = told("{cost:.1f} times what shows as a jump", cost=cost)
+        verdict = phrase("{cost:.1f} times what shows as a jump", cost=cost)
     if blend > 0:
-        verdict = told("{verdict}, blended over {blend:.2f} s", verdict=verdict, blend=blend)
+        verdict = phrase("{verdict}, blended over {blend:.2f} s", verdict=verdict, blend=blend)
     if seen.loops:
-        return told("At {seconds:.2f} s it repeats from here: {verdict}", seconds=seconds, verdict=verdict)
+        return phrase("At {seconds:.2f} s it repeats from here: {verdict}", seconds=seconds, verdict=verdict)
     if entering:
-        said = told(
+        said = phrase(
             "At {seconds:.2f} s it enters from {name}: {verdict}", seconds=seconds, name=name, verdict=verdict
         )
     else:
-        said = told(
+        said = phrase(
             "At {seconds:.2f} s it leaves to {name}: {verdict}", seconds=seconds, name=name, verdict=verdict
         )
     return said
@@ -115,28 +115,28 @@ def verdict(costs: Mapping[str, float], far: Mapping[str, str] | None = None) ->
     """
     far = far or {}
     if len(costs) > 1 and max(costs.values()) <= 1 and not far:
-        return told("Begins and ends without a jump")
+        return phrase("Begins and ends without a jump")
     said: list[str] = []
     for what, cost in costs.items():
         said.append(far[what] if what in far else _cost_words(what, cost, any("jump" in x for x in said)))
-    return joined(said, ", ")
+    return join_phrases(said, ", ")
 
 
 def _cost_words(what: str, cost: float, again: bool) -> str:
     """Say what one of both costs. again: whether a jump was spoken of before."""
     if what == "Repeats":
         if cost <= 1:
-            return told("Repeats without a jump")
-        return told("Repeats {cost:.1f} times what shows as a jump", cost=cost)
+            return phrase("Repeats without a jump")
+        return phrase("Repeats {cost:.1f} times what shows as a jump", cost=cost)
     if what == "Begins":
         if cost <= 1:
-            return told("Begins without a jump")
-        return told("Begins {cost:.1f} times what shows as a jump", cost=cost)
+            return phrase("Begins without a jump")
+        return phrase("Begins {cost:.1f} times what shows as a jump", cost=cost)
     if cost <= 1:
-        return told("ends without one") if again else told("ends without a jump")
+        return phrase("ends without one") if again else phrase("ends without a jump")
     if again:
-        return told("ends {cost:.1f} times what shows as one", cost=cost)
-    return told("ends {cost:.1f} times what shows as a jump", cost=cost)
+        return phrase("ends {cost:.1f} times what shows as one", cost=cost)
+    return phrase("ends {cost:.1f} times what shows as a jump", cost=cost)
 
 
 def far_ends(project: Project, action: Action) -> dict[str, str]:
@@ -152,7 +152,7 @@ def far_ends(project: Project, action: Action) -> dict[str, str]:
 def _gap_words(gap: end_gaps.Gap, stance: str) -> str:
     """Say a gap as the problems do; what begins a sentence with a capital."""
     if gap.edge == "begins":
-        return told("Begins {far:.0f} cm from stance '{stance}'", far=gap.metres * 100, stance=stance)
+        return phrase("Begins {far:.0f} cm from stance '{stance}'", far=gap.metres * 100, stance=stance)
     return end_gaps.gap_words(gap, stance)
 
 
@@ -161,9 +161,9 @@ def times_words(seen: Seen) -> str:
     p = seen.proposed
     if seen.loops:
         if p.blend_in > 0:
-            return told("All of it, its seam blended over {blend:.2f} s", blend=p.blend_in)
-        return told("All of it, without a blend")
-    return told(
+            return phrase("All of it, its seam blended over {blend:.2f} s", blend=p.blend_in)
+        return phrase("All of it, without a blend")
+    return phrase(
         "{start:.2f} to {end:.2f} s, blended over {blend_in:.2f} and {blend_out:.2f} s",
         start=p.start,
         end=p.end,

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.graph.checks import end_gaps
 from metagraph.graph.model import Action, Project
 from metagraph.playback.timing.handles import EDGES, times_of
@@ -48,15 +48,15 @@ def snaps_of(
     if handle in ("start", "end"):
         found = list(_edge(seen, handle))
         found.append(
-            Snap(0.0, told("the clip's first frame")) if handle == "start" else _last(entry.duration)
+            Snap(0.0, phrase("the clip's first frame")) if handle == "start" else _last(entry.duration)
         )
     elif handle in ("in", "out"):
         found = list(_blend(project, action, handle))
     else:
         found = list(_moment(project, action, handle, np.asarray(speeds, float), entry.fps))
-    found += [Snap(at, told("the line is stressed here")) for at in stresses]
+    found += [Snap(at, phrase("the line is stressed here")) for at in stresses]
     if playhead is not None:
-        found.append(Snap(playhead, told("the playhead")))
+        found.append(Snap(playhead, phrase("the playhead")))
     return tuple(s for s in found if -1e-6 <= s.at <= entry.duration + 1e-6)
 
 
@@ -69,20 +69,22 @@ def nearest(snaps: Iterable[Snap], seconds: float, within: float) -> Snap | None
 
 
 def _last(duration: float) -> Snap:
-    return Snap(duration, told("the clip's last frame"))
+    return Snap(duration, phrase("the clip's last frame"))
 
 
 def _edge(seen: Seen | None, handle: str) -> Iterator[Snap]:
     if seen is None:
         return
     if seen.loops:
-        proposed = told("proposed: it repeats without a jump")
+        proposed = phrase("proposed: it repeats without a jump")
     elif handle == "start":
-        proposed = told("proposed: it begins without a jump")
+        proposed = phrase("proposed: it begins without a jump")
     else:
-        proposed = told("proposed: it ends without a jump")
+        proposed = phrase("proposed: it ends without a jump")
     other = (
-        told("latest moment without a jump") if handle == "start" else told("earliest moment without a jump")
+        phrase("latest moment without a jump")
+        if handle == "start"
+        else phrase("earliest moment without a jump")
     )
     for n, at in enumerate(seen.snaps(handle)):
         yield Snap(at, proposed if n == 0 else other)
@@ -99,13 +101,13 @@ def _blend(project: Project, action: Action, handle: str) -> Iterator[Snap]:
         needed = end_gaps.blend_for(motion.skeleton.height, gap.metres) + SLACK
         if needed <= end - start:
             at = start + needed if handle == "in" else end - needed
-            yield Snap(at, told("long enough for {length:.0f} cm to the stance", length=gap.metres * 100))
+            yield Snap(at, phrase("long enough for {length:.0f} cm to the stance", length=gap.metres * 100))
     now = times_of(project, action)
     ready, relax = now["ready"], now["relax"]
     if handle == "in" and ready is not None:
-        yield Snap(ready, told("its preparation ends"))
+        yield Snap(ready, phrase("its preparation ends"))
     if handle == "out" and relax is not None:
-        yield Snap(relax, told("its retraction begins"))
+        yield Snap(relax, phrase("its retraction begins"))
 
 
 def _moment(project: Project, action: Action, handle: str, speeds: Array, fps: float) -> Iterator[Snap]:
@@ -115,18 +117,18 @@ def _moment(project: Project, action: Action, handle: str, speeds: Array, fps: f
         bare = replace(action.timing, ready=None, stroke_end=None, relax=None, stroke=None)
         found = phases(project, replace(action, timing=bare))
         by = {"ready": found.ready, "hold": found.stroke_end, "relax": found.relax, "stroke": found.stroke}
-        yield Snap(round(by[handle], 3), told("as found from the motion"))
+        yield Snap(round(by[handle], 3), phrase("as found from the motion"))
     if handle == "exit":
         relax = times_of(project, action)["relax"]
         if relax is not None:
-            yield Snap(relax, told("its hold ends"))
+            yield Snap(relax, phrase("its hold ends"))
     for frame in turning(speeds, most=handle == "stroke"):
         at = frame / fps
         if start <= at <= end:
             words = (
-                told("fastest here, {speed:.1f} m/s", speed=float(speeds[frame]))
+                phrase("fastest here, {speed:.1f} m/s", speed=float(speeds[frame]))
                 if handle == "stroke"
-                else told("slowest here")
+                else phrase("slowest here")
             )
             yield Snap(round(at, 3), words)
 

@@ -15,7 +15,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from metagraph.common.wording import requoted
+from metagraph.common.wording import change_quoted
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.motion_guess import Likely, MotionGuess
@@ -171,7 +171,7 @@ class Places:
             and (key := self._of_shape.get(id(seen.value))) is not None
         ):
             own, known = seen.value.name, self.by_key[key].name
-            words = requoted(seen.reason, lambda name: known if name == own else name, '"')
+            words = change_quoted(seen.reason, lambda name: known if name == own else name, '"')
             out.append(Belief(key, seen.confidence, words))
         return out
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final, TypeVar, cast
 
-from metagraph.common.wording import requoted, told
+from metagraph.common.wording import change_quoted, phrase
 from metagraph.graph.words import Kind, Layer, Limb
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.words.cut import written
@@ -251,7 +251,7 @@ class _Reader:
         if belief is None or "'" not in belief.reason:
             return belief
         taken = self._taken[name]
-        reason = requoted(belief.reason, lambda words: quoted(name, words.split(), taken)[1:-1])
+        reason = change_quoted(belief.reason, lambda words: quoted(name, words.split(), taken)[1:-1])
         return Belief(belief.value, belief.confidence, reason)
 
     def key(self, parse: _Parse, field: str) -> Words:
@@ -294,9 +294,9 @@ class _Reader:
             return None
         value, words, count = found
         said = (
-            told("'{words}' was corrected to {value} once", words=words, value=value)
+            phrase("'{words}' was corrected to {value} once", words=words, value=value)
             if count == 1
-            else told(
+            else phrase(
                 "'{words}' was corrected to {value} {count} times", words=words, value=value, count=count
             )
         )
@@ -328,7 +328,7 @@ class _Reader:
         ):  # shorter ones are directions: "head_dl"
             idle = "idle" in (stance.words[0] if len(stance.words) == 1 else "", self._before(parse))
             idle = idle and not self._stances.common(stance)
-            reason = told(
+            reason = phrase(
                 "name adds '{words}' to the stance \"{stance}\"",
                 words=" ".join(parse.act),
                 stance=stance.text,
@@ -348,16 +348,16 @@ class _Reader:
         if parse.stance and parse.own:
             words = " ".join(parse.words[parse.at : parse.at + parse.own])
             begins = (
-                told('name comes from "{stance}"', stance=parse.stance.text)
+                phrase('name comes from "{stance}"', stance=parse.stance.text)
                 if parse.joined
-                else told("name has '{words}'", words=words)
+                else phrase("name has '{words}'", words=words)
                 if parse.at
-                else told("name begins with '{words}'", words=words)
+                else phrase("name begins with '{words}'", words=words)
             )
             sure = min(0.85 if parse.at else 0.97, parse.stance.confidence + 0.05)
             return Belief(parse.stance.text, sure, begins)
         if parse.stance:
-            joins = told("name says '{words}', which begins there", words=parse.joined)
+            joins = phrase("name says '{words}', which begins there", words=parse.joined)
             return Belief(self._called(parse.stance), 0.8, joins)
         usual = self._stances.usual()
         if kind is None or kind.value in ("stance", "transition") or usual is None:
@@ -365,7 +365,7 @@ class _Reader:
         return Belief(
             self._called(usual[0]),
             usual[1],
-            told("no other stance is named and '{words}' is the plain one", words=usual[0].text),
+            phrase("no other stance is named and '{words}' is the plain one", words=usual[0].text),
         )
 
     def _end_stance(self, parse: _Parse) -> Belief[str] | None:
@@ -400,7 +400,7 @@ class _Reader:
             return _layer(from_act, 0.85)
         side = next(iter(phrases(parse.act, self._patterns.meanings["limbs"])), None)
         if side and not (kind and kind.value == "stance"):
-            return Belief("arms", 0.8, told("name says '{words}', a hand", words=side.text))
+            return Belief("arms", 0.8, phrase("name says '{words}', a hand", words=side.text))
         if from_stance:  # what is done there may well be another layer's
             still = parse.joined or (kind and kind.value == "stance")
             return _layer(from_stance, (0.95 if len(stood) > 1 else 0.85) if still else 0.45)
@@ -450,7 +450,7 @@ class _Reader:
     def _number(self, words: Words) -> Belief[int] | None:
         if not words or not is_number(words[-1]) or len(words[-1]) > 9:
             return None
-        return Belief(int(words[-1]), 0.95, told("name ends in '{words}'", words=str(words[-1])))
+        return Belief(int(words[-1]), 0.95, phrase("name ends in '{words}'", words=str(words[-1])))
 
 
 def _layer(said: Phrase, confidence: float) -> Belief[Layer]:
@@ -459,7 +459,7 @@ def _layer(said: Phrase, confidence: float) -> Belief[Layer]:
 
 def _says(*texts: str) -> str:
     """Return that a name says some words."""
-    first, *more = (told("'{words}'", words=str(text)) for text in dict.fromkeys(texts))
+    first, *more = (phrase("'{words}'", words=str(text)) for text in dict.fromkeys(texts))
     for other in more:
-        first = told("{one} and {other}", one=first, other=other)
-    return told("name says {quoted}", quoted=first)
+        first = phrase("{one} and {other}", one=first, other=other)
+    return phrase("name says {quoted}", quoted=first)

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from metagraph.common.wording import told
+from metagraph.common.wording import phrase
 from metagraph.suggest.words.cut import written
 from metagraph.suggest.words.patterns import Patterns
 from metagraph.suggest.words.tokens import (
@@ -238,7 +238,7 @@ class Stances:
         if self._acts(core) and not (self._poses(core) and self._goes_on(words)):
             return
         if count >= 2 and not any(p.meaning == "transition" for p in phrases(core, self._kinds)):
-            self._add(core, 0.85, told("{count} names begin with it", count=count), words, core)
+            self._add(core, 0.85, phrase("{count} names begin with it", count=count), words, core)
 
     def _poses(self, words: Words) -> bool:
         """Whether words may be a posture, though they may be an act as well: "head tilt left"."""
@@ -265,7 +265,7 @@ class Stances:
                 and not self._acts(core)
                 and not self._other(core)
             ):
-                self._add(core, 0.9, told("{count} names begin with it", count=count), head, core)
+                self._add(core, 0.9, phrase("{count} names begin with it", count=count), head, core)
         runs: dict[Words, int] = {}
         for taken in distinct:
             n = 0 if taken.split else self._posture_run(taken.words)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from app.look.plural import many, short
+from app.look.plural import short
+from app.translation import tr_plural
 
 
 @pytest.mark.parametrize(
@@ -31,6 +32,6 @@ def test_a_stances_name_in_front_of_its_actions_is_left_out(name, stance, expect
 
 
 def test_one_is_one_and_thousands_are_grouped():
-    assert many(1, "clip") == "1 clip"
-    assert many(2328, "connection") == "2,328 connections"
-    assert many(0, "state") == "0 states"
+    assert tr_plural("{count:,} clip", "{count:,} clips", 1) == "1 clip"
+    assert tr_plural("{count:,} connection", "{count:,} connections", 2328) == "2,328 connections"
+    assert tr_plural("{count:,} state", "{count:,} states", 0) == "0 states"

@@ -11,6 +11,7 @@ from app import translation
 from app.shell.actions import Command
 from app.shell.command_table import all_of, any_of, bound, not_
 from app.translation import tr_noop
+from tests.app.catalogue_texts import catalogue_texts
 
 TABLE = (
     Command(
@@ -58,7 +59,7 @@ def test_two_windows_have_commands_of_their_own(feature):
 def test_texts_are_in_the_language_that_is_chosen_when_the_window_is_made(feature):
     translation.choose("de")
     undo, fill = bound(TABLE, feature)
-    assert undo.tip == fill.words == translation.words_of("de")["Undo"] != "Undo"
+    assert undo.tip == fill.words == catalogue_texts("de")["Undo"] != "Undo"
 
 
 def test_conditions_combine():

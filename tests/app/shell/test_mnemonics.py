@@ -37,7 +37,7 @@ _WINDOW = """
 import json, os
 from PySide6.QtWidgets import QApplication
 from app import translation
-translation.choose_as_told(None)
+translation.choose_language(None)
 from app.main import make_window
 app = QApplication([])
 window = make_window()
@@ -61,7 +61,7 @@ def test_no_menu_has_a_key_twice(code: str) -> None:
     assert done.returncode == 0, done.stderr[-2000:]
     menus = json.loads(done.stdout.splitlines()[-1])
     assert len(menus) > 8 and sum(map(len, menus.values())) > 100
-    assert menus[""][0] == {"en": "&File", "de": "&Datei"}[code]
+    assert menus[""][0] == {"en": "&File", "de": "&Datei", "pl": "&Plik"}[code]
     for menu, texts in menus.items():
         keys = Counter(key for text in texts if (key := key_of(text)))
         assert not [key for key, count in keys.items() if count > 1], (menu, texts)

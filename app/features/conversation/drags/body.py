@@ -6,14 +6,14 @@ from PySide6.QtCore import QPointF, Qt
 
 from app.features.conversation.drags.segment import SegmentDrag
 from app.project.document import Edit
-from app.translation import tr
+from app.translation import tr_noop
 from metagraph.graph.conversation import edits as conversation_edits
 
 
 class BodyDrag(SegmentDrag):
     """Drags a segment in time; whichever of its ends is nearer to a word's catches it."""
 
-    text = tr("Move segment")
+    text = tr_noop("Move segment")
     cursor = Qt.CursorShape.ClosedHandCursor
 
     def edit(self, at: QPointF, free: bool) -> Edit | None:

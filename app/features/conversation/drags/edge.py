@@ -6,14 +6,14 @@ from PySide6.QtCore import QPointF
 
 from app.features.conversation.drags.segment import SegmentDrag
 from app.project.document import Edit
-from app.translation import tr
+from app.translation import tr_noop
 from metagraph.graph.conversation import edits as conversation_edits
 
 
 class EdgeDrag(SegmentDrag):
     """Drags where a segment begins or ends."""
 
-    text = tr("Change segment")
+    text = tr_noop("Change segment")
 
     def edit(self, at: QPointF, free: bool) -> Edit | None:
         view, hit, ident = self.view, self.hit, self.view.session.onstage.conversation

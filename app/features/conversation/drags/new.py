@@ -7,7 +7,7 @@ from PySide6.QtCore import QPointF
 from app.features.conversation.drags.host import SegmentHost
 from app.features.conversation.drags.segment import SegmentDrag
 from app.project.document import Edit
-from app.translation import tr
+from app.translation import tr, tr_noop
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.edit_error import EditError
 
@@ -15,7 +15,7 @@ from metagraph.graph.edit_error import EditError
 class NewDrag(SegmentDrag):
     """Draws a new segment where none is."""
 
-    text = tr("Add segment")
+    text = tr_noop("Add segment")
 
     def edit(self, at: QPointF, free: bool) -> Edit | None:
         view, side, ident = self.view, self.hit.side, self.view.session.onstage.conversation

@@ -7,14 +7,14 @@ from PySide6.QtCore import QPointF
 from app.features.conversation.drags.segment import SegmentDrag
 from app.features.conversation.segment_hits import snapped
 from app.project.document import Edit
-from app.translation import tr
+from app.translation import tr, tr_noop
 from metagraph.graph.conversation import edits as conversation_edits
 
 
 class PeakDrag(SegmentDrag):
     """Drags the stress of a clause; where the pitch is highest catches it."""
 
-    text = tr("Move stress")
+    text = tr_noop("Move stress")
 
     def edit(self, at: QPointF, free: bool) -> Edit | None:
         view, hit, of = self.view, self.hit, self.view.editing.conversation

@@ -8,6 +8,7 @@ from PySide6.QtGui import QMouseEvent
 from app.features.conversation.drags.host import SegmentHost
 from app.features.conversation.segment_hits import SegmentHit, snapped, word_edges
 from app.project.document import Edit
+from app.translation import tr
 from app.widgets.gesture import PressDrag, Reason
 
 
@@ -35,7 +36,7 @@ class SegmentDrag(PressDrag):
     def finish(self, at: QPointF) -> None:
         self.view.hold(None)
         if self.begun and self.made is not None:
-            self.view.editing.edit(self.text, self.made)
+            self.view.editing.edit(tr(self.text), self.made)
 
     def cancel(self, reason: Reason) -> None:
         self.view.hold(None)

@@ -6,7 +6,7 @@ from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtGui import QDrag
 
 from app.features.graph.drags.action import ActionDrag
-from app.look.plural import many
+from app.translation import tr_plural
 from app.widgets.mime import drag_picture, mime
 
 
@@ -25,7 +25,11 @@ class RowDrag(ActionDrag):
         drag.setMimeData(mime(actions=actions))
         action = self.host.document.project.action(self.action)
         picture = self.host.thumbnails.picture(action.clip, bare=True) if action is not None else None
-        words = many(len(actions), "action") if len(actions) > 1 else self._name()
+        words = (
+            tr_plural("{count:,} action", "{count:,} actions", len(actions))
+            if len(actions) > 1
+            else self._name()
+        )
         drag.setPixmap(drag_picture(words, widget, picture))
         drag.setHotSpot(QPoint(-14, -10))
         self.host.hand.drop("taken over")

@@ -7,7 +7,7 @@ from PySide6.QtCore import QPointF, Qt
 from app.features.manual.drags.host import ManualHost
 from app.features.manual.drags.node import NodeDrag
 from app.features.manual.manual_scene import ManualHit
-from app.translation import tr, tr_told
+from app.translation import tr, tr_phrase
 from app.widgets.gesture import Reason
 from metagraph.graph.manual import edits as manual_edits
 
@@ -34,7 +34,7 @@ class DrawLink(NodeDrag):
             why = manual_edits.link_refusal(
                 self.host.document.project, self.host.session.place.layer, self.node, hit.ident
             )
-            self.target, self.words = (hit.ident, "") if why is None else ("", tr_told(why))
+            self.target, self.words = (hit.ident, "") if why is None else ("", tr_phrase(why))
         self.host.show_cursor(Qt.CursorShape.ForbiddenCursor if self.words else Qt.CursorShape.CrossCursor)
         self.host.show_link(self.node, at, self.target, self.nodes, self._tell())
 

@@ -10,6 +10,7 @@ from app import translation
 from app.features.models.state_names import a_state, state_name
 from metagraph.graph.words import KINDS, LAYERS, LIMBS
 from metagraph.playback.learning.learn import state_words
+from tests.app.catalogue_texts import catalogue_texts
 
 
 def test_english_names_are_the_domains() -> None:
@@ -24,7 +25,7 @@ def test_a_sentence_has_tags_before_and_both_arms_behind() -> None:
 
 
 def test_no_state_is_left_in_english(request: pytest.FixtureRequest) -> None:
-    words = translation.words_of("de")
+    words = catalogue_texts("de")
     assert {f"{limb} {kind}" for limb, kind in product(LIMBS, KINDS)} | {*KINDS, *LIMBS} <= words.keys()
     request.addfinalizer(lambda: translation.choose("en"))
     translation.choose("de")

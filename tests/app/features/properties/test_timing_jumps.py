@@ -4,7 +4,6 @@ proposed.
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -14,10 +13,11 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
 from app.stage.compatibility_state import proposed_fields
-from metagraph.common.wording import reworded
+from metagraph.common.wording import translate_phrase
 from metagraph.graph import edits
 from metagraph.suggest.jumps.found import Measured, curves
 from metagraph.suggest.jumps.seen_jumps import Seen, far_ends, verdict, words_at
+from tests.app.catalogue_texts import catalogue_texts
 
 ROOT = Path(__file__).resolve().parents[4]
 
@@ -99,8 +99,8 @@ def test_a_loop_shows_its_seam(toy, wide):
 def test_the_verdict_is_one_sentence(costs, words):
     found = verdict(costs)
     assert found == words
-    german = json.loads((ROOT / "app" / "languages" / "de.json").read_text("utf-8"))
-    said = reworded(found, lambda template: german.get(template, template))
+    german = catalogue_texts("de")
+    said = translate_phrase(found, lambda words: german.get(words.template, words.template))
     assert not {"jump", "without", "times"} & set(said.replace(",", "").split())
 
 

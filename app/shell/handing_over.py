@@ -1,0 +1,59 @@
+"""A new window takes the place of an old one: same project, undo steps, file, selection and place."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt
+
+from app.shell.window import Window
+from app.stage.session import Session
+from app.translation import tr
+
+
+def why_not_now(window: Window) -> str:
+    """Return why a window cannot be replaced at the moment, "" where it can."""
+    if window.shell.jobs.running:
+        title = window.shell.jobs.running[0].title
+        return tr("Wait until '{job}' has finished, or cancel it, then choose the language again.", job=title)
+    if window.shell.stage.performance.live.stage is not None:
+        return tr("Stop the live session, then choose the language again.")
+    return ""
+
+
+def hand_over(old: Window, new: Window) -> None:
+    """Show `new` instead of `old`, with all that the user did and sees in it; `old` is closed."""
+    new.restoreGeometry(old.saveGeometry())
+    new.shell.document.take_over(old.shell.document)
+    new.shell.files.opened.emit()
+    _copy_session(old.shell.stage.session, new.shell.stage.session)
+    new.show()
+    new.load_late_panels_soon()
+    old.replaced = True
+    old.close()
+    old.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+    old.deleteLater()
+
+
+def _copy_session(old: Session, new: Session) -> None:
+    new.set_mode(old.onstage.mode)
+    new.place.stances.update(old.place.stances)
+    new.place.others.update(old.place.others)
+    new.place.set_layer(old.place.layer)
+    new.place.stance_changed.emit()
+    new.onstage.set_performance(old.onstage.performance)
+    new.onstage.set_conversation(old.onstage.conversation)
+    new.onstage.set_side(old.onstage.side)
+    chosen = old.selection
+    if chosen.states or chosen.links:
+        new.selection.select_states(chosen.states, chosen.links)
+    elif chosen.actions:
+        new.selection.select_actions(chosen.actions)
+    else:
+        new.selection.select_clips(chosen.clips)
+    new.selection.copied = chosen.copied
+    was, now = old.transport, new.transport
+    if was.show == "clip" and was.shown is not None:
+        now.show_clip(was.shown)
+    elif was.show == "context" and was.shown is not None:
+        now.show_context(was.shown, was.tried)
+    now.set_playing(was.playing)
+    now.seek(was.seconds)
