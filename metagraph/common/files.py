@@ -162,5 +162,7 @@ def unforeseen(path: str | Path, error: Exception) -> FileError:
     if isinstance(error, OSError):
         return unreadable(Path(path), error)
     said = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-    remedy = told("Export it again; if that does not help, report it with the file (docs/reliability.md).")
+    remedy = told(
+        "Export it again; if that does not help, report it with the file (docs/animators/safety.md)."
+    )
     return FileError(path, told("its reader failed on it ({said})", said=said), told("on reading it"), remedy)
