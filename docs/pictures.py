@@ -1,10 +1,10 @@
 """Take the pictures of the documentation from the real window: `python docs/pictures.py` (on a screen, or
 under `xvfb-run`).
 
-Writes docs/screens/*.webp, docs/timing.png, practice.png, empty.png, light.png, requests.png, models.png,
-label.png, export.png, web.png, conversation.png, motion-graph.png and performance.png, from our own sample
-clips only; with names behind it, only those. The screen has to be larger than 2560 x 1440. The web page
-needs Node, Chromium and what tests/package.json names.
+Writes into docs/images: screens/*.webp, timing.png, practice.png, empty.png, light.png, requests.png,
+models.png, label.png, export.png, web.png, conversation.png, motion-graph.png and performance.png, from our
+own sample clips only; with names behind it, only those. The screen has to be larger than 2560 x 1440. The
+web page needs Node, Chromium and what tests/package.json names.
 """
 
 from __future__ import annotations
@@ -50,8 +50,8 @@ def window(theme: str = "dark") -> Any:
 
 
 def shoot(shown: Any, name: str) -> None:
-    shown.grab().save(str(ROOT / "docs" / name))
-    print(f"docs/{name}")
+    shown.grab().save(str(ROOT / "docs" / "images" / name))
+    print(f"docs/images/{name}")
 
 
 def close(out: Any) -> None:
@@ -152,8 +152,10 @@ def keep_screen(out: Any, name: str) -> None:
         path = Path(folder) / "whole.png"
         out.window.grab().save(str(path))
         with Image.open(path) as whole:
-            whole.convert("RGB").save(ROOT / "docs" / "screens" / f"{name}.webp", quality=80, method=6)
-    print(f"docs/screens/{name}.webp")
+            whole.convert("RGB").save(
+                ROOT / "docs" / "images" / "screens" / f"{name}.webp", quality=80, method=6
+            )
+    print(f"docs/images/screens/{name}.webp")
 
 
 def timing() -> None:
@@ -242,8 +244,8 @@ def requests() -> None:
     wait(4000)
     out.show("timeline")
     wait(500)
-    out.timeline.grab().save(str(ROOT / "docs" / "requests.png"))
-    print("docs/requests.png")
+    out.timeline.grab().save(str(ROOT / "docs" / "images" / "requests.png"))
+    print("docs/images/requests.png")
     close(out)
 
 
@@ -260,8 +262,8 @@ def models() -> None:
     out.show("models")
     out.window.resizeDocks([out.docks["models"]], [420], Qt.Orientation.Vertical)
     wait(3000)
-    out.models.grab().save(str(ROOT / "docs" / "models.png"))
-    print("docs/models.png")
+    out.models.grab().save(str(ROOT / "docs" / "images" / "models.png"))
+    print("docs/images/models.png")
     close(out)
 
 
@@ -361,7 +363,7 @@ def page() -> None:
             {"click": "#panel button:text-is('question') >> nth=1"},
             {"run": "metagraph.seek(1.35)"},
             {"wait": 300},
-            {"shot": str(ROOT / "docs" / "web.png")},
+            {"shot": str(ROOT / "docs" / "images" / "web.png")},
         ]
         (folder / "steps.json").write_text(json.dumps(steps))
         script = ROOT / "tests" / "engines" / "run" / "browser.mjs"
@@ -370,7 +372,7 @@ def page() -> None:
             check=True,
             stdout=subprocess.DEVNULL,
         )
-    print("docs/web.png")
+    print("docs/images/web.png")
 
 
 def performance() -> None:
@@ -378,7 +380,9 @@ def performance() -> None:
     from app.cli.parser import main as command
 
     sample = str(ROOT / "sample_clips" / "sample.metagraph.yaml")
-    command(["render", sample, "-s", "46", "--seed", "7", "-o", str(ROOT / "docs" / "performance.png")])
+    command(
+        ["render", sample, "-s", "46", "--seed", "7", "-o", str(ROOT / "docs" / "images" / "performance.png")]
+    )
 
 
 def nothing() -> None:

@@ -1,4 +1,4 @@
-"""The page on requests that exports carry beside a runtime, cut from `live.md`: `python
+"""The page on requests that exports carry beside a runtime, cut from `agents/live.md`: `python
 docs/requests_page.py`.
 """
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 from metagraph import engines
 
-LIVE = Path(__file__).with_name("live.md")
+LIVE = Path(__file__).with_name("agents") / "live.md"
 PAGE = Path(engines.__file__).with_name("runtimes") / "requests.md"
 SESSION_ONLY = {
     "bml",
@@ -26,7 +26,7 @@ SESSION_ONLY = {
 
 
 def page() -> str:
-    """Return the page: what `live.md` says of requests that every runtime takes."""
+    """Return the page: what `agents/live.md` says of requests that every runtime takes."""
     text = LIVE.read_text(encoding="utf-8")
     section = text[text.index("\n## Requests\n") : text.index("\n## Replies\n")]
     lines = [line for line in section.splitlines() if not _of_sessions(line)]

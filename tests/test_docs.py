@@ -34,7 +34,7 @@ PAGES = [
     ROOT / "README.md",
     ROOT / "CONTRIBUTING.md",
     ROOT / "CHANGELOG.md",
-    *sorted((ROOT / "docs").glob("*.md")),
+    *sorted((ROOT / "docs").rglob("*.md")),
 ]
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.S | re.M)
 PICTURES = ("timing", "practice", "empty", "performance")
@@ -179,18 +179,18 @@ def test_the_page_of_requests_that_exports_carry_is_what_the_docs_say() -> None:
 
 def test_the_readme_shows_the_window_and_the_pictures_are_pictures() -> None:
     text = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert "docs/screens/graph-1680x1050-dark.webp" in text
+    assert "docs/images/screens/graph-1680x1050-dark.webp" in text
     for name in PICTURES:
-        assert (ROOT / "docs" / f"{name}.png").read_bytes().startswith(b"\x89PNG"), name
-    screens = list((ROOT / "docs" / "screens").iterdir())
+        assert (ROOT / "docs" / "images" / f"{name}.png").read_bytes().startswith(b"\x89PNG"), name
+    screens = list((ROOT / "docs" / "images" / "screens").iterdir())
     assert len(screens) == 40 and all(s.read_bytes()[8:12] == b"WEBP" for s in screens)
 
 
 def test_every_field_of_the_schema_is_described() -> None:
-    text = (ROOT / "docs" / "format.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "reference" / "format.md").read_text(encoding="utf-8")
     schema = json.loads((ROOT / "metagraph" / "engines" / "metagraph.schema.json").read_bytes())
     export = text[text.index("## The export") : text.index("## Composing poses")]
-    asks = (ROOT / "docs" / "live.md").read_text(encoding="utf-8")
+    asks = (ROOT / "docs" / "agents" / "live.md").read_text(encoding="utf-8")
     export += asks[asks.index("## Requests") : asks.index("## Replies")]
     fields = {name for part in schema["$defs"].values() for name in part["properties"]}
     assert not {f for f in fields if not re.search(rf"`{f}[\[`]", export)}
@@ -201,14 +201,14 @@ def test_every_field_of_a_study_file_and_every_event_of_its_log_is_described() -
     from metagraph.research.study.logs.log import TYPES
     from metagraph.research.study.study_plan import schema_text
 
-    text = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "researchers" / "timing-studies.md").read_text(encoding="utf-8")
     schema = json.loads(schema_text())
     fields = {name for part in schema["$defs"].values() for name in part["properties"]}
     assert not {f for f in fields | set(TYPES) if f"`{f}`" not in text}
 
 
 def test_every_field_of_a_perceptual_study_is_described() -> None:
-    text = (ROOT / "docs" / "perceive.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "researchers" / "perceptual-studies.md").read_text(encoding="utf-8")
     parts = msgspec.json.schema(PerceivePlan)["$defs"]
     fields = {
         name for part, said in parts.items() if part not in ("Item", "Scale") for name in said["properties"]
@@ -219,7 +219,7 @@ def test_every_field_of_a_perceptual_study_is_described() -> None:
 def test_every_field_of_a_project_file_is_described() -> None:
     from metagraph.formats.project import data
 
-    text = (ROOT / "docs" / "format.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "reference" / "format.md").read_text(encoding="utf-8")
     fields = data._PROJECT_FIELDS | data._CLIP_FIELDS | data._ACTION_FIELDS
     assert not {f for f in fields if not re.search(rf"(`{f}`|^{f}:|[{{ ]{f}: )", text, re.M)}
 

@@ -1,4 +1,4 @@
-"""docs/papers.md is true: what it names exists, its values are the code's, its numbers are the papers'."""
+"""docs/researchers/papers.md is true: what it names exists, and its values and numbers are right."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGE = ROOT / "docs" / "papers.md"
+PAGE = ROOT / "docs" / "researchers" / "papers.md"
 PAPERS = {
     "The meta-graph": "borer-meta-graph.md",
     "Conversations": "yang-statistics-based-motion-synthesis.md",

@@ -162,7 +162,9 @@ def unforeseen(path: str | Path, error: Exception) -> FileError:
     if isinstance(error, OSError):
         return unreadable(Path(path), error)
     said = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-    remedy = phrase("Export it again; if that does not help, report it with the file (docs/reliability.md).")
+    remedy = phrase(
+        "Export it again; if that does not help, report it with the file (docs/animators/safety.md)."
+    )
     return FileError(
         path, phrase("its reader failed on it ({said})", said=said), phrase("on reading it"), remedy
     )

@@ -87,7 +87,7 @@ def from_text(text: str, path: Path, notes: list[str] | None = None) -> Project:
                 path,
                 phrase("holds two versions that Git could not merge"),
                 phrase("line {line}", line=text.count("\n", 0, conflict.start()) + 1),
-                phrase("Merge the three versions that Git keeps, as docs/together.md says."),
+                phrase("Merge the three versions that Git keeps, as docs/animators/work-together.md says."),
             ) from None
         line = f"line {error.line}" if error.line else "its text"
         raise FileError(

@@ -78,7 +78,7 @@ def read_gesture_words(path: str | Path) -> GestureWords:
             path,
             f"it is no lexicon of gestures ({error})",
             "its content",
-            "See docs/live.md, 'Words to gestures'.",
+            "See docs/agents/live.md, 'Words to gestures'.",
         ) from None
 
 

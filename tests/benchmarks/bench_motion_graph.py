@@ -8,7 +8,7 @@ with all others, and its time is multiplied; its edges are compared one by one.
 
 With `scale`: the cost against the number of frames, 10k to 1M, each in a process of its own so that its peak
 memory is its own, best of several for the small ones; without numbers behind it that is drawn as
-docs/motion-graph-scale.svg.
+docs/images/motion-graph-scale.svg.
 """
 
 from __future__ import annotations
@@ -318,7 +318,7 @@ def main() -> None:
         given = [int(a) for a in sys.argv[2:]]
         rows = scale(given or list(SIZES))
         if not given:
-            (ROOT / "docs" / "motion-graph-scale.svg").write_text(drawn(rows))
+            (ROOT / "docs" / "images" / "motion-graph-scale.svg").write_text(drawn(rows))
         return
     heads = (
         "data",

@@ -4,7 +4,7 @@ For labelled sets, with names and with names hidden: the folder is dropped on th
 proposed, every clip is watched once, alone and in full, what is wrong is corrected by keys, all is accepted,
 the problems are looked at, and the result is exported. Operators of the keystroke-level model: a thought
 before each correction, each key that goes on after one, and each command; two keys a field that is wrong.
-Prints the table of docs/participant.md.
+Prints the table of docs/researchers/experts-paths.md.
 """
 
 from __future__ import annotations

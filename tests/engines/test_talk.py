@@ -131,7 +131,9 @@ def test_text_that_comes_in_letter_by_letter_asks_for_what_python_asks_and_most_
 
 def test_the_lists_of_words_are_made_of_the_files() -> None:
     for place, text in gesture_word_lists().items():
-        assert place.read_text(encoding="utf-8") == text, "make them anew (docs/translation.md)"
+        assert place.read_text(encoding="utf-8") == text, (
+            "make them anew (docs/contributing/translating-the-runtimes.md)"
+        )
 
 
 def test_an_agent_in_a_page_talks_with_gestures(

@@ -1,4 +1,4 @@
-"""What docs/live.md says of the live session is true, and its clients run."""
+"""What docs/agents/live.md says of the live session is true, and its clients run."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from metagraph.live.live_session import LiveSession
 from tests.processes import metagraph, started
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGE = (ROOT / "docs" / "live.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "agents" / "live.md").read_text(encoding="utf-8")
 CLIENTS = ROOT / "docs" / "clients"
 
 

@@ -13,7 +13,7 @@ from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Ma
 from metagraph.errors import FileError
 
 RUNTIMES = Path(engines.__file__).with_name("runtimes")
-REQUESTS = "../../../../docs/live.md"  # where a README finds them here; an export carries them along
+REQUESTS = "../../../../docs/agents/live.md"  # where a README finds them here; an export carries them along
 BML = Loss(phrase("requests in Behaviour Markup Language are read by the desktop alone"))
 
 

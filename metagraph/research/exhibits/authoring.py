@@ -114,7 +114,8 @@ def hours(material: Material) -> Shown:
         + ("quickest way a search could find" if material.full else "quickest way known")
         + ", with aliases that the paper's editor did not have: "
         + f"{'slower' if ratio > 1 else 'faster'} than dropping clips where names tell what they are and "
-        "nothing is proposed. docs/participant.md has the race with proposals, in the real window.",
+        "nothing is proposed. docs/researchers/experts-paths.md has the race with proposals, in the real "
+        "window.",
     ]
     bars = [
         ("there (timed)", [("paper", MANUAL_HOURS / META_HOURS, None, None)]),

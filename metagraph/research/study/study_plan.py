@@ -32,7 +32,7 @@ from metagraph.research.study.questionnaires import BUILT_IN, Name, Questionnair
 VERSION = 1
 FILE = "study.yaml"
 MOST = 1000  # participants
-_CORRECT = "Correct it; docs/studies.md describes every field."
+_CORRECT = "Correct it; docs/researchers/timing-studies.md describes every field."
 P = TypeVar("P")
 
 ConditionName = Literal["meta", "manual"]

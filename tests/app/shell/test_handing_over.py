@@ -38,10 +38,53 @@ def choose(keeper: WindowKeeper, name: str) -> None:
 
 
 def test_the_new_window_goes_on_where_the_old_one_was(toys: Any, keeper: WindowKeeper) -> None:
-    document = toys.document
-    chosen = toys.id("rest beat lf")
+    document, chosen = toys.document, toys.id("rest beat lf")
     for number in (2.0, 3.0):
-        document.edit(
-            f"step {number}", lambda p, n=number: edits.update_actions(p, [chosen], likelihood=n)
-        )
+        document.edit(f"step {number}", lambda p, n=number: edits.update_actions(p, [chosen], likelihood=n))
     document.undo()
+    toys.shell.stage.session.selection.select_actions((chosen,))
+    project, journal, old = document.project, document.journal_place, toys.window
+    assert journal.exists() and document.dirty
+
+    choose(keeper, "Deutsch")
+
+    new = keeper.window
+    assert new is not old and new.isVisible() and QSettings().value("language") == "de"
+    QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+    assert not isValid(old)
+    settle(new)
+    there = new.shell.document
+    assert there.project is project and there.dirty
+    assert new.menuBar().actions()[0].text() == "&Datei"
+    assert new.shell.stage.session.selection.actions == (chosen,)
+    assert [there.undo_stack.text(n) for n in range(there.undo_stack.count())] == ["step 2.0", "step 3.0"]
+    assert there.journal_place == journal and journal.exists(), "what is in no file stays in the journal"
+    there.redo()
+    assert there.project.action(chosen).likelihood == 3.0
+    there.undo()
+    there.undo()
+    assert there.project.action(chosen).likelihood == 1.0 and not there.dirty
+
+
+def test_fields_and_texts_write_numbers_alike(keeper: WindowKeeper) -> None:
+    choose(keeper, "Deutsch")
+    field = QDoubleSpinBox()
+    field.setValue(2.25)
+    assert field.text() == translation.tr("{n:.2f}", n=2.25) == "2,25"
+    choose(keeper, "English")
+    field = QDoubleSpinBox()
+    field.setValue(2.25)
+    assert field.text() == translation.tr("{n:.2f}", n=2.25) == "2.25"
+    assert QLocale().language() == QLocale.Language.English
+
+
+def test_while_something_runs_the_window_stays_and_says_why(toys: Any, keeper: WindowKeeper) -> None:
+    go_on = threading.Event()
+    toys.shell.jobs.start("Importing clips", lambda job: go_on.wait(20))
+    choose(keeper, "Deutsch")
+    assert keeper.window is toys.window and translation.current_language() == "en"
+    assert "Importing clips" in toys.window.statusBar().currentMessage()
+    go_on.set()
+    settle(toys.window)
+    choose(keeper, "Deutsch")
+    assert translation.current_language() == "de"

@@ -28,7 +28,7 @@ def read_vectors(folder: Path) -> Vectors:
 
 
 def kinds(character: Character, case: dict[str, Any], t: float) -> Iterator[str]:
-    """What plays at a time, in the words of docs/format.md."""
+    """What plays at a time, in the words of docs/reference."""
     for plan in case["plan"]["layers"].values():
         cue, rests = playing(plan, t), plan["rests"]
         if not rests:

@@ -1,4 +1,4 @@
-"""Draws and rests of a plan, written from docs/format.md alone."""
+"""Draws and rests of a plan, written from docs/reference alone."""
 
 from math import log
 from typing import Any
@@ -7,7 +7,7 @@ from tests.engines.stranger.reading import Character
 
 
 def mixed(x: int) -> int:
-    """docs/format.md, "Randomness"."""
+    """docs/reference, "Randomness"."""
     x ^= x >> 16
     x = x * 0x85EBCA6B & 0xFFFFFFFF
     x ^= x >> 13
@@ -16,7 +16,7 @@ def mixed(x: int) -> int:
 
 
 def key32(seed: int, *words: str) -> int:
-    """docs/format.md, "Randomness"."""
+    """docs/reference, "Randomness"."""
     x = 0x811C9DC5 ^ mixed(seed)
     for word in words:
         for byte in word.encode() + b"\0":
@@ -25,12 +25,12 @@ def key32(seed: int, *words: str) -> int:
 
 
 def uniform(seed: int, *words: str) -> float:
-    """docs/format.md, "Randomness"."""
+    """docs/reference, "Randomness"."""
     return (key32(seed, *words) + 0.5) / 2**32
 
 
 def pick(seed: int, key: str, purpose: str, weights: dict[str, float]) -> str:
-    """docs/format.md, "Randomness"."""
+    """docs/reference, "Randomness"."""
     return min(
         (-log(uniform(seed, key, purpose, ident)) / weight, ident)
         for ident, weight in weights.items()
@@ -39,21 +39,21 @@ def pick(seed: int, key: str, purpose: str, weights: dict[str, float]) -> str:
 
 
 def loop_of(character: Character, layer: str, stance: str, seed: int, key: str) -> str | None:
-    """docs/format.md, "Randomness": the loop of a stance."""
+    """docs/reference, "Randomness": the loop of a stance."""
     found = character.data["layers"][layer]["index"].get(stance, {}).get("stance", [])
     weights = {ident: character.actions[ident]["likelihood"] for ident in found}
     return pick(seed, key, "loop", weights) if found else None
 
 
 def begins_in(character: Character, layer: str, case: dict[str, Any]) -> str | None:
-    """The stance a layer begins in; docs/format.md, "When a new loop takes over"."""
+    """The stance a layer begins in; docs/reference, "When a new loop takes over"."""
     graph = character.data["layers"][layer]
     wished = [case["stances"].get(layer), graph["start"], *(stance["id"] for stance in graph["stances"])]
     return next((s for s in wished if graph["index"].get(s, {}).get("stance")), None)
 
 
 def rests_of(character: Character, layer: str, case: dict[str, Any]) -> list[list[Any]]:
-    """The rests under a case's cues; docs/format.md, "When a new loop takes over"."""
+    """The rests under a case's cues; docs/reference, "When a new loop takes over"."""
     cues, seed, end = case["plan"]["layers"][layer]["cues"], case["seed"], case["steps"][-1]["end"]
     longest = character.data["planner"]["loop_fade"]
     begin = begins_in(character, layer, case)

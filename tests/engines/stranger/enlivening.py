@@ -1,4 +1,4 @@
-"""What life adds to a pose, written from docs/format.md, "What life adds to a pose", alone; each function
+"""What life adds to a pose, written from docs/reference, "What life adds to a pose", alone; each function
 names the bold words it follows.
 """
 

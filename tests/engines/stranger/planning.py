@@ -1,4 +1,4 @@
-"""Plans of single steps, written from docs/format.md, "The planner", "The models",
+"""Plans of single steps, written from docs/reference, "The planner", "The models",
 "To the last boundary" and "Phases", alone: models, gestures with their strokes and holds, fidgets, certain
 actions and ways to stances. Words, modes and what lasts are left out.
 """

@@ -1,4 +1,4 @@
-"""The poses of a plan, written from docs/format.md alone; each function names the words it follows."""
+"""The poses of a plan, written from docs/reference alone; each function names the words it follows."""
 
 from typing import Any
 
@@ -12,18 +12,18 @@ STILL = np.array([0.0, 0.0, 0.0, 1.0])
 
 
 def ease(x: float) -> float:
-    """docs/format.md, "Blending"."""
+    """docs/reference, "Blending"."""
     x = min(max(x, 0.0), 1.0)
     return 3.0 * x * x - 2.0 * x * x * x
 
 
 def mix(a: Pose, b: Pose, share: float) -> Pose:
-    """docs/format.md, "Composing poses"."""
+    """docs/reference, "Composing poses"."""
     return nlerp(a[0], b[0], share), a[1] + share * (b[1] - a[1])
 
 
 def sampled(clip: Clip, second: float) -> Pose:
-    """docs/format.md, "Sampling"."""
+    """docs/reference, "Sampling"."""
     last = len(clip.rotations) - 1
     frame = min(max(second * clip.fps, 0.0), last)
     low = int(frame)
@@ -33,7 +33,7 @@ def sampled(clip: Clip, second: float) -> Pose:
 
 
 def cue_second(cue: dict[str, Any], t: float) -> float:
-    """docs/format.md, "Time in a cue"."""
+    """docs/reference, "Time in a cue"."""
     x, tempo = t - cue["start"], cue.get("tempo", 1.0)
     if cue["hold"] <= 0.0:
         return float(cue["entry"] + x * tempo)
@@ -42,19 +42,19 @@ def cue_second(cue: dict[str, Any], t: float) -> float:
 
 
 def cue_weight(cue: dict[str, Any], t: float) -> float:
-    """docs/format.md, "Blending"."""
+    """docs/reference, "Blending"."""
     rise = ease((t - cue["start"]) / cue["blend_in"]) if cue["blend_in"] > 0.0 else 1.0
     fall = ease((cue["end"] - t) / cue["blend_out"]) if cue["blend_out"] > 0.0 else 1.0
     return rise * fall
 
 
 def playing(plan: dict[str, Any], t: float) -> dict[str, Any] | None:
-    """The cue that shows; docs/format.md, "Blending"."""
+    """The cue that shows; docs/reference, "Blending"."""
     return next((cue for cue in plan["cues"] if cue["start"] <= t < cue["end"]), None)
 
 
 def moves(character: Character, action: dict[str, Any]) -> Any:
-    """How far [J] an action moves joints, 0..1; docs/format.md, "Joints an action does not move"."""
+    """How far [J] an action moves joints, 0..1; docs/reference, "Joints an action does not move"."""
     other = {"left": "right", "right": "left", "both": None}[action["limb"]]
     weights = action.get("joint_weights", {})
     return np.array(
@@ -68,14 +68,14 @@ def moves(character: Character, action: dict[str, Any]) -> Any:
 
 
 def offset(character: Character, action: dict[str, Any], second: float) -> Pose:
-    """What a clip adds to the base pose; docs/format.md, "Composing poses"."""
+    """What a clip adds to the base pose; docs/reference, "Composing poses"."""
     rotations, translations = sampled(character.clips[action["clip"]], second)
     return times(inverse(character.rotations), rotations), translations - character.translations
 
 
 def loop_seconds(action: dict[str, Any], x: float) -> tuple[float, float, float]:
     """The clip second that a loop shows x seconds after its beginning, the one on the other side of its seam
-    and the share of that; docs/format.md, "Loops".
+    and the share of that; docs/reference, "Loops".
     """
     start, length = action["start"], action["end"] - action["start"]
     seam = min(action["blend_in"], length / 2.0)
@@ -90,19 +90,19 @@ def loop_seconds(action: dict[str, Any], x: float) -> tuple[float, float, float]
 
 
 def loop(character: Character, action: dict[str, Any], x: float) -> Pose:
-    """docs/format.md, "Loops"."""
+    """docs/reference, "Loops"."""
     second, other, share = loop_seconds(action, x)
     shown = offset(character, action, second)
     return mix(shown, offset(character, action, other), share) if share > 0.0 else shown
 
 
 def resting(rests: list[list[Any]], t: float) -> int:
-    """Which rest is the current one; docs/format.md, "Stances"."""
+    """Which rest is the current one; docs/reference, "Stances"."""
     return max((n for n, rest in enumerate(rests) if rest[3] <= t), default=0)
 
 
 def stance(character: Character, rests: list[list[Any]], t: float) -> Pose:
-    """docs/format.md, "Stances"."""
+    """docs/reference, "Stances"."""
     current = resting(rests, t)
     _, action, start, fade_start, fade = rests[current]
     shown = loop(character, character.actions[action], t - start)
@@ -114,7 +114,7 @@ def stance(character: Character, rests: list[list[Any]], t: float) -> Pose:
 
 
 def layer(character: Character, plan: dict[str, Any], t: float) -> Pose:
-    """docs/format.md, "Blending"."""
+    """docs/reference, "Blending"."""
     rest, cue = stance(character, plan["rests"], t), playing(plan, t)
     if cue is None:
         return rest
@@ -140,7 +140,7 @@ def layer(character: Character, plan: dict[str, Any], t: float) -> Pose:
 
 
 def sized(character: Character, shown: Pose, rest: Pose, extent: float) -> Pose:
-    """docs/format.md, "Moods", how large."""
+    """docs/reference, "Moods", how large."""
     takes_part = ("both",) if extent > 1.0 else ("both", "smaller")
     part = np.array([joint.get("scales", "both") in takes_part for joint in character.data["joints"]])
     away = times(inverse(rest[0]), shown[0])
@@ -152,7 +152,7 @@ def sized(character: Character, shown: Pose, rest: Pose, extent: float) -> Pose:
 
 
 def pose(character: Character, layers: dict[str, Any], t: float) -> Pose:
-    """docs/format.md, "Composing poses". layers: a plan's, as in the vectors."""
+    """docs/reference, "Composing poses". layers: a plan's, as in the vectors."""
     rotations, translations = character.rotations, character.translations
     for name in character.data["order"]:
         if not layers[name]["rests"]:
@@ -166,7 +166,7 @@ def pose(character: Character, layers: dict[str, Any], t: float) -> Pose:
 
 
 def positions(character: Character, rotations: Numbers, translations: Numbers) -> Numbers:
-    """Where joints are in the character's space [..., J, 3]; docs/format.md, "Composing poses"."""
+    """Where joints are in the character's space [..., J, 3]; docs/reference, "Composing poses"."""
     worlds, places = np.empty_like(rotations), np.empty_like(translations)
     for joint, parent in enumerate(character.parents):
         q, t = rotations[..., joint, :], translations[..., joint, :]
@@ -178,7 +178,7 @@ def positions(character: Character, rotations: Numbers, translations: Numbers) -
 
 
 def morphs(character: Character, layers: dict[str, Any], t: float) -> dict[str, float]:
-    """docs/format.md, "Morph targets"."""
+    """docs/reference, "Morph targets"."""
     out: dict[str, float] = {}
     for plan in layers.values():
         if not plan["rests"]:

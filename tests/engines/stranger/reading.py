@@ -1,4 +1,4 @@
-"""An export as a stranger reads it: JSON and GLB, from the words of docs/format.md alone."""
+"""An export as a stranger reads it: JSON and GLB, from the words of docs/reference alone."""
 
 import json
 import struct
@@ -84,7 +84,7 @@ def numbers(gltf: dict[str, Any], binary: bytes, at: int) -> Numbers:
 def read_clip(
     gltf: dict[str, Any], binary: bytes, clip: dict[str, Any], joints: list[dict[str, Any]]
 ) -> Clip:
-    """docs/format.md, "The GLB": keys become frames; what has no channel stays in the rest pose."""
+    """docs/reference, "The GLB": keys become frames; what has no channel stays in the rest pose."""
     seconds = np.arange(clip["frames"]) / clip["fps"]
     rotations = np.tile(np.array([joint["rotation"] for joint in joints], float), (len(seconds), 1, 1))
     translations = np.tile(np.array([joint["translation"] for joint in joints], float), (len(seconds), 1, 1))

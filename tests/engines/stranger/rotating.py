@@ -1,4 +1,4 @@
-"""Quaternions xyzw [..., 4] of unit length, as docs/format.md uses them."""
+"""Quaternions xyzw [..., 4] of unit length, as docs/reference uses them."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Where feet stay, written from docs/format.md, "Planted feet", alone; each function names the bold words it
+"""Where feet stay, written from docs/reference, "Planted feet", alone; each function names the bold words it
 follows.
 """
 

@@ -1,4 +1,4 @@
-"""docs/format.md alone is enough: an evaluator written from its words, without a line of ours, poses
+"""docs/reference alone is enough: an evaluator written from its words, without a line of ours, poses
 characters as the conformance vectors say.
 
 `reading`, `posing`, `weighing`, `enlivening`, `drawing` and `planning`, beside this file, are that evaluator;

@@ -1,4 +1,4 @@
-"""How a body answers its arms, written from docs/format.md, "The arms' weight" and "Contacts and the guard",
+"""How a body answers its arms, written from docs/reference, "The arms' weight" and "Contacts and the guard",
 alone; each function names the bold words it follows.
 """
 

@@ -23,7 +23,7 @@ from metagraph.research.study.simulation.people import Truth
 from metagraph.research.study.study_plan import FILE
 from tests.research.study.makers import four, row
 
-DOCS = Path(__file__).resolve().parents[4] / "docs" / "study-report.md"
+DOCS = Path(__file__).resolve().parents[4] / "docs" / "researchers" / "study-report.md"
 NOBODY = Data("Empty", ("meta", "manual"), {"a": "A"}, ("P1",))
 
 

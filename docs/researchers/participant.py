@@ -1,8 +1,8 @@
-"""Let scripted experts do the labelling task in both conditions: `python docs/participant.py`, under Xvfb.
+"""Let scripted experts do the labelling task in both conditions: `python docs/researchers/participant.py`, under Xvfb.
 
 With 10, 20, 50, 100 and 152 of the sample clips, or with the numbers given, through the real windows with real
 events (needs xdotool; half an hour for all), each in the quickest way known; ways that nobody would go who knows
-the tool are counted with the real edits, without the window. Writes docs/participant.md and docs/participant.svg.
+the tool are counted with the real edits, without the window. Writes docs/researchers/experts-paths.md and docs/images/participant.svg.
 A run that was interrupted goes on where it was; `--anew` begins again.
 """
 
@@ -19,7 +19,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
 from PySide6.QtCore import QPoint, QSettings  # noqa: E402
@@ -357,14 +357,14 @@ def main(arguments: Sequence[str]) -> None:
         with kept.open("a") as file:
             file.write(json.dumps(row) + "\n")
     rows = [r for r in rows if r["clips"] in sizes]
-    page = (ROOT / "docs" / "participant.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "researchers" / "experts-paths.md").read_text(encoding="utf-8")
     for name, text in (("fair", fair(rows)), ("ways", table(rows)), ("search", search_table(rows))):
         first, last = f"<!-- {name} -->", f"<!-- end of {name} -->"
         before, _, rest = page.partition(first)
         page = f"{before}{first}\n{text}\n{last}{rest.partition(last)[2]}"
-    (ROOT / "docs" / "participant.md").write_text(page, encoding="utf-8")
-    (ROOT / "docs" / "participant.svg").write_text(plot(rows), encoding="utf-8")
-    print("docs/participant.md\ndocs/participant.svg")
+    (ROOT / "docs" / "researchers" / "experts-paths.md").write_text(page, encoding="utf-8")
+    (ROOT / "docs" / "images" / "participant.svg").write_text(plot(rows), encoding="utf-8")
+    print("docs/researchers/experts-paths.md\ndocs/images/participant.svg")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,86 @@
+"""The manual builds without a warning, opens from disk, loads nothing from the network, and whoever names a
+page of it names one that is there.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+pytest.importorskip("mkdocs")
+
+ROOT = Path(__file__).resolve().parents[1]
+DOCS = ROOT / "docs"
+NAMED = re.compile(r"(?<![\w/-])docs/[\w./-]*\w")
+HERE = re.compile(r'"docs"((?: / "[\w.-]+")+)')  # ROOT / "docs" / "images" / "x.png"
+OF_THE_PAST = {"CHANGELOG.md"}  # what it says was so when it was written; its links are checked
+
+
+def pages_in_nav(nav: list[object]) -> list[str]:
+    out = []
+    for entry in nav:
+        inside = entry if isinstance(entry, str) else next(iter(entry.values()))  # type: ignore[attr-defined]
+        out += [inside] if isinstance(inside, str) else pages_in_nav(inside)
+    return out
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The built site."""
+    out = tmp_path_factory.mktemp("manual")
+    words = ["build", "--strict", "--quiet", "-f", "docs/mkdocs.yml", "-d", str(out)]
+    done = subprocess.run(
+        [sys.executable, "-m", "mkdocs", *words],
+        cwd=ROOT,
+        env={**os.environ, "NO_MKDOCS_2_WARNING": "1", "PYTHONWARNINGS": "ignore"},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr + done.stdout
+    return out
+
+
+def test_every_page_is_in_the_contents_once_and_on_the_site_as_html_and_markdown(site: Path) -> None:
+    nav = pages_in_nav(yaml.safe_load((DOCS / "mkdocs.yml").read_text(encoding="utf-8"))["nav"])
+    assert sorted(nav) == sorted(p.relative_to(DOCS).as_posix() for p in DOCS.rglob("*.md"))
+    listed = (site / "llms.txt").read_text(encoding="utf-8")
+    for page in nav:
+        assert (site / page).read_bytes() == (DOCS / page).read_bytes()
+        assert (site / page).with_suffix(".html").is_file()
+        (line,) = (line for line in listed.splitlines() if f"]({page})" in line)
+        assert re.fullmatch(r"- \[.+\]\(.+\): \S.+", line), line
+
+
+def test_the_site_loads_nothing_from_the_network(site: Path) -> None:
+    for page in site.rglob("*.html"):
+        text = page.read_text(encoding="utf-8")
+        loads = re.findall(r"<(?:script|img|iframe|link)\b[^>]*?(?:src|href)=[\"']?(https?:[^\"' >]+)", text)
+        assert not loads, (page, loads)
+
+
+def tracked() -> list[Path]:
+    done = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True)
+    if done.returncode:
+        pytest.skip("only a clone with Git tells which files are the tree's")
+    return [ROOT / name for name in done.stdout.split("\0") if name]
+
+
+def test_every_mention_of_a_page_or_picture_is_of_one_that_is_there() -> None:
+    wrong = []
+    for path in tracked():
+        if path.name in OF_THE_PAST or path == Path(__file__) or not path.is_file():
+            continue
+        try:
+            text = path.read_text(encoding="utf-8")
+        except UnicodeDecodeError:
+            continue
+        named = set(NAMED.findall(text))
+        named |= {"docs" + "".join(re.findall(r"/|[\w.-]+", rest)) for rest in HERE.findall(text)}
+        wrong += [(path.name, name) for name in named if not (ROOT / name).exists()]
+    assert not wrong
