@@ -1,4 +1,4 @@
-"""No two modules import each other, not even through others or inside functions."""
+"""No two modules import each other, not even through others, inside functions or for types alone."""
 
 import ast
 from collections.abc import Iterator
@@ -20,13 +20,23 @@ def test_a_circle_through_a_function_is_named(tmp_path: Path) -> None:
     (package / "__init__.py").write_text("from house import door\n")
     (package / "door.py").write_text("def open():\n    from house.key import turn\n")
     (package / "key.py").write_text("from . import lock\n")
-    (package / "lock.py").write_text(
-        "from typing import TYPE_CHECKING\nimport house.door\nif TYPE_CHECKING:\n    import house\n"
-    )
+    (package / "lock.py").write_text("import house.door\n")
     imports = imports_of_all(tmp_path, ["house"])
     assert imports["house"] == {"house.door"}, "a package may import what is in it"
     (group,) = circles(imports)
     assert a_circle(imports, group) == ["house.door", "house.key", "house.lock", "house.door"]
+
+
+def test_a_circle_for_types_alone_is_named(tmp_path: Path) -> None:
+    package = tmp_path / "house"
+    package.mkdir()
+    (package / "__init__.py").write_text("")
+    (package / "door.py").write_text("from house.key import Key\n")
+    (package / "key.py").write_text(
+        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from house.door import Door\n"
+    )
+    imports = imports_of_all(tmp_path, ["house"])
+    assert circles(imports) == [["house.door", "house.key"]]
 
 
 def imports_of_all(root: Path, packages: list[str]) -> dict[str, set[str]]:
@@ -43,7 +53,7 @@ def module_name(root: Path, path: Path) -> str:
 def imported(path: Path, name: str, known: set[str]) -> Iterator[str]:
     """Yield the known modules that a module imports; `from package import module` names the module alone."""
     package = name if path.name == "__init__.py" else name.rpartition(".")[0]
-    for node in running_nodes(ast.parse(path.read_bytes())):
+    for node in statements(ast.parse(path.read_bytes())):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names if alias.name in known)
         elif isinstance(node, ast.ImportFrom):
@@ -54,18 +64,12 @@ def imported(path: Path, name: str, known: set[str]) -> Iterator[str]:
                     yield inside if inside in known else source
 
 
-def running_nodes(node: ast.AST) -> Iterator[ast.AST]:
-    """Yield the nodes below a node, less those that only type checkers read."""
+def statements(node: ast.AST) -> Iterator[ast.AST]:
+    """Yield the statements below a node."""
     for child in ast.iter_child_nodes(node):
-        if isinstance(child, ast.expr):  # imports are statements
-            continue
-        if isinstance(child, ast.If) and getattr(child.test, "id", "") == "TYPE_CHECKING":
-            for other in child.orelse:
-                yield other
-                yield from running_nodes(other)
-        else:
+        if not isinstance(child, ast.expr):
             yield child
-            yield from running_nodes(child)
+            yield from statements(child)
 
 
 def circles(imports: dict[str, set[str]]) -> list[list[str]]:

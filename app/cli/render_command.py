@@ -266,7 +266,7 @@ def _direction(
 ) -> Direction:
     """Return the cuts and captions of what is written, as the options or else the timeline's notes say."""
     from app.stage.cutting import captions_shown
-    from metagraph.graph.timeline import timeline_of
+    from metagraph.graph.timeline_edits import timeline_of
 
     some = project.performances if options.conversation is None else project.conversations
     name = options.performance if options.conversation is None else options.conversation

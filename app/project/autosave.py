@@ -5,25 +5,38 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Protocol
 
-from PySide6.QtCore import QStandardPaths
+from PySide6.QtCore import QStandardPaths, SignalInstance
 
 from app.translation import tr, tr_phrase
 from metagraph.errors import FileError
-from metagraph.formats.new_file import PRIVATE
+from metagraph.formats.locking import Owner
+from metagraph.formats.new_file import PRIVATE, Access
 from metagraph.formats.project.journal import Done, How, Journal, journal_path
 from metagraph.formats.project.journal_register import JournalRegister
 from metagraph.graph.model import Project
 
-if TYPE_CHECKING:
-    from app.project.document import Document
+
+class Kept(Protocol):
+    """What the journal has to know of its document; see `app.project.document.Document`."""
+
+    project: Project
+    path: Path | None
+    owner: Owner
+    digest: str | None
+    access: Access | None
+    read_only: bool
+    failed: SignalInstance
+    warned: SignalInstance
+
+    def unsaved(self, now: Project) -> tuple[Project, int, list[Done]]: ...
 
 
 class Autosave:
     """Writes what a document's edits are. Whatever the user has to know of it, the document says."""
 
-    def __init__(self, document: Document) -> None:
+    def __init__(self, document: Kept) -> None:
         self.document = document
         self.journal: Journal | None = None
         self._abandoned: list[Journal] = []  # whose place was gone; once all is saved they go, where they can

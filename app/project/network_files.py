@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from PySide6.QtCore import QObject, QSettings, Qt
 from PySide6.QtWidgets import QMessageBox
 
+from app.project.files_host import FilesHost
 from app.project.jobs import Job
 from app.project.opening import load_whole, take_over
 from app.translation import tr
@@ -14,17 +13,14 @@ from metagraph.common.network_paths import allow
 from metagraph.formats.store import closed_paths, closed_words, reopened
 from metagraph.graph.model import Project
 
-if TYPE_CHECKING:
-    from app.project.files import Files
-
 SHOWN = 5  # names in the question
 
 
 class NetworkFiles(QObject):
     """Asks about such files of the project that is open, and opens them."""
 
-    def __init__(self, files: Files) -> None:
-        super().__init__(files)
+    def __init__(self, files: FilesHost) -> None:
+        super().__init__(files.window)
         self.files, self.document = files, files.document
         self._era = 0  # counts the projects that were shown
         self.document.loaded.connect(self._next_era)

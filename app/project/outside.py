@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QMessageBox
 
+from app.project.files_host import FilesHost
 from app.project.jobs import Job
 from app.project.opening import load_whole, with_motion_of
 from app.project.writing import FileChangedError, file_changed
@@ -18,7 +19,6 @@ from metagraph.formats.store import Opened
 from metagraph.graph.model import Project
 
 if TYPE_CHECKING:
-    from app.project.files import Files
     from metagraph.formats.project.merging import MergeError
 
 Merging = tuple[Opened, tuple[str, ...]]
@@ -27,8 +27,8 @@ Merging = tuple[Opened, tuple[str, ...]]
 class Outside(QObject):
     """The part of a window's files that others write."""
 
-    def __init__(self, files: Files) -> None:
-        super().__init__(files)
+    def __init__(self, files: FilesHost) -> None:
+        super().__init__(files.window)
         self.files, self.document = files, files.document
         self._told_of: str | None = None  # the digest of a changed file that was told of
         self._era = 0  # counts the projects that were shown

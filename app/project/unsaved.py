@@ -6,10 +6,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 
+from app.project.files_host import FilesHost
 from app.project.leftovers import (
     FoundJournal,
     forget,
@@ -24,15 +24,12 @@ from metagraph.formats.project.journal_search import project_of
 from metagraph.formats.recovery import Left
 from metagraph.formats.store import Opened, absolute
 
-if TYPE_CHECKING:
-    from app.project.files import Files
-
 
 class Unsaved(QObject):
     """The part of a window's files that is in journals alone."""
 
-    def __init__(self, files: Files) -> None:
-        super().__init__(files)
+    def __init__(self, files: FilesHost) -> None:
+        super().__init__(files.window)
         self.files = files
 
     def offer(self, otherwise: Callable[[], object] | None = None) -> None:

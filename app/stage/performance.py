@@ -23,7 +23,7 @@ from app.stage.timeline_edits import TimelineEdits
 from app.translation import tr, tr_phrase
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest
-from metagraph.graph.timeline import only_noted
+from metagraph.graph.timeline_edits import only_noted
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.manual_playback import Fire
 from metagraph.playback.plan import Plan

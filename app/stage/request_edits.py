@@ -19,7 +19,7 @@ from metagraph.graph.model import Project
 from metagraph.graph.request_text import Pasted, holds_requests, paste_requests, request_text
 from metagraph.graph.requests import AnyRequest
 from metagraph.graph.requests import Performance as KeptPerformance
-from metagraph.graph.timeline import lane_of
+from metagraph.graph.timeline_edits import lane_of
 from metagraph.playback.plan import Plan
 
 SOON = 0.15  # seconds from now at which "now" is: the plan needs a moment

@@ -11,10 +11,20 @@ from PySide6.QtCore import QObject, Signal
 from app.project.document import Document
 from app.stage.session import Session
 from app.translation import tr
-from metagraph.graph import timeline as notes
+from metagraph.graph import timeline_edits as notes
 from metagraph.graph.conversation.model import Conversation
 from metagraph.graph.model import Project
-from metagraph.graph.timeline import Cut, Lane, Marker, Shot, Timeline
+from metagraph.graph.timeline import (
+    IMPROVISED,
+    SAME_CUT,
+    SHORTEST_RANGE,
+    Cut,
+    Lane,
+    Marker,
+    Shot,
+    Timeline,
+    with_cut,
+)
 
 NEAR = 0.02  # seconds within which the playhead stands on a marker
 
@@ -42,8 +52,8 @@ class TimelineEdits(QObject):
         """The id of what is on stage, by which its notes are kept."""
         onstage = self.session.onstage
         if onstage.mode == "manual":
-            return notes.IMPROVISED
-        return onstage.conversation or onstage.performance or notes.IMPROVISED
+            return IMPROVISED
+        return onstage.conversation or onstage.performance or IMPROVISED
 
     @property
     def now(self) -> Timeline:
@@ -76,22 +86,20 @@ class TimelineEdits(QObject):
         nothing.
         """
         start, end = sorted((round(max(0.0, start), 3), round(max(0.0, end), 3)))
-        if end - start >= notes.SHORTEST_RANGE:
+        if end - start >= SHORTEST_RANGE:
             self.change(tr("Set loop range"), range=(start, end))
 
     def set_in(self, at: float | None = None) -> None:
         """Let the range begin at a time, by default the playhead."""
         start = self.session.transport.seconds if at is None else at
         end = self.range[1] if self.range is not None else self._length()
-        self.set_range(
-            start, end if end - start >= notes.SHORTEST_RANGE else max(self._length(), start + 1.0)
-        )
+        self.set_range(start, end if end - start >= SHORTEST_RANGE else max(self._length(), start + 1.0))
 
     def set_out(self, at: float | None = None) -> None:
         """Let the range end at a time, by default the playhead."""
         end = self.session.transport.seconds if at is None else at
         start = self.range[0] if self.range is not None else 0.0
-        self.set_range(start if end - start >= notes.SHORTEST_RANGE else 0.0, end)
+        self.set_range(start if end - start >= SHORTEST_RANGE else 0.0, end)
 
     def clear_range(self) -> None:
         self.change(tr("Clear loop range"), range=None)
@@ -165,9 +173,9 @@ class TimelineEdits(QObject):
     def cut_to(self, shot: Shot, side: int, at: float) -> None:
         """Cut to a picture at a time; the first cut of a conversation is made at its beginning, too."""
         cuts = self.now.cuts
-        if not cuts and at > notes.SAME_CUT:
+        if not cuts and at > SAME_CUT:
             cuts = (Cut(at=0.0, shot="two"),)
-        self.set_cuts(tr("Cut"), notes.with_cut(cuts, Cut(at=round(max(0.0, at), 3), shot=shot, side=side)))
+        self.set_cuts(tr("Cut"), with_cut(cuts, Cut(at=round(max(0.0, at), 3), shot=shot, side=side)))
 
     def move_cut(self, number: int, at: float) -> None:
         cuts = list(self.now.cuts)

@@ -19,7 +19,7 @@ from app.translation import tr, translated
 from app.widgets.request_menu import STAGE, kind_of, request_words
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest
-from metagraph.graph.timeline import lane_of
+from metagraph.graph.timeline_edits import lane_of
 from metagraph.playback.plan import Cue
 from metagraph.playback.planning.extend_performance import Answer
 

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.graph import edits
-from metagraph.graph import timeline as t
+from metagraph.graph import timeline_edits as t
 from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.ids import derived_id, new_id
 from metagraph.graph.manual import edits as manual_edits

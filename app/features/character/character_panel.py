@@ -19,7 +19,7 @@ from app.look import icons
 from app.look.names import plain
 from app.look.theme import theme
 from app.stage.figures import Figures
-from app.stage.gl_view import MOUSE, ImageView, make_view
+from app.stage.gl_view import MOUSE, GLView, ImageView, make_view
 from app.stage.performance import Performance
 from app.stage.playback_source import ASIDE
 from app.stage.playhead import Playhead
@@ -108,10 +108,10 @@ class PreviewPanel(QWidget):
         self.watch_button.setProperty("over", True)
 
     def _lay_out(self) -> None:
-        layout = QVBoxLayout(self)
+        self._layout = layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(0)
-        self.panes = Panes(self)
+        self.panes = Panes(self, self.looking)
         layout.addWidget(self.panes, 1)
         self.reference = Reference(self)
         self.reference.changed.connect(self.view.update)
@@ -351,6 +351,15 @@ class PreviewPanel(QWidget):
     def drawn(self) -> tuple[Figure, np.ndarray, np.ndarray] | None:
         """Figure, rotations `[J, 4]` and positions `[J, 3]` of what was drawn last."""
         return self._last
+
+    @property
+    def active_view(self) -> GLView | ImageView:
+        """The view that was touched last, of several: commands look from there."""
+        return self.panes.active
+
+    def put_below_view(self, widget: QWidget) -> None:
+        """Show a widget directly below the view."""
+        self._layout.insertWidget(1, widget)
 
     def frame_all(self) -> None:
         self.panes.frame()

@@ -4,7 +4,7 @@ slides has its speed beside it. A line below tells it of the seconds round now, 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt, QTimer
@@ -12,13 +12,11 @@ from PySide6.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QWidget
 
 from app.features.character.over_view import lie_over
+from app.features.character.overlay_host import OverlayHost
 from app.features.character.plates import draw_plate
 from app.look.theme import Theme, theme
 from app.translation import tr, tr_noop, translated
 from metagraph.playback.posing.foot_slides import RATE, SLIDES, FeetSeen, FeetWatch, FootState, worst_slide
-
-if TYPE_CHECKING:
-    from app.features.character.character_panel import PreviewPanel
 
 SPAN = 1.5  # seconds before and after now that the line tells of
 AT_ONCE = 12  # poses that are composed in one event: the window stays free
@@ -35,13 +33,14 @@ LEGEND = tr_noop(
 class FootMarks(QWidget):
     """A pane over the view of a preview panel that lets everything through but what it draws."""
 
-    def __init__(self, panel: PreviewPanel) -> None:
+    def __init__(self, panel: OverlayHost) -> None:
         super().__init__(panel.view)
         self.panel = panel
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self._of: Any = None  # whose feet are watched
         self.watch: FeetWatch | None = None
         self.line = FootLine(panel)
+        panel.put_below_view(self.line)
         self._more = QTimer(self, singleShot=True, interval=0)
         self._more.timeout.connect(self.update)
         self.hide()
@@ -127,8 +126,8 @@ class FootMarks(QWidget):
 class FootLine(QWidget):
     """A line below the view: a row for each foot, now in the middle, and words of the worst slide."""
 
-    def __init__(self, panel: PreviewPanel) -> None:
-        super().__init__(panel)
+    def __init__(self, panel: OverlayHost) -> None:
+        super().__init__(panel.view)
         self.panel = panel
         self._known: FeetSeen | None = None
         self.setFixedHeight(HIGH)

@@ -5,7 +5,6 @@ underneath, and what the timing editor wants seen; each with its name where it i
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt
@@ -13,6 +12,7 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QWidget
 
 from app.features.character.over_view import lie_over
+from app.features.character.overlay_host import OverlayHost
 from app.features.character.plates import draw_plate
 from app.look.theme import theme
 from app.stage.playback_source import Shown
@@ -22,9 +22,6 @@ from metagraph.motion.skeleton import Pose
 from metagraph.playback.posing.composer import playable
 from preview.figure import Figure
 from preview.scene import Actor
-
-if TYPE_CHECKING:
-    from app.features.character.character_panel import PreviewPanel
 
 NOW = 0.03  # seconds from the present moment within which a ghost would only blur the figure
 NEAREST, FARTHEST = 0.34, 0.12  # how much of the ghost next to now is seen, and of the last
@@ -38,7 +35,7 @@ ASIDE = 0.02  # of the height: a stance ghost whose joints are all that near wou
 class Ghosts(QWidget):
     """Makes the ghosts of a preview panel, and is the pane over its view on which they are named."""
 
-    def __init__(self, panel: PreviewPanel) -> None:
+    def __init__(self, panel: OverlayHost) -> None:
         super().__init__(panel.view)
         self.panel = panel
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)

@@ -5,7 +5,6 @@ back, or away from where it should be; with a line to the joint it touches, and 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt
@@ -14,15 +13,13 @@ from PySide6.QtWidgets import QWidget
 
 from app.features.character.foot_marks import draw_mark
 from app.features.character.over_view import lie_over
+from app.features.character.overlay_host import OverlayHost
 from app.features.character.plates import draw_plate
 from app.look.theme import Theme, theme
 from app.translation import tr, translated
 from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.posing.foot_slides import FootState
 from metagraph.playback.posing.hand_touches import HandTouch, hand_touches, plan_of_clip
-
-if TYPE_CHECKING:
-    from app.features.character.character_panel import PreviewPanel
 
 HANDS = translated(lambda: (tr("Left hand"), tr("Right hand")))
 BESIDE = 20.0  # pixels from a mark to its words
@@ -31,7 +28,7 @@ BESIDE = 20.0  # pixels from a mark to its words
 class HandMarks(QWidget):
     """A pane over the view of a preview panel that lets everything through but what it draws."""
 
-    def __init__(self, panel: PreviewPanel) -> None:
+    def __init__(self, panel: OverlayHost) -> None:
         super().__init__(panel.view)
         self.panel = panel
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)

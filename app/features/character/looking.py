@@ -11,6 +11,7 @@ import numpy as np
 from PySide6.QtCore import QObject, QTimer
 from PySide6.QtGui import QGuiApplication
 
+from app.features.character.overlay_host import OverlayHost
 from app.features.character.trails import Trails
 from app.look.theme import theme
 from app.stage.performance import Performance
@@ -19,7 +20,6 @@ from metagraph.graph import anatomy
 from preview.camera import Camera
 
 if TYPE_CHECKING:
-    from app.features.character.character_panel import PreviewPanel
     from app.stage.gl_view import GLView, ImageView
 
 SIDES: dict[str, tuple[float, float]] = {  # yaw and pitch, degrees
@@ -37,8 +37,8 @@ class Looking(QObject):
     the whole character is framed again.
     """
 
-    def __init__(self, panel: PreviewPanel) -> None:
-        super().__init__(panel)
+    def __init__(self, panel: OverlayHost) -> None:
+        super().__init__(panel.view)
         self.panel = panel
         self.trails = Trails(panel)
         self._turntable = QTimer(self, interval=TURN)
@@ -47,7 +47,7 @@ class Looking(QObject):
     @property
     def _view(self) -> GLView | ImageView:
         """The view that was touched last, of several."""
-        return self.panel.panes.active
+        return self.panel.active_view
 
     def _aim(self, camera: Camera) -> None:
         view = self._view

@@ -5,10 +5,9 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from PySide6.QtWidgets import QVBoxLayout
+from app.features.character.overlay_host import OverlayHost
 
 if TYPE_CHECKING:
-    from app.features.character.character_panel import PreviewPanel
     from app.features.character.foot_marks import FootMarks
     from app.features.character.ghosts import Ghosts
     from app.features.character.hand_marks import HandMarks
@@ -21,7 +20,7 @@ class Overlays:
     read.
     """
 
-    def __init__(self, panel: PreviewPanel) -> None:
+    def __init__(self, panel: OverlayHost) -> None:
         self.panel = panel
         panel.session.watch.changed.connect(self._chosen)
 
@@ -40,11 +39,7 @@ class Overlays:
     def feet(self) -> FootMarks:
         from app.features.character.foot_marks import FootMarks
 
-        made = FootMarks(self.panel)
-        layout = self.panel.layout()
-        assert isinstance(layout, QVBoxLayout)
-        layout.insertWidget(1, made.line)  # directly below the view
-        return made
+        return FootMarks(self.panel)
 
     @cached_property
     def hands(self) -> HandMarks:

@@ -6,22 +6,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QGridLayout, QMenu, QToolButton, QWidget
 
 from app.features.character.looking import SIDES as ANGLES
+from app.features.character.looking import Looking
+from app.features.character.overlay_host import OverlayHost
 from app.stage.gl_view import GLView, ImageView, make_beside
 from app.stage.watch import SIDES
 from app.translation import tr
 from app.widgets.making import make_widget
 from preview.camera import Camera
 from preview.scene import Scene
-
-if TYPE_CHECKING:
-    from app.features.character.character_panel import PreviewPanel
 
 LEAST = 240, 200  # pixels of one view
 GAP = 2  # pixels between views
@@ -96,7 +94,7 @@ class Pane:
         return scene if scene.picture is None else replace(scene, picture=None)
 
     def _camera(self, solid: Scene, aspect: float) -> Camera:
-        looking, side = self.panes.panel.looking, self.side
+        looking, side = self.panes.looking, self.side
         if side == "face":
             return self.panes.panel.face_camera(aspect) or Camera()
         yaw, pitch = (math.radians(x) for x in ANGLES["front" if side == "hands" else side])
@@ -110,9 +108,9 @@ class Pane:
 class Panes(QWidget):
     """Holds the first view and those beside it, which are made when they are wanted."""
 
-    def __init__(self, panel: PreviewPanel) -> None:
-        super().__init__(panel)
-        self.panel = panel
+    def __init__(self, panel: OverlayHost, looking: Looking) -> None:
+        super().__init__(panel.view.parentWidget())
+        self.panel, self.looking = panel, looking
         self.others: list[Pane] = []
         self._beside: QWidget | None = None
         self.active: GLView | ImageView = panel.view  # which was touched last: commands look from there

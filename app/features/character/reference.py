@@ -7,22 +7,19 @@ from __future__ import annotations
 import json
 import threading
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import QObject, QRectF, QSettings, Qt, Signal
 from PySide6.QtGui import QColor, QImage, QMouseEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QToolButton, QWidget
 
+from app.features.character.overlay_host import OverlayHost
 from app.look import icons
 from app.look.theme import theme
 from app.translation import tr, tr_error, tr_noop
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.errors import FileError
-
-if TYPE_CHECKING:
-    from app.features.character.character_panel import PreviewPanel
 
 KEY = "reference"
 KEPT = 50  # projects whose videos are remembered
@@ -95,8 +92,8 @@ class Reference(QObject):
     changed = Signal()
     pictured = Signal()
 
-    def __init__(self, panel: PreviewPanel) -> None:
-        super().__init__(panel)
+    def __init__(self, panel: OverlayHost) -> None:
+        super().__init__(panel.view)
         self.panel = panel
         self.path: Path | None = None
         self.offset, self.behind = 0.0, False

@@ -4,7 +4,7 @@ which arcs, spacing and pops are seen at a glance.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from PySide6.QtCore import QPointF, Qt
@@ -12,11 +12,9 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 
 from app.features.character.over_view import lie_over
+from app.features.character.overlay_host import OverlayHost
 from app.look.theme import theme
 from metagraph.graph import anatomy
-
-if TYPE_CHECKING:
-    from app.features.character.character_panel import PreviewPanel
 
 RATE = 30  # samples a second: dots are as far apart as frames, so what is quick has gaps
 SPAN = 1.5  # seconds before and after now
@@ -31,7 +29,7 @@ KEPT = 600  # samples
 class Trails(QWidget):
     """A pane over the view of a preview panel that lets everything through but what it draws."""
 
-    def __init__(self, panel: PreviewPanel) -> None:
+    def __init__(self, panel: OverlayHost) -> None:
         super().__init__(panel.view)
         self.panel = panel
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)

@@ -26,7 +26,7 @@ from app.features.library.clip_header import ClipHeader
 from app.features.library.clip_layout import ClipLayout
 from app.features.library.clip_rows import ENTRY, ClipRows, Index
 from app.features.library.clip_scrub import ClipScrub
-from app.features.library.clip_sizes import SIZES, Style, cell_of
+from app.features.library.clip_sizes import SIZES, Style, cell_of, picture_of
 from app.stage.session import Session
 from app.translation import tr, tr_plural
 from app.widgets.mime import drag_picture, load_of, mime
@@ -58,7 +58,7 @@ class ClipList(QListView):
         self.header.sectionMoved.connect(self.viewport().update)
         self.header.geometriesChanged.connect(self.relayout)
         self.horizontalScrollBar().valueChanged.connect(self.header.setOffset)
-        self.scrub = ClipScrub(self, delegate.pictures)
+        self.scrub = ClipScrub(self, rows, delegate.pictures, self.picture_rect)
         self.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
         self.setDragEnabled(True)
         self.setDragDropMode(QAbstractItemView.DragDropMode.DragDrop)
@@ -124,6 +124,10 @@ class ClipList(QListView):
     def visualRect(self, index: Index) -> QRect:
         rect = self.layout_of.rect(index.row()) if index.isValid() else QRect()
         return rect.translated(-self._shift()) if not rect.isEmpty() else rect
+
+    def picture_rect(self, index: Index) -> QRect:
+        """Return where a clip's picture is."""
+        return picture_of(self.style_of, self.side, self.visualRect(index))
 
     def indexAt(self, point: QPoint) -> QModelIndex:
         row = self.layout_of.at(point + self._shift())

@@ -2,25 +2,31 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
-from PySide6.QtCore import QObject, QPoint, QTimer
+from PySide6.QtCore import QModelIndex, QObject, QPoint, QRect, QTimer
+from PySide6.QtWidgets import QListView
 
 from app.features.library.clip_pictures import ClipPictures
-from app.features.library.clip_sizes import picture_of
-
-if TYPE_CHECKING:
-    from app.features.library.clip_list import ClipList
+from app.features.library.clip_rows import ClipRows
 
 REST = 90  # milliseconds on one picture before its others are wanted: the pointer may only be passing
 
 
 class ClipScrub(QObject):
-    """view: whose pictures are gone through. It tells `pictures` which clip, and how far."""
+    """view: whose pictures are gone through, place_of: where one is. It tells `pictures` which clip, and how
+    far.
+    """
 
-    def __init__(self, view: ClipList, pictures: ClipPictures) -> None:
+    def __init__(
+        self,
+        view: QListView,
+        rows: ClipRows,
+        pictures: ClipPictures,
+        place_of: Callable[[QModelIndex], QRect],
+    ) -> None:
         super().__init__(view)
-        self.view, self.pictures = view, pictures
+        self.view, self.rows, self.pictures, self.place_of = view, rows, pictures, place_of
         self._wanted: tuple[str, float] | None = None
         self._rest = QTimer(self, singleShot=True, interval=REST)
         self._rest.timeout.connect(self._begin)
@@ -28,11 +34,11 @@ class ClipScrub(QObject):
     def over(self, at: QPoint) -> None:
         """The pointer is here."""
         index = self.view.indexAt(at)
-        picture = picture_of(self.view.style_of, self.view.side, self.view.visualRect(index))
+        picture = self.place_of(index)
         if not index.isValid() or not picture.contains(at):
             self.stop()
             return
-        clip = self.view.rows.entries[index.row()].id
+        clip = self.rows.entries[index.row()].id
         part = (at.x() - picture.left()) / max(1, picture.width() - 1)
         self._wanted = clip, part
         if self.pictures.scrubbed is not None and self.pictures.scrubbed[0] == clip:
@@ -54,6 +60,6 @@ class ClipScrub(QObject):
         before, self.pictures.scrubbed = self.pictures.scrubbed, place
         if before != place:
             for one in (before, place):
-                row = self.view.rows.row_of(one[0]) if one is not None else None
+                row = self.rows.row_of(one[0]) if one is not None else None
                 if row is not None:
-                    self.view.viewport().update(self.view.visualRect(self.view.rows.index(row, 0)))
+                    self.view.viewport().update(self.view.visualRect(self.rows.index(row, 0)))

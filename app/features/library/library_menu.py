@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import Any, Protocol
 
 from PySide6.QtGui import QActionGroup
 from PySide6.QtWidgets import QInputDialog, QMenu
@@ -15,15 +15,32 @@ from app.features.library.clip_badges import HEART, PENCIL, label_icon
 from app.features.library.clip_columns import stars
 from app.features.library.clip_filter import Filter
 from app.features.library.clip_groups import GROUPS
+from app.features.library.clip_list import ClipList
 from app.features.library.clip_order import GIVEN, ORDERS
+from app.features.library.clip_rows import ClipRows
+from app.features.library.clip_sizes import Style
+from app.features.library.library_settings import LibrarySettings
 from app.look.domain_words import COLOR_LABELS, KIND_TITLES, LAYER_LONG_TITLES
 from app.look.theme import KIND_MARKS
 from app.translation import tr
 from metagraph.graph.clip_mark import COLORS, STARS
 from metagraph.graph.model import KINDS, LAYERS
 
-if TYPE_CHECKING:
-    from app.features.library.library_panel import LibraryPanel
+
+class MenuHost(Protocol):
+    """What the menu knows of the library, and has it do."""
+
+    list: ClipList
+    rows: ClipRows
+    settings: LibrarySettings
+
+    def narrow(self, layer: str | None = None, kind: str | None = None) -> None: ...
+    def ask_for(self, **changes: Any) -> None: ...
+    def show_filter(self, rule: Filter) -> None: ...
+    def show_as(self, style: Style) -> None: ...
+    def sort(self, order: str) -> None: ...
+    def group_by(self, group: str) -> None: ...
+    def close_all(self) -> None: ...
 
 
 class LibraryMenu:
@@ -31,7 +48,7 @@ class LibraryMenu:
     `columns` are filled when they are opened.
     """
 
-    def __init__(self, panel: LibraryPanel, menu: QMenu) -> None:
+    def __init__(self, panel: MenuHost, menu: QMenu) -> None:
         self.panel = panel
         menu.addAction(tr("Any kind, any layer"), lambda: panel.narrow())
         menu.addSeparator()
@@ -122,7 +139,7 @@ class LibraryMenu:
         """Ask for a name, and keep what is shown now under it."""
         rule = self.panel.rows.filter
         usual = " ".join(filter(None, (rule.text.strip(), rule.words())))
-        name, accepted = QInputDialog.getText(self.panel, tr("Save filter"), tr("Name:"), text=usual)
+        name, accepted = QInputDialog.getText(self.panel.list, tr("Save filter"), tr("Name:"), text=usual)
         if accepted and name.strip():
             self.panel.settings.keep_filters({**self.panel.settings.filters(), name.strip(): rule})
 

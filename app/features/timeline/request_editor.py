@@ -27,7 +27,7 @@ from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
 from app.widgets.request_menu import MODE_WORDS, MOOD_WORDS, mood_words, request_words
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import LAYERS, LIMBS, MODES, Project
-from metagraph.graph.timeline import lane_of
+from metagraph.graph.timeline_edits import lane_of
 from metagraph.graph.words import FEELINGS
 
 SIDES = (tr_noop("left"), tr_noop("right"), tr_noop("both"))  # of an arm, or of two

@@ -32,7 +32,7 @@ from metagraph.graph.conversation.model import (
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.edits import free_name
 from metagraph.graph.model import Project
-from metagraph.graph.timeline import without_timeline
+from metagraph.graph.timeline_edits import without_timeline
 from metagraph.graph.vocabulary import joined, kinds_of_words, tokens
 
 _DIGITS = 3  # of seconds: what is dragged lands on milliseconds

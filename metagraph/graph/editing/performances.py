@@ -16,7 +16,7 @@ from metagraph.graph.edit_error import EditError
 from metagraph.graph.edits import free_name
 from metagraph.graph.model import Project
 from metagraph.graph.requests import LONGEST_NAME, AnyRequest, Line, Performance, Point, RequestError
-from metagraph.graph.timeline import without_timeline
+from metagraph.graph.timeline_edits import without_timeline
 
 
 def add_performance(project: Project, performance: Performance) -> tuple[Project, str]:

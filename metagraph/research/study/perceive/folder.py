@@ -29,6 +29,7 @@ from metagraph.research.study.perceive.design import Design, Key
 from metagraph.research.study.perceive.perceive_plan import FILE, PerceivePlan, read_plan
 from metagraph.research.study.perceive.sealed import sealed
 from metagraph.research.study.plan import allocation
+from metagraph.research.study.plan.drawn_orders import LOG
 from metagraph.research.study.plan.freeze import ABSENT, changed, seal
 
 KEY, LOCK, SHOW, PAGE = "key.json", "perceive.frozen.json", "show", "index.html"
@@ -89,7 +90,7 @@ def write_folder(folder: Path, plan: PerceivePlan, text: bytes, made: Design) ->
     write_atomically(folder / KEY, msgspec.json.format(msgspec.json.encode(made.key), indent=1) + b"\n")
     with suppress(OSError):  # some disks know no rights
         (folder / KEY).chmod(0o600)
-    log = folder / allocation.LOG
+    log = folder / LOG
     if not log.is_file():
         at = datetime.now(UTC).isoformat(timespec="seconds")
         for place, (who, s) in enumerate(made.key.sessions.items()):

@@ -13,8 +13,9 @@ from msgspec import Meta, Struct
 from metagraph.common.budgets import TEXT_FILE
 from metagraph.common.files import read_file
 from metagraph.errors import FileError
+from metagraph.research.study.plan.study_fields import MOST
 from metagraph.research.study.questionnaires import Item, Name
-from metagraph.research.study.study_plan import MOST, plan_from
+from metagraph.research.study.study_plan import plan_from
 
 VERSION = 1
 FILE = "perceive.yaml"

@@ -13,21 +13,18 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-import msgspec
+from typing import Any
 
 from metagraph.common.budgets import LOG_FILE
 from metagraph.common.files import read_file
 from metagraph.errors import FileError
 from metagraph.formats.atomic import append_line, write_atomically
 from metagraph.formats.project.kernel_lock import alone
+from metagraph.research.study.plan.drawn_orders import LOG, drawn
 from metagraph.research.study.plan.order import williams
+from metagraph.research.study.study_plan import Study
 
-if TYPE_CHECKING:
-    from metagraph.research.study.study_plan import Study
-
-SECRET, LOG = "allocation.secret", "allocation.jsonl"
+SECRET = "allocation.secret"
 
 
 def prepare(study: Study) -> str:
@@ -86,19 +83,6 @@ def orders(study: Study) -> int:
     return len(williams(len(study.plan.conditions)))
 
 
-def drawn(study: Study) -> dict[str, int]:
-    """Return participant -> the number of the order that was drawn; damaged lines are left out."""
-    path = study.folder / LOG
-    if not path.is_file():
-        return {}
-    out: dict[str, int] = {}
-    for line in read_file(path, LOG_FILE).splitlines():
-        with suppress(msgspec.DecodeError, KeyError, TypeError, ValueError):
-            found: dict[str, Any] = msgspec.json.decode(line)
-            out.setdefault(str(found["participant"]), int(found["number"]))
-    return out
-
-
 def allocate(study: Study, participant: str) -> int:
     """Draw the next order for a participant, unless they have one, and note it; return its number. Raises
     FileError without a secret, ValueError for a stranger.
@@ -112,7 +96,7 @@ def allocate(study: Study, participant: str) -> int:
             "Run 'metagraph study plan' with --allocate, and keep the digest it tells.",
         )
     with alone(study.folder / f".{LOG}.lock"):
-        known = drawn(study)
+        known = drawn(study.folder)
         if participant in known:
             return known[participant]
         source = numbers(read_secret(study.folder), orders(study))
@@ -150,7 +134,7 @@ def problems(study: Study) -> list[str]:
     except FileError:
         return ["the secret of the allocation is not there: nobody can see whether it was followed"]
     out = []
-    for (who, number), expected in zip(drawn(study).items(), source, strict=False):
+    for (who, number), expected in zip(drawn(study.folder).items(), source, strict=False):
         if number != expected:
             out.append(f"{who} has order {number}, but the secret gives {expected}")
     return out

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
+from metagraph.research.study.plan.study_fields import Plan
 from metagraph.research.study.questionnaires import BUILT_IN, Item, Scale
-
-if TYPE_CHECKING:
-    from metagraph.research.study.study_plan import Plan
 
 
 def faults(plan: Plan) -> list[tuple[str, str]]:

@@ -20,7 +20,8 @@ from metagraph.formats.atomic import write_atomically
 from metagraph.formats.clips import digest
 from metagraph.formats.store import read_project
 from metagraph.research.study.logs.log import wall_time
-from metagraph.research.study.study_plan import Study, Task, Training
+from metagraph.research.study.plan.study_fields import Task, Training
+from metagraph.research.study.study_plan import Study
 
 LOCK = "study.frozen.json"
 ABSENT = "absent"

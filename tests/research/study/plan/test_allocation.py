@@ -11,7 +11,8 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.research.study.plan import allocation
-from metagraph.research.study.plan.allocation import allocate, commitment, drawn, numbers, prepare, problems
+from metagraph.research.study.plan.allocation import allocate, commitment, numbers, prepare, problems
+from metagraph.research.study.plan.drawn_orders import LOG, drawn
 from metagraph.research.study.sitting import Sitting
 from metagraph.research.study.study_plan import read_study
 
@@ -51,9 +52,9 @@ def test_an_order_is_drawn_once_and_noted_and_followed(concealed) -> None:
     for who in ("P03", "P01", "P04", "P02"):
         Sitting(concealed, who).close()
     again = allocate(concealed, "P01")
-    notes = [json.loads(line) for line in (concealed.folder / allocation.LOG).read_text().splitlines()]
+    notes = [json.loads(line) for line in (concealed.folder / LOG).read_text().splitlines()]
     assert [n["participant"] for n in notes] == ["P03", "P01", "P04", "P02"]
-    assert drawn(concealed)["P01"] == again == notes[1]["number"]
+    assert drawn(concealed.folder)["P01"] == again == notes[1]["number"]
     assert Counter(n["order"][0] for n in notes)["meta"] in (1, 2, 3)
     for n in notes:
         assert [c for c, _ in concealed.blocks(n["participant"])] == n["order"]
@@ -65,7 +66,7 @@ def test_whoever_chose_is_found_out(concealed) -> None:
     prepare(concealed)
     for who in ("P01", "P02"):
         allocate(concealed, who)
-    path = concealed.folder / allocation.LOG
+    path = concealed.folder / LOG
     notes = [json.loads(line) for line in path.read_text().splitlines()]
     notes[1]["number"] += 1
     path.write_text("".join(json.dumps(n) + "\n" for n in notes) + "damaged\n")

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from metagraph.research.study.plan import allocation
 from metagraph.research.study.plan.allocation import prepare, problems
+from metagraph.research.study.plan.drawn_orders import LOG
 from metagraph.research.study.study_plan import read_study
 
 ROOT = Path(__file__).resolve().parents[4]
@@ -50,7 +50,7 @@ def test_eight_who_begin_at_once_have_eight_places(concealed: Path, left: str) -
                     (folder / part.name).write_bytes(part.read_bytes())
             study = read_study(folder / concealed.name)
             prepare(study)
-            lock = folder / f".{allocation.LOG}.lock"
+            lock = folder / f".{LOG}.lock"
             if left == "a stale lock":
                 lock.touch()
             elif left != "nothing":
@@ -65,7 +65,7 @@ def test_eight_who_begin_at_once_have_eight_places(concealed: Path, left: str) -
                 assert process.stdin is not None
                 process.stdin.flush()
             assert [p.stdout.readline() if p.stdout else "" for p in people] == ["done\n"] * PEOPLE
-            notes = [json.loads(line) for line in (folder / allocation.LOG).read_text().splitlines()]
+            notes = [json.loads(line) for line in (folder / LOG).read_text().splitlines()]
             assert sorted(note["place"] for note in notes) == list(range(PEOPLE))
             assert sorted(note["participant"] for note in notes) == sorted(study.plan.ids)
             assert problems(study) == [] and not lock.exists()

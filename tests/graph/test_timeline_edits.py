@@ -7,10 +7,11 @@ import pytest
 from metagraph.formats.project.data import from_data, to_data
 from metagraph.formats.project.journal import changes
 from metagraph.graph import requests as a
-from metagraph.graph import timeline as t
+from metagraph.graph import timeline_edits as t
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing import performances as edits
 from metagraph.graph.model import Project
+from metagraph.graph.timeline import Cut
 
 pytestmark = pytest.mark.usefixtures("numbered_ids")
 
@@ -51,7 +52,7 @@ def test_what_is_noted_is_saved_and_goes_with_its_performance(project):
         range=(0.5, 2.5),
         locked=("arms",),
         captions=True,
-        cuts=(t.Cut(at=1.0, shot="close", side=1),),
+        cuts=(Cut(at=1.0, shot="close", side=1),),
     )
     project, _ = t.add_marker(project, ident, 1.5, "Punch line")
     assert from_data(to_data(project)) == project
