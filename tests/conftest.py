@@ -241,6 +241,18 @@ def numbered_ids() -> Iterator[None]:
         yield
 
 
+@pytest.fixture(scope="module")
+def quick_codes() -> Iterator[None]:
+    """The codes of perceptual studies are sealed in few rounds: that each takes long is told of in
+    `tests/research/study/perceive/test_sealed.py`, and pages in browsers open what took as long as it does.
+    """
+    from metagraph.research.study.perceive import sealed
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sealed, "ROUNDS", 10)
+        yield
+
+
 @pytest.fixture(scope="session")
 def shared_data() -> Path:
     """The folder of real clips made by others; tests that need it skip where it is not."""

@@ -27,7 +27,7 @@ from metagraph.research.study.study_plan import from_text as study_from_text
 from tests.thorough import many
 
 # Papers are drawn by Qt; whoever opens windows later in this process needs its application.
-pytestmark = pytest.mark.usefixtures("qapp")
+pytestmark = pytest.mark.usefixtures("qapp", "quick_codes")
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [
@@ -93,6 +93,16 @@ def test_python_in_the_pages_runs_and_prints_what_follows_it(
         assert out.getvalue() == every[n + 1][1]
 
 
+# What a command may be told on top, so that it does all it does, but short and small.
+SMALLER = {
+    ("render",): "-s 0.3 --size 96x64 --frames 2",
+    ("generate", "train"): "--seconds 0.5 --threads 1",
+    ("generate", "evaluate"): "--draws 2",
+    ("study", "simulate"): "--participants 6",
+}
+# Those of a folder of clips that are given the clips of three stances, of the arms and of the head.
+OF_CLIPS = ("import", "label", "motion-graph")
+THREE = ("hands_at_sides__", "on_hips__", "head_straight__")
 RUN: set[str] = set()  # commands that have run, without the slashes that folders may end with
 
 
@@ -104,6 +114,10 @@ def test_commands_in_the_pages_run(
     every = vectors.every_case
     monkeypatch.setattr(vectors, "every_case", lambda project: [*every(project)][:: many(40, 1)])
     lines = blocks(page)[n][1].splitlines()
+    for path in (samples / "clips").iterdir():
+        if path.name.startswith(THREE):
+            (samples / "few").mkdir(exist_ok=True)
+            shutil.copy(path, samples / "few")
     for line in lines:
         plain = line.replace("/ ", " ").rstrip("/")
         if plain in RUN and line == lines[-1]:
@@ -111,14 +125,12 @@ def test_commands_in_the_pages_run(
         RUN.add(plain)
         program, *words = shlex.split(line)
         assert program == "metagraph"
-        if words[0] == "render":
-            words += ["-s", "0.3", "--size", "96x64", "--frames", "2"]  # as written, but short and small
-        if words[:2] == ["generate", "train"]:
-            if find_spec("torch") is None:
-                pytest.skip("training needs torch")
-            words += ["--seconds", "0.5", "--threads", "1"]
-        if words[:2] == ["generate", "evaluate"]:
-            words += ["--draws", "2"]
+        if words[:2] == ["generate", "train"] and find_spec("torch") is None:
+            pytest.skip("training needs torch")
+        if words[0] in OF_CLIPS:
+            words = ["few/" if word == "clips/" else word for word in words]
+        for begin, more in SMALLER.items():
+            words += more.split() if words[: len(begin)] == [*begin] else []
         assert main(words) == 0, (line, capsys.readouterr().err)
         if "-o" in words:
             out = samples / words[words.index("-o") + 1]

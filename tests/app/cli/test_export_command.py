@@ -92,8 +92,16 @@ def test_watching_writes_again_after_each_saving_and_survives_a_broken_project(f
     assert "error:" in told and "stopped" in told
 
 
+@pytest.fixture
+def nothing_fetched(tmp_path: Path) -> dict[str, str]:
+    """An environment in which three.js cannot be kept, so that npm is not asked for it: a page loads it."""
+    blocked = tmp_path / "no cache"
+    blocked.write_text("a file where the folder would be")
+    return {**os.environ, "XDG_CACHE_HOME": str(blocked)}
+
+
 @pytest.mark.skipif(os.name == "nt", reason="is stopped by a signal")
-def test_the_web_page_is_served_until_it_is_stopped(few, tmp_path):
+def test_the_web_page_is_served_until_it_is_stopped(few, tmp_path, nothing_fetched):
     import urllib.request
 
     command = [
@@ -109,8 +117,7 @@ def test_the_web_page_is_served_until_it_is_stopped(few, tmp_path):
         "--serve",
         "--no-mesh",
     ]
-    environ = {**os.environ, "PATH": "", "XDG_CACHE_HOME": str(tmp_path)}  # without npm nothing is fetched
-    with started(*command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=environ) as running:
+    with started(*command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=nothing_fetched) as running:
         line = next(line for line in running.stderr if "the page is at" in line)
         url = line.split("the page is at ")[1].split()[0]
         with urllib.request.urlopen(url + "sample.json", timeout=10) as answer:
@@ -130,7 +137,7 @@ def test_the_web_page_is_served_until_it_is_stopped(few, tmp_path):
         ("watch", signal.SIGINT),
     ],
 )
-def test_what_goes_on_is_stopped_where_interrupts_are_ignored(how, number, few, tmp_path):
+def test_what_goes_on_is_stopped_where_interrupts_are_ignored(how, number, few, tmp_path, nothing_fetched):
     """As a background job of a script is: Python installs no handler of its own there, and a wait would be
     for ever.
     """
@@ -139,8 +146,7 @@ def test_what_goes_on_is_stopped_where_interrupts_are_ignored(how, number, few, 
         "serve": ("export", few, "-t", "web", "-o", tmp_path / "out", "--serve", "--no-mesh"),
         "live": ("live", few, "--json", "--port", "0", "--osc-port", "0", "--no-stdin"),
     }[how]
-    environ = {**os.environ, "PATH": "", "XDG_CACHE_HOME": str(tmp_path)}  # without npm nothing is fetched
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "env": environ}
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "env": nothing_fetched}
     with started(*metagraph(*words), ignored=True, **pipes) as running:
         if how == "serve":
             assert any("the page is at" in line for line in running.stderr)

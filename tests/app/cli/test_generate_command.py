@@ -35,7 +35,7 @@ from metagraph.motion.skeleton import Skeleton
 from metagraph.research.generation.planted import performed as perform
 from tests.generation.makers import babble, moving, stance, tiny, untrained
 
-TALK = Path(__file__).resolve().parents[3] / "sample_clips" / "conversation" / "talk.ogg"
+WHOLE = Path(__file__).resolve().parents[3] / "sample_clips" / "conversation" / "talk.ogg"
 TORCH = importlib.util.find_spec("torch") is not None
 
 
@@ -81,6 +81,15 @@ def model(takes: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     )
     out = tmp_path_factory.mktemp("models") / "plain.mgmodel"
     write_model(replace(found, card=card), out)
+    return out
+
+
+@pytest.fixture(scope="module")
+def talk(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The first eight seconds of the sample's conversation."""
+    samples, rate = soundfile.read(str(WHOLE), stop=8 * soundfile.info(str(WHOLE)).samplerate)
+    out = tmp_path_factory.mktemp("talk") / "talk.wav"
+    soundfile.write(str(out), samples, rate)
     return out
 
 
@@ -165,12 +174,18 @@ def _pickled(path: Path) -> None:
 )
 @pytest.mark.parametrize("action", ["info", "sample"])
 def test_a_damaged_model_is_refused_in_words(
-    damage, words: str, action: str, model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    damage,
+    words: str,
+    action: str,
+    model: Path,
+    talk: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     bad = tmp_path / model.name
     bad.write_bytes(model.read_bytes())
     damage(bad)
-    more = ["--speech", TALK, "-o", tmp_path / "out.bvh"] if action == "sample" else []
+    more = ["--speech", talk, "-o", tmp_path / "out.bvh"] if action == "sample" else []
     assert words in run(capsys, action, bad, *more, code=1)
     assert not (tmp_path / "out.bvh").exists()
 
@@ -183,34 +198,36 @@ def test_a_model_that_is_not_there_is_told(tmp_path: Path, capsys: pytest.Captur
 
 
 def test_motion_is_sampled_and_the_same_seed_gives_the_same(
-    model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    model: Path, talk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     for name, seed in (("a.bvh", 3), ("b.bvh", 3), ("c.bvh", 4)):
-        run(capsys, "sample", model, "--speech", TALK, "--seed", seed, "-o", tmp_path / name)
+        run(capsys, "sample", model, "--speech", talk, "--seed", seed, "-o", tmp_path / name)
     a, b, c = ((tmp_path / n).read_bytes() for n in ("a.bvh", "b.bvh", "c.bvh"))
     assert a == b != c
     data = json.loads(
-        run(capsys, "sample", model, "--speech", TALK, "--side", 2, "-o", tmp_path / "d.glb", "--json")
+        run(capsys, "sample", model, "--speech", talk, "--side", 2, "-o", tmp_path / "d.glb", "--json")
     )
     clip = read_clips(tmp_path / "d.glb")[0]
     assert clip.frames == data["frames"] and data["activity"]["speaking"] > 0.2
 
 
-def test_a_role_can_be_set_by_hand(model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_role_can_be_set_by_hand(
+    model: Path, talk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     shares = {}
     for role in ("speaking", "listening"):
         words = ("--activity", role, "-o", tmp_path / f"{role}.bvh", "--json")
-        shares[role] = json.loads(run(capsys, "sample", model, "--speech", TALK, *words))["activity"]
+        shares[role] = json.loads(run(capsys, "sample", model, "--speech", talk, *words))["activity"]
     assert shares["speaking"]["listening"] == shares["listening"]["speaking"] == 0
     assert shares["speaking"]["speaking"] == shares["listening"]["listening"] > 0.5
     assert (tmp_path / "speaking.bvh").read_bytes() != (tmp_path / "listening.bvh").read_bytes()
 
 
 def test_sampling_goes_on_from_a_clip_of_the_same_skeleton(
-    model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    model: Path, talk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     write_glb(tmp_path / "stance.glb", [stance()])
-    words = ("sample", model, "--speech", TALK, "-o", tmp_path / "out.bvh")
+    words = ("sample", model, "--speech", talk, "-o", tmp_path / "out.bvh")
     run(capsys, *words, "--from", tmp_path / "stance.glb")
     other = stance()
     narrow = Skeleton(
@@ -229,7 +246,7 @@ def sound(path: Path, samples: np.ndarray, subtype: str = "PCM_16") -> Path:
 
 
 def test_sounds_that_nobody_can_move_to_are_refused_in_words(
-    model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    model: Path, talk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = ("-o", tmp_path / "out.bvh")
     voice = np.stack([babble(3.0, 1), babble(3.0, 2)])
@@ -242,8 +259,8 @@ def test_sounds_that_nobody_can_move_to_are_refused_in_words(
     }
     for words, path in bad.items():
         assert words in run(capsys, "sample", model, "--speech", path, *out, code=1), words
-    assert "temperature" in run(capsys, "sample", model, "--speech", TALK, "--temperature", 9, *out, code=1)
-    assert "written as" in run(capsys, "sample", model, "--speech", TALK, "-o", tmp_path / "x.mp4", code=1)
+    assert "temperature" in run(capsys, "sample", model, "--speech", talk, "--temperature", 9, *out, code=1)
+    assert "written as" in run(capsys, "sample", model, "--speech", talk, "-o", tmp_path / "x.mp4", code=1)
     assert not (tmp_path / "out.bvh").exists()
 
 

@@ -371,7 +371,7 @@ def test_pictures_a_video_and_motion_are_rendered(small: Path, capsys: pytest.Ca
 
 @pytest.mark.gl
 def test_without_a_screen_the_same_job_runs_headless(tmp_path: Path, small: Path) -> None:
-    made = run("demo", "-o", tmp_path / "out", "-s", "1", "--json")
+    made = run("demo", "-o", tmp_path / "out", "-s", "0.3", "--json")
     assert made.returncode == 0, made.stderr
     results = json.loads(made.stdout)
     assert set(results) == {"sheet", "video", "json", "glb"}

@@ -19,6 +19,8 @@ from preview.video_reading import read_pictures, read_video_sound, video_seconds
 from tests.processes import started
 from tests.research.study.perceive.perceive_makers import sheet, study, text
 
+pytestmark = pytest.mark.usefixtures("quick_codes")
+
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "sample.metagraph.yaml"
 
 

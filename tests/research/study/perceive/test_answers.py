@@ -22,6 +22,8 @@ from metagraph.research.study.perceive.answers import (
 from metagraph.research.study.perceive.folder import Perceived
 from tests.research.study.perceive.perceive_makers import CHOICE, RATING, sheet, study, text
 
+pytestmark = pytest.mark.usefixtures("quick_codes")
+
 
 @pytest.fixture
 def made(tmp_path: Path) -> Perceived:

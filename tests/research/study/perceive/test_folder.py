@@ -11,6 +11,8 @@ from metagraph.errors import FileError
 from metagraph.research.study.perceive.folder import KEY, LOCK, level_times, read_folder
 from tests.research.study.perceive.perceive_makers import shown, study, text
 
+pytestmark = pytest.mark.usefixtures("quick_codes")
+
 
 def test_what_was_written_is_read_back(tmp_path: Path) -> None:
     made = study(tmp_path / "s", text())

@@ -17,6 +17,8 @@ from metagraph.research.study.perceive.simulated import Raters, write_simulated
 from tests.research.study.perceive.perceive_makers import CHOICE, RATING, sheet, study, text
 from tests.thorough import many
 
+pytestmark = pytest.mark.usefixtures("quick_codes")
+
 
 def simulated(folder: Path, raters: Raters, **options: object) -> PerceiveResults:
     words = text(**{"people": 20, "items": 10, **options})  # type: ignore[arg-type]

@@ -7,6 +7,8 @@ from html.parser import HTMLParser
 from pathlib import Path
 from xml.etree import ElementTree
 
+import pytest
+
 from metagraph.research.study.perceive.answers import keep
 from metagraph.research.study.perceive.perceive_analysis import analyse
 from metagraph.research.study.perceive.perceive_data import collect
@@ -14,6 +16,8 @@ from metagraph.research.study.perceive.perceive_plan import from_text
 from metagraph.research.study.perceive.perceive_report import page, summary, write_report
 from metagraph.research.study.perceive.simulated import Raters, write_simulated
 from tests.research.study.perceive.perceive_makers import CHOICE, RATING, sheet, study, text
+
+pytestmark = pytest.mark.usefixtures("quick_codes")
 
 HOSTILE = "{all: {title: '<b>&\"', clip: x}, deaf: {title: </script>, clip: y}}"
 

@@ -17,6 +17,8 @@ from metagraph.research.study.perceive.folder import Perceived
 from metagraph.research.study.perceive.serving import MOST_POSTED, page_of, serve
 from tests.research.study.perceive.perceive_makers import sheet, study, text
 
+pytestmark = pytest.mark.usefixtures("quick_codes")
+
 
 @pytest.fixture
 def made(tmp_path: Path) -> Perceived:
