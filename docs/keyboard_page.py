@@ -1,4 +1,4 @@
-"""Write the page of keyboard shortcuts from the window's commands: `xvfb-run python docs/keyboard_page.py`."""
+"""Write the page of shortcuts from the window's commands: `xvfb-run python docs/keyboard_page.py`."""
 
 from __future__ import annotations
 
@@ -12,8 +12,10 @@ sys.path.insert(0, str(ROOT))
 PAGE = ROOT / "docs" / "animators" / "keyboard.md"
 HEAD = """# Keyboard shortcuts
 
-After this page you can work without the mouse. *Help > Keyboard shortcuts* (Shift+F1) lists the same in the window, and
-Ctrl+Shift+P finds any command by typing. A key that two places use belongs to the place that has the focus.
+After this page you can work without the mouse.
+
+*Help > Keyboard shortcuts* (Shift+F1) lists the same in the window. Ctrl+Shift+P finds any command by typing.
+A key that two places use belongs to the place that has the focus.
 """
 
 
@@ -25,7 +27,9 @@ def page(actions: Any) -> str:
     for command in actions.commands:
         keys = ", ".join(key.toString() for key in actions[command.id].shortcuts())
         if keys:
-            rows.setdefault(command.menu.replace("&", ""), []).append((command.plain, keys))
+            changes = command.id.startswith(("undo", "redo", "stance_", "workspace_"))  # its words
+            words = command.id.replace("_", " ").capitalize() if changes else command.plain
+            rows.setdefault(command.menu.replace("&", ""), []).append((words, keys))
     parts = [HEAD, *(table(f"Menu {menu}", found) for menu, found in rows.items())]
     return "\n".join([*parts, table("On the timeline", TIMELINE), table("In a conversation's lanes", LANES)])
 
