@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import runpy
 from pathlib import Path
 
@@ -98,6 +99,27 @@ def test_pages_have_the_windows_colours_and_pictures_the_room_there_is(toys, the
         manual.close()
     finally:
         toys.session.look.choose(before)
+
+
+NO_COMMANDS = {"View > Panels": "a list of all panels"}
+WORDS = re.compile(r"(?<!\*)\*([^*\n]+(?:\n[^*\n]+)?)\*(?!\*)")
+
+
+def test_menus_that_pages_for_animators_name_are_there(toys):
+    menus: dict[str, set[str]] = {}
+    for command in toys.actions.commands:
+        menus.setdefault(command.menu.replace("&", ""), set()).add(command.plain)
+    wrong = []
+    for place in ("README.md", "docs/index.md", *(p for f in ("start", "animators") for p in files(f))):
+        for words in WORDS.findall((ROOT / place).read_text(encoding="utf-8")):
+            menu, _, entry = " ".join(words.split()).partition(" > ")
+            if entry and menu in menus and entry.partition("…")[0] not in menus[menu]:
+                wrong += [] if words.startswith(tuple(NO_COMMANDS)) else [(str(place), words)]
+    assert not wrong
+
+
+def files(folder: str) -> list[Path]:
+    return sorted((ROOT / "docs" / folder).glob("*.md"))
 
 
 def test_admonitions_are_told_by_a_bold_word():
