@@ -53,6 +53,8 @@ def on_files(files: Files, *, config: Any) -> Files:
 def on_page_markdown(markdown: str, *, page: Any, config: Any, files: Files) -> str:
     """Have links lead to where the linked files are on the site."""
     source = _source(page.file.src_uri)
+    if page.file.src_uri.startswith(OUTSIDE):
+        page.meta["search"] = {"exclude": True}  # the manual's own pages are what is searched for
 
     def moved(link: re.Match[str]) -> str:
         target, hash_, part = link[2].partition("#")

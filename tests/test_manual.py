@@ -8,6 +8,7 @@ import os
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -62,6 +63,52 @@ def test_the_site_loads_nothing_from_the_network(site: Path) -> None:
         text = page.read_text(encoding="utf-8")
         loads = re.findall(r"<(?:script|img|iframe|link)\b[^>]*?(?:src|href)=[\"']?(https?:[^\"' >]+)", text)
         assert not loads, (page, loads)
+
+
+CODE = re.compile(r"(?<![\w/.-])(?:tests|app|metagraph|preview|sample_clips)/[\w./-]*\w")
+TABLE_OF_THE_TREE = DOCS / "contributing" / "architecture.md"
+MADE_UP = (
+    "greeting",
+    "_",
+)  # what recipes tell readers to make: app/features/greeting, tests/formats/test_<format>.py
+IN_TESTS = "papers.md"  # whose tests are named from tests/ on; tests/test_papers.py reads them
+
+
+@pytest.mark.parametrize(
+    "page",
+    [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(DOCS.rglob("*.md"))],
+    ids=lambda page: page.name,
+)
+def test_files_of_code_that_pages_name_are_there(page: Path) -> None:
+    named = set(CODE.findall(page.read_text(encoding="utf-8")))
+    roots = [ROOT, ROOT / "tests"] if page.name == IN_TESTS else [ROOT]
+    assert not [n for n in named if not n.endswith(MADE_UP) and not any((r / n).exists() for r in roots)]
+
+
+def test_the_table_of_the_tree_has_every_folder_and_no_other() -> None:
+    rows = set(re.findall(r"^\| `([\w/]+)/` \|", TABLE_OF_THE_TREE.read_text(encoding="utf-8"), re.M))
+    assert all((ROOT / row).is_dir() for row in rows)
+    for inside in ("metagraph", "app"):
+        folders = {p.relative_to(ROOT).as_posix() for p in (ROOT / inside).iterdir() if p.is_dir()}
+        assert {f for f in folders if not f.endswith("__pycache__")} <= rows
+
+
+def test_the_order_of_imports_is_that_of_the_contracts() -> None:
+    rules = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"]
+    (layers,) = (c["layers"] for c in rules["contracts"] if c["name"].startswith("inside metagraph"))
+    text = TABLE_OF_THE_TREE.read_text(encoding="utf-8")
+    told = [re.findall(r"`(\w+)`", line) for line in re.findall(r"^\d+\. (.+)$", text, re.M)]
+    assert told == [[part.strip().removeprefix("metagraph.") for part in row.split("|")] for row in layers]
+
+
+def test_systems_that_nobody_ran_it_on_are_offered_as_not_tested() -> None:
+    seen = (DOCS / "contributing" / "platforms.md").read_text(encoding="utf-8")
+    (row,) = (line for line in seen.splitlines() if line.startswith("| window, command line, tests |"))
+    for n, system in enumerate(("Linux", "macOS", "Windows")):
+        untested = row.strip("| ").split(" | ")[n + 1].startswith("not run")
+        for page in (ROOT / "README.md", DOCS / "start" / "install.md"):
+            (start,) = re.findall(rf"^\| {system}\b.*run\.py.*$", page.read_text(encoding="utf-8"), re.M)
+            assert untested == ("not tested yet" in start), (system, page.name)
 
 
 def tracked() -> list[Path]:

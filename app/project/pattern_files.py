@@ -15,7 +15,7 @@ from metagraph.formats.atomic import write_atomically
 if TYPE_CHECKING:
     from metagraph.suggest.words.patterns import Patterns
 
-REMEDY = tr_noop("Export name patterns from the window, or write them as docs/animators/label.md says.")
+REMEDY = tr_noop("Export name patterns from the window, or write them as docs/animators/label-files.md says.")
 
 
 def read_patterns(path: Path) -> Patterns:

@@ -189,6 +189,12 @@ class Places:
         """Return a panel's widget where it was made."""
         return self._made.get(ident)
 
+    def holding(self, inner: QWidget | None) -> str:
+        """Return the panel in which a widget is; "" where it is in none."""
+        if inner is None:
+            return ""
+        return next((i for i, made in self._made.items() if made is inner or made.isAncestorOf(inner)), "")
+
     def _put(self, panel: Panel, widget: QWidget) -> None:
         if panel.place == "centre":
             before = sum(1 for i in self._made if i != panel.id and self.panels[i].place == "centre")

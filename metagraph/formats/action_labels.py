@@ -75,7 +75,7 @@ def read_labels(path: Path) -> tuple[LabelRow, ...]:
             path,
             message[:1].lower() + message[1:],
             where.strip("`") or "its content",
-            phrase("docs/animators/label.md says what such a file holds."),
+            phrase("docs/animators/label-files.md says what such a file holds."),
         ) from None
 
 

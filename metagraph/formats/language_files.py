@@ -16,7 +16,7 @@ from metagraph.speech.language_packs import Language, PackError, PackFile, langu
 
 REMEDY = (
     "A pack is YAML or JSON with code, name, and lists of words: responses, hesitations, lexical, small. "
-    "See docs/animators/talk.md."
+    "See docs/animators/talk-languages.md."
 )
 
 

@@ -55,7 +55,7 @@ def test_what_is_wrong_is_said_with_its_place_and_a_remedy(
         read_pack(pack(tmp_path, text))
     message = str(told.value)
     assert message.startswith("sv.yaml") and place in message and cause in message
-    assert told.value.remedy and "docs/animators/talk.md" in message
+    assert told.value.remedy and "docs/animators/talk-languages.md" in message
 
 
 def test_a_pack_that_is_not_there_is_said(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""What can be done and by which keys, and what this program is."""
+"""The manual, what can be done and by which keys, and what this program is."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeySequence
-from PySide6.QtWidgets import QMessageBox
+from PySide6.QtWidgets import QApplication, QMessageBox
 
+from app.features.help import manual_pages
 from app.look.theme import KIND_MARKS
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
@@ -84,6 +85,25 @@ def contribute(shell: Shell) -> Contribution:
     def palette() -> None:
         find(tr("Commands"), False)
 
+    def read(page: str = manual_pages.FIRST) -> None:
+        if not (manual_pages.DOCS / manual_pages.FIRST).is_file():
+            text = tr("This copy of Metagraph came without its manual.")
+            box = QMessageBox(QMessageBox.Icon.Information, tr("Manual"), text, parent=shell.widget)
+            box.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+            return box.open()
+        from app.features.help.manual_window import ManualWindow
+
+        manual = shell.widget.findChild(ManualWindow) or ManualWindow(shell.widget)
+        return manual.open_page(page)
+
+    def read_of_panel() -> None:
+        """Open the page about the panel that has the keyboard."""
+        read(
+            manual_pages.PAGES.get(
+                shell.services[Places].holding(QApplication.focusWidget()), manual_pages.FIRST
+            )
+        )
+
     def about() -> None:
         from metagraph import __version__
 
@@ -101,7 +121,17 @@ def contribute(shell: Shell) -> Contribution:
 
     return Contribution(
         commands=(
-            Command("keys", "&Help", "", tr("&Keyboard shortcuts"), keys, ("F1",), study=True),
+            Command("handbook", "&Help", "", tr("&Manual"), read),
+            Command(
+                "page_of_panel",
+                "&Help",
+                "",
+                tr("Manual page of this &panel"),
+                read_of_panel,
+                ("F1",),
+                tip=tr("Read about the panel that has the keyboard"),
+            ),
+            Command("keys", "&Help", "", tr("&Keyboard shortcuts"), keys, ("Shift+F1",), study=True),
             Command(
                 "palette",
                 "&Help",

@@ -65,7 +65,7 @@ def test_dropped_labels_are_taken_in_and_a_broken_file_is_told(toys, labels, tmp
     before = toys.document.project
     toys.importing.import_paths([str(bad)])
     toys.wait(lambda: bool(shown))
-    assert toys.document.project is before and "docs/animators/label.md" in str(shown[0])
+    assert toys.document.project is before and "docs/animators/label-files.md" in str(shown[0])
 
 
 def test_clips_that_are_called_as_the_labels_are_come_with_them(labels):

@@ -22,7 +22,7 @@ def fields(drive):
 def test_a_commands_key_is_its_own_wherever_the_focus_is(toys):
     drive = toys
     done = []
-    for ident in ("export", "compatibility", "workspace_2", "keys"):
+    for ident in ("export", "compatibility", "workspace_2", "page_of_panel"):
         drive.actions[ident].triggered.disconnect()
         drive.actions[ident].triggered.connect(lambda *_, i=ident: done.append(i))
     try:
@@ -36,10 +36,10 @@ def test_a_commands_key_is_its_own_wherever_the_focus_is(toys):
             QTest.keyClick(focus, Qt.Key.Key_K, CTRL)
             QTest.keyClick(focus, Qt.Key.Key_2, CTRL | Qt.KeyboardModifier.AltModifier)
             QTest.keyClick(focus, Qt.Key.Key_F1)
-            assert done == ["export", "compatibility", "workspace_2", "keys"], type(field).__name__
+            assert done == ["export", "compatibility", "workspace_2", "page_of_panel"], type(field).__name__
     finally:
         for command in drive.actions.commands:
-            if command.id in ("export", "compatibility", "workspace_2", "keys"):
+            if command.id in ("export", "compatibility", "workspace_2", "page_of_panel"):
                 action = drive.actions[command.id]
                 action.triggered.disconnect()
                 action.triggered.connect(lambda _=False, run=command.run: run())

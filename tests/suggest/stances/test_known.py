@@ -224,7 +224,9 @@ def test_the_samples_labels_are_guessed_from_motion_alone(
         for field, right in tests.items():
             good[field] += right
             count[field] += 1
-    assert good["kind"] / count["kind"] >= 0.9  # no longer fitted to these clips: see docs/animators/label.md
+    assert (
+        good["kind"] / count["kind"] >= 0.9
+    )  # no longer fitted to these clips: see docs/contributing/labelling-figures.md
     assert all(good[field] == count[field] for field in count if field != "kind"), (good, count)
 
 

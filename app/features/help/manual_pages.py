@@ -1,0 +1,94 @@
+"""The manual's pages as files beside the program, and which is about which panel."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import yaml
+
+import app
+
+DOCS = Path(app.__file__).resolve().parents[1] / "docs"
+FIRST = "index.md"
+_ABOUT = {  # panels by page
+    "animators/bring-clips.md": "library",
+    "animators/graph.md": "graph properties problems machine",
+    "animators/life.md": "character life lines",
+    "animators/manual-machine.md": "manual inspector",
+    "animators/perform.md": "timeline",
+    "animators/safety.md": "history",
+    "animators/talk.md": "conversation",
+    "animators/time.md": "timing",
+    "animators/workspaces.md": "notes",
+    "researchers/index.md": "models",
+}
+PAGES = {panel: page for page, panels in _ABOUT.items() for panel in panels.split()}
+
+
+class Entry(NamedTuple):
+    """A page, or a part of one that begins with a heading; a section of pages has no page. depth: from 0."""
+
+    depth: int
+    title: str
+    page: str
+    heading: str = ""
+
+
+@cache
+def contents() -> tuple[Entry, ...]:
+    """Return sections and pages in the order of the site's navigation."""
+    return tuple(_entries(yaml.safe_load((DOCS / "mkdocs.yml").read_text(encoding="utf-8"))["nav"], 0))
+
+
+def _entries(nav: Any, depth: int) -> Iterator[Entry]:
+    for item in nav:
+        title, inside = ("", item) if isinstance(item, str) else next(iter(item.items()))
+        if isinstance(inside, str):
+            text = (DOCS / inside).read_text(encoding="utf-8")
+            yield Entry(depth, title or plain(text.partition("# ")[2].partition("\n")[0]), inside)
+        else:
+            yield Entry(depth, title, "")
+            yield from _entries(inside, depth + 1)
+
+
+def anchor(heading: str) -> str:
+    """Return what a heading is called in links."""
+    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+
+
+def plain(text: str) -> str:
+    """Return Markdown without its marks."""
+    return re.sub(r"!?\[([^\]]*)\]\([^)]*\)|[*`]", lambda m: m[1] or "", text).strip()
+
+
+def found(words: str) -> list[Entry]:
+    """Return the parts of pages in which all words occur: first where title or heading have them."""
+    wanted, hits = words.casefold().split(), list[tuple[int, Entry]]()
+    for entry in contents() if wanted else ():
+        text = plain((DOCS / entry.page).read_text(encoding="utf-8")) if entry.page else ""
+        for part in re.split(r"^## ", text, flags=re.M):
+            heading = "" if part.startswith("# ") else part.partition("\n")[0]
+            named, part = f"{entry.title} {heading}".casefold(), part.casefold()
+            if all(word in named or word in part for word in wanted):
+                rank = sum(word not in named for word in wanted)
+                hits.append((rank, Entry(0, entry.title, entry.page, heading)))
+    return [hit for _, hit in sorted(hits, key=lambda ranked: ranked[0])]
+
+
+def for_qt(text: str, words: dict[str, str]) -> str:
+    """Return a page as Qt reads Markdown: an admonition becomes a quotation that begins with its title, or
+    with what its kind is called in `words`.
+    """
+    out, inside = [], False
+    for line in text.splitlines():
+        begin = re.match(r'!!! (\w+)(?: "(.*)")?$', line)
+        inside = begin is not None or (inside and (line.startswith("    ") or not line))
+        if begin:
+            out += [f"> **{begin[2] or words.get(begin[1], begin[1])}**", ">"]
+        else:
+            out.append(f"> {line[4:]}" if inside and line else line)
+    return "\n".join(out) + "\n"
