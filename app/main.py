@@ -19,6 +19,7 @@ from metagraph.common.programs import settle
 if TYPE_CHECKING:
     from app.shell.window import Window
 
+RETRY = 300  # milliseconds between two looks at whether the language can change
 UNSEEN = 500  # milliseconds after which a project is opened though no picture was painted: it may be hidden
 
 
@@ -148,7 +149,7 @@ class WindowKeeper:
     """
 
     def __init__(self, window: Window) -> None:
-        self.window = window
+        self.window, self._wanted = window, ""
         self._follow()
 
     def _follow(self) -> None:
@@ -156,16 +157,22 @@ class WindowKeeper:
         self.window.language_chosen.connect(self.change_language, Qt.ConnectionType.QueuedConnection)
 
     def change_language(self, code: str) -> None:
-        """Show the window in a language. While something runs that would end with the window, say so."""
-        from app import translation
-        from app.shell.handing_over import hand_over, why_not_now
+        """Show the window in a language: now, or as soon as nothing runs that would end with the window."""
+        self._wanted = code
+        self._change()
 
-        old, before = self.window, translation.current_language()
-        if code == before:
+    def _change(self, said: str = "") -> None:
+        from app import translation
+        from app.shell.handing_over import hand_over, what_runs
+
+        old, code = self.window, self._wanted
+        if code == translation.current_language():
             return
-        why = why_not_now(old)
-        if why:
-            old.shell.tell(why)
+        runs = what_runs(old)
+        if runs:
+            if runs != said:
+                old.shell.tell(runs)
+            QTimer.singleShot(RETRY, old, lambda: self._change(runs))
             return
         translation.choose(code)
         follow_language(prepare())

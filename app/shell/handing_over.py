@@ -9,13 +9,13 @@ from app.stage.session import Session
 from app.translation import tr
 
 
-def why_not_now(window: Window) -> str:
-    """Return why a window cannot be replaced at the moment, "" where it can."""
+def what_runs(window: Window) -> str:
+    """Return what would end if a window were replaced now, as a message; "" where nothing would."""
     if window.shell.jobs.running:
         title = window.shell.jobs.running[0].title
-        return tr("Wait until '{job}' has finished, or cancel it, then choose the language again.", job=title)
+        return tr("The language changes once '{job}' has finished.", job=title)
     if window.shell.stage.performance.live.stage is not None:
-        return tr("Stop the live session, then choose the language again.")
+        return tr("The language changes once the live session has ended.")
     return ""
 
 

@@ -78,13 +78,23 @@ def test_fields_and_texts_write_numbers_alike(keeper: WindowKeeper) -> None:
     assert QLocale().language() == QLocale.Language.English
 
 
-def test_while_something_runs_the_window_stays_and_says_why(toys: Any, keeper: WindowKeeper) -> None:
+def test_while_something_runs_the_window_stays_and_changes_once_it_has_ended(
+    toys: Any, keeper: WindowKeeper
+) -> None:
     go_on = threading.Event()
     toys.shell.jobs.start("Importing clips", lambda job: go_on.wait(20))
     choose(keeper, "Deutsch")
     assert keeper.window is toys.window and translation.current_language() == "en"
     assert "Importing clips" in toys.window.statusBar().currentMessage()
     go_on.set()
-    settle(toys.window)
+    toys.wait(lambda: translation.current_language() == "de")
+    assert keeper.window is not toys.window
+
+
+def test_while_a_live_session_runs_the_window_stays(toys: Any, keeper: WindowKeeper) -> None:
+    live = toys.shell.stage.performance.live
+    live.begin()
     choose(keeper, "Deutsch")
-    assert translation.current_language() == "de"
+    assert keeper.window is toys.window and "live session" in toys.window.statusBar().currentMessage()
+    live.end()
+    toys.wait(lambda: translation.current_language() == "de")
