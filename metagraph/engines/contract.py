@@ -463,6 +463,9 @@ class Export(Struct, omit_defaults=True, forbid_unknown_fields=True):
         Meta(description="the length of the GLB that belongs to this JSON; null in older exports"),
     ] = None
     glb_sha256: Annotated[str | None, Meta(description="its SHA-256 in hex; null in older exports")] = None
+    exporter: Annotated[
+        str | None, Meta(description='the program that wrote it: "Metagraph 0.1.0"; null in older exports')
+    ] = None
 
 
 def schema() -> dict[str, Any]:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import msgspec
 
+from metagraph import __version__
 from metagraph.common.budgets import SOUND_FILE
 from metagraph.common.file_names import file_stem, file_stems
 from metagraph.common.files import is_inside, read_file, unforeseen
@@ -132,6 +133,7 @@ def write(
     tell(1, 3, "graph")
     document = to_document(project, glb.name, names, expanded)
     document.glb_bytes, document.glb_sha256 = glb.stat().st_size, digest(glb)
+    document.exporter = f"Metagraph {__version__}"
     sounds, missing = _sounds(document, target, base, chosen) if base is not None else ((), ())
     tell(2, 3, "writing")
     write_atomically(json, msgspec.json.format(msgspec.json.encode(document), indent=1))
