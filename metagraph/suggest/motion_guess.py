@@ -334,7 +334,8 @@ def _hands_telling(traits: Traits) -> float:
     hands on the own head, hair, arm or hand are self-adaptors (Ekman and Friesen, 1969), a weight that goes
     from leg to leg is a postural shift, and what is done over and over is neither a stroke.
 
-    The signs are the literature's, the sizes were set by hand on the sets of docs/contributing/labelling-figures.md.
+    The signs are the literature's, the sizes were set by hand on the sets of
+    docs/contributing/labelling-figures.md.
     """
     arms, head, body = (traits.layers[layer] for layer in ("arms", "head", "body"))
     touch = traits.contact
