@@ -28,6 +28,7 @@ ANSWERS: dict[str, Callable[[], Any]] = {
     **dict.fromkeys(("heightForWidth", "id"), lambda: -1),
     **dict.fromkeys(("data", "headerData", "createEditor", "itemAt", "takeAt", "mimeData"), lambda: None),
     **dict.fromkeys(("sizeHint", "minimumSizeHint", "minimumSize"), lambda: _qt("QtCore", "QSize")()),
+    "loadResource": lambda: "",  # an empty page
     **dict.fromkeys(("boundingRect",), lambda: _qt("QtCore", "QRectF")()),
     **dict.fromkeys(("index", "indexAt", "moveCursor", "parent"), lambda: _qt("QtCore", "QModelIndex")()),
     "shape": lambda: _qt("QtGui", "QPainterPath")(),

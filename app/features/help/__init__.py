@@ -10,7 +10,6 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeySequence
 from PySide6.QtWidgets import QApplication, QMessageBox
 
-from app.features.help import manual_pages
 from app.look.theme import KIND_MARKS
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
@@ -85,24 +84,21 @@ def contribute(shell: Shell) -> Contribution:
     def palette() -> None:
         find(tr("Commands"), False)
 
-    def read(page: str = manual_pages.FIRST) -> None:
-        if not (manual_pages.DOCS / manual_pages.FIRST).is_file():
+    def read(panel: str = "") -> None:
+        """Open the page about a panel, else the first one."""
+        from app.features.help import manual_pages as pages
+        from app.features.help.manual_window import ManualWindow
+
+        if not (pages.DOCS / pages.FIRST).is_file():
             text = tr("This copy of Metagraph came without its manual.")
             box = QMessageBox(QMessageBox.Icon.Information, tr("Manual"), text, parent=shell.widget)
             box.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
             return box.open()
-        from app.features.help.manual_window import ManualWindow
-
         manual = shell.widget.findChild(ManualWindow) or ManualWindow(shell.widget)
-        return manual.open_page(page)
+        return manual.open_page(pages.PAGES.get(panel, pages.FIRST))
 
     def read_of_panel() -> None:
-        """Open the page about the panel that has the keyboard."""
-        read(
-            manual_pages.PAGES.get(
-                shell.services[Places].holding(QApplication.focusWidget()), manual_pages.FIRST
-            )
-        )
+        read(shell.services[Places].holding(QApplication.focusWidget()))
 
     def about() -> None:
         from metagraph import __version__
