@@ -23,9 +23,9 @@ class _BeforeQt:
 
 
 def _guard() -> None:
-    from app.guard import stand
+    from app.guard import guard_all
 
-    stand()
+    guard_all()
 
 
 if "PySide6.QtCore" in sys.modules:

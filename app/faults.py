@@ -34,7 +34,7 @@ PACKAGES = ("PySide6_Essentials", "numpy", "moderngl", "pyqtgraph", "msgspec", "
 
 
 @dataclass
-class Fault:
+class UncaughtError:
     """where: "window", "thread ...", "job ...", "process". what: kind and words of the error, without names
     of anybody's. place: the last lines of ours it went through. count: how often it came.
     """
@@ -47,12 +47,12 @@ class Fault:
     trace: tuple[str, ...] = field(default=(), repr=False)
 
 
-_known: dict[tuple[str, str], Fault] = {}
+_known: dict[tuple[str, str], UncaughtError] = {}
 _actions: deque[str] = deque(maxlen=KEPT)
 _lock = threading.Lock()
 # Called with each fault that comes for the first time, and with errors that were foreseen but caught nowhere;
 # on the thread it happened on.
-listeners: list[Callable[[Fault | Exception], None]] = []
+listeners: list[Callable[[UncaughtError | Exception], None]] = []
 
 
 def is_foreseen(error: BaseException) -> bool:
@@ -66,13 +66,13 @@ def note(action: str) -> None:
     _actions.append(f"{time.strftime('%H:%M:%S')} {action}")
 
 
-def tell(error: BaseException, where: str) -> None:
+def report_error(error: BaseException, where: str) -> None:
     """Take an error that was caught nowhere; on any thread. Never raises."""
     if isinstance(error, Exception) and is_foreseen(error):
         _hand_out(error)
         return
     lines = tuple(_lines(error))
-    fault = Fault(where, _what(error), lines[-1] if lines else "", time.time(), trace=lines)
+    fault = UncaughtError(where, _what(error), lines[-1] if lines else "", time.time(), trace=lines)
     with _lock:
         known = _known.get((fault.what, fault.place))
         if known is not None:
@@ -84,13 +84,13 @@ def tell(error: BaseException, where: str) -> None:
     _hand_out(fault)
 
 
-def _hand_out(told: Fault | Exception) -> None:
+def _hand_out(told: UncaughtError | Exception) -> None:
     for listener in list(listeners):
         with contextlib.suppress(Exception):  # a window that is being closed
             listener(told)
 
 
-def forget() -> None:
+def forget_faults() -> None:
     """Begin anew, as if nothing had happened."""
     with _lock:
         _known.clear()
@@ -100,7 +100,7 @@ def forget() -> None:
 # --- the report
 
 
-def report() -> str:
+def format_fault_report() -> str:
     """Return what is known, as text: versions, the names of the last actions, what happened and where."""
     with _lock:
         faults = list(_known.values())
@@ -129,7 +129,7 @@ _QUOTED = re.compile(r"'[^']*'|\"[^\"]*\"|`[^`]*`|«[^»]*»")
 _PLACE = re.compile(r"(?:[A-Za-z]:)?[\\/][^\s,;:)]+")
 
 
-def plain_words(text: str) -> str:
+def strip_quotes(text: str) -> str:
     """Return words of an error without what it quotes, which may be of the project, and without paths."""
     text = _PLACE.sub("…", _QUOTED.sub("'…'", text))
     return text if len(text) <= 200 else f"{text[:200]} …"
@@ -138,7 +138,7 @@ def plain_words(text: str) -> str:
 def _what(error: BaseException) -> str:
     kind = type(error)
     if kind.__module__ == "builtins":  # the interpreter's own words quote names
-        words = plain_words(str(error))
+        words = strip_quotes(str(error))
         return f"{kind.__name__}: {words}" if words else kind.__name__
     return f"{kind.__module__}.{kind.__qualname__}"
 
@@ -213,28 +213,32 @@ def _watch(folder: Path) -> None:
 def _raised(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
     sys.__excepthook__(kind, error, trace)
     if isinstance(error, Exception):
-        tell(error, "window")
+        report_error(error, "window")
 
 
 def _raised_on_thread(raised: threading.ExceptHookArgs) -> None:
     if isinstance(raised.exc_value, Exception):
         threading.__excepthook__(raised)
-        tell(raised.exc_value, f"thread {raised.thread.name if raised.thread is not None else ''}".strip())
+        report_error(
+            raised.exc_value, f"thread {raised.thread.name if raised.thread is not None else ''}".strip()
+        )
 
 
 def _unraisable(raised: sys.UnraisableHookArgs) -> None:
     sys.__unraisablehook__(raised)
     if isinstance(raised.exc_value, Exception):
-        tell(raised.exc_value, "the interpreter")
+        report_error(raised.exc_value, "the interpreter")
 
 
-def of_children(folder: Path) -> None:
+def read_child_faults(folder: Path) -> None:
     """Tell what processes of ours have written down."""
     for path in sorted(folder.glob("child-*.txt")):
         with contextlib.suppress(OSError, UnicodeDecodeError):
             what, *trace = path.read_text(encoding="utf-8").splitlines()
             path.unlink()
-            fault = Fault("process", what, trace[-1].strip() if trace else "", time.time(), 1, tuple(trace))
+            fault = UncaughtError(
+                "process", what, trace[-1].strip() if trace else "", time.time(), 1, tuple(trace)
+            )
             with _lock:
                 new = (fault.what, fault.place) not in _known
                 _known.setdefault((fault.what, fault.place), fault).count += not new
@@ -242,7 +246,7 @@ def of_children(folder: Path) -> None:
                 _hand_out(fault)
 
 
-def left_behind(folder: Path) -> str:
+def read_crash_reports(folder: Path) -> str:
     """Return what ended earlier runs, as the system told it, "" where none did; it is told once."""
     found: list[str] = []
     for path in sorted(folder.glob("crash-*.txt")):

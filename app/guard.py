@@ -55,7 +55,7 @@ SILENT = frozenset(
 _MARK = "__guarded__"
 
 
-def stand() -> None:
+def guard_all() -> None:
     """Guard all classes that are made of Qt's from now on."""
     from shiboken6 import Shiboken
 
@@ -65,11 +65,11 @@ def stand() -> None:
 
 def _made(cls: Any, /, **more: Any) -> None:
     for name, function in list(vars(cls).items()):
-        if isinstance(function, FunctionType) and overridden(cls, name):
-            setattr(cls, name, guarded(function))
+        if isinstance(function, FunctionType) and is_overridden(cls, name):
+            setattr(cls, name, guard_method(function))
 
 
-def overridden(cls: type, name: str) -> bool:
+def is_overridden(cls: type, name: str) -> bool:
     """Return whether a method stands in the place of one of Qt's."""
     if name.startswith("__"):
         return False
@@ -80,12 +80,12 @@ def is_guarded(function: object) -> bool:
     return hasattr(function, _MARK)
 
 
-def answers(name: str) -> bool:
+def has_known_answer(name: str) -> bool:
     """Return whether it is known what Qt is told when a method of that name has failed."""
     return name in ANSWERS or name in SILENT or name.endswith("Event")
 
 
-def guarded(function: FunctionType) -> FunctionType:
+def guard_method(function: FunctionType) -> FunctionType:
     """Return a method that tells what it raises and answers all the same. It takes as many arguments as
     before: Qt leaves out what a slot does not take.
     """

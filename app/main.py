@@ -14,7 +14,7 @@ from PySide6.QtCore import QCoreApplication, QLibraryInfo, QLocale, QSettings, Q
 from PySide6.QtGui import QSurfaceFormat
 from PySide6.QtWidgets import QApplication
 
-from metagraph.common.programs import settle
+from metagraph.common.programs import leave_working_folder
 
 if TYPE_CHECKING:
     from app.shell.window import Window
@@ -23,7 +23,7 @@ RETRY = 300  # milliseconds between two looks at whether the language can change
 UNSEEN = 500  # milliseconds after which a project is opened though no picture was painted: it may be hidden
 
 
-def prepare() -> QApplication:
+def prepare_application() -> QApplication:
     """Return the application, its OpenGL format set; made once."""
     found = QApplication.instance()
     return found if isinstance(found, QApplication) else _application()
@@ -31,11 +31,11 @@ def prepare() -> QApplication:
 
 def _application() -> QApplication:
     from app import translation
-    from app.memory import frugal
+    from app.memory import free_memory_early
     from preview.early_driver import load_soon
 
-    settle()
-    frugal()
+    leave_working_folder()
+    free_memory_early()
     load_soon()
     # Planning and checking run on threads; the window's own must get its turn well within a frame.
     sys.setswitchinterval(0.001)
@@ -131,11 +131,11 @@ def _select(window: Window, clip: str) -> None:
 def run_window(path: Path | None, sample: bool = False, clip: str | None = None) -> int:
     """Open the window and stay until it is closed; return the exit status."""
     from app import faults
-    from app.shell.fault_dialog import folder
+    from app.shell.fault_dialog import fault_folder
 
     gc.disable()  # what is made until the window is there lives as long as it; else 0.08 s later
-    app = prepare()
-    faults.install(folder())
+    app = prepare_application()
+    faults.install(fault_folder())
     keeper = WindowKeeper(open_window(path, sample, clip))
     gc.freeze()
     gc.enable()
@@ -163,19 +163,19 @@ class WindowKeeper:
 
     def _change(self, said: str = "") -> None:
         from app import translation
-        from app.shell.handing_over import hand_over, what_runs
+        from app.shell.handing_over import describe_running, hand_over
 
         old, code = self.window, self._wanted
         if code == translation.current_language():
             return
-        runs = what_runs(old)
+        runs = describe_running(old)
         if runs:
             if runs != said:
                 old.shell.tell(runs)
             QTimer.singleShot(RETRY, old, lambda: self._change(runs))
             return
         translation.choose(code)
-        follow_language(prepare())
+        follow_language(prepare_application())
         old.workspaces.save()
         self.window = make_window()
         self._follow()

@@ -12,7 +12,7 @@ _MMAP_THRESHOLD, _ARENAS = -3, -8
 _LARGE = 256 * 1024
 
 
-def frugal() -> None:
+def free_memory_early() -> None:
     """Ask glibc, where it is the C library, to give memory back; nothing elsewhere."""
     if not sys.platform.startswith("linux"):
         return

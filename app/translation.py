@@ -14,8 +14,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
-from metagraph.common.wording import Phrase, fill, translate_phrase
-from metagraph.errors import error_words
+from metagraph.common.wording import Phrase, fill_template, translate_phrase
+from metagraph.errors import describe_error
 
 T = TypeVar("T")
 ENGLISH = "en"
@@ -58,7 +58,7 @@ def tr(text: str, /, **values: object) -> str:
     any, braces are braces.
     """
     if _chosen is None:
-        return fill(text, values)
+        return fill_template(text, values)
     return _filled(_look_up(text), text, values)
 
 
@@ -76,7 +76,7 @@ def tr_plural(one: str, many: str, count: int, /, **values: object) -> str:
 def tr_context(context: str, text: str, /, **values: object) -> str:
     """Return a text that means different things in different places. context: tells translators which."""
     if _chosen is None:
-        return fill(text, values)
+        return fill_template(text, values)
     return _filled(_chosen.catalogue.pgettext(context, text), text, values)
 
 
@@ -94,7 +94,7 @@ def tr_phrase(words: str) -> str:
 
 def tr_error(error: object) -> str:
     """Return the message of an error in the chosen language."""
-    return tr_phrase(error_words(error)) if isinstance(error, BaseException) else str(error)
+    return tr_phrase(describe_error(error)) if isinstance(error, BaseException) else str(error)
 
 
 def in_english(text: str) -> str:
@@ -190,7 +190,7 @@ class _Translated:
         return getattr(self._now(), name)
 
 
-def translated(make: Callable[[], T]) -> T:
+def lazy_texts(make: Callable[[], T]) -> T:
     """Return a dict or tuple of texts for a module to hold: what `make` returns, in the language chosen when
     it is used. A single text is held by `tr_noop`, and shown by `tr`.
     """

@@ -41,7 +41,7 @@ def table(title: str, rows: Iterable[tuple[str, str]]) -> str:
 
 
 if __name__ == "__main__":
-    from app.main import make_window, prepare
+    from app.main import make_window, prepare_application
 
-    prepare()
+    prepare_application()
     PAGE.write_text(page(make_window().shell.actions), encoding="utf-8")

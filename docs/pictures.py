@@ -23,7 +23,7 @@ sys.path.insert(0, str(ROOT))
 
 from PySide6.QtCore import QEventLoop, QSettings, QStandardPaths, Qt, QTimer  # noqa: E402
 
-from app.main import prepare  # noqa: E402
+from app.main import prepare_application  # noqa: E402
 
 
 def wait(milliseconds: int, until: Callable[[], bool] | None = None) -> None:
@@ -188,7 +188,9 @@ def half_labelled() -> None:
     ids = {e.name: e.id for e in document.project.clips.values()}
 
     def put(kind: str, stance: str, names: list[str], end: str | None = None) -> None:
-        document.edit("Place", lambda p: edits.place(p, [ids[n] for n in names], "arms", kind, stance, end))
+        document.edit(
+            "Place", lambda p: edits.place_clips(p, [ids[n] for n in names], "arms", kind, stance, end)
+        )
 
     for name in ("hands_at_sides", "arms_crossed", "on_hips"):
         document.edit(
@@ -210,7 +212,8 @@ def half_labelled() -> None:
     )
     put("transition", crossed, ["arms_crossed__to__hands_at_sides"], sides)
     document.edit(
-        "Place", lambda p: edits.place(p, [ids["on_hips__to__hands_at_sides"]], "arms", "gesture", sides)
+        "Place",
+        lambda p: edits.place_clips(p, [ids["on_hips__to__hands_at_sides"]], "arms", "gesture", sides),
     )  # a mistake to find
     session.place.set_stance(sides)
     out.library.chips["unlabelled"].click()
@@ -354,7 +357,7 @@ def page() -> None:
         folder = Path(place)
         web.tools = lambda folder: ROOT / "tests" / "node_modules"  # type: ignore[assignment]
         project = open_project(samples / "sample.metagraph.yaml").project
-        registry.write(project, "web", folder, Contents(samples / "ada.glb", base=samples))
+        registry.write_for_target(project, "web", folder, Contents(samples / "ada.glb", base=samples))
         steps = [
             {"url": "?seed=7&paused&panel", "until": "window.metagraph"},
             {"click": "#panel button:text-is('greeting') >> nth=0"},
@@ -411,7 +414,7 @@ PICTURES: dict[str, Callable[[], None]] = {
 
 def main() -> None:
     QStandardPaths.setTestModeEnabled(True)
-    app = prepare()
+    app = prepare_application()
     with tempfile.TemporaryDirectory() as folder:
         QSettings.setDefaultFormat(QSettings.Format.IniFormat)
         QSettings.setPath(QSettings.Format.IniFormat, QSettings.Scope.UserScope, folder)

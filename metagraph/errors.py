@@ -7,7 +7,7 @@ from pathlib import Path
 from metagraph.common.wording import phrase
 
 
-def shown(text: str) -> str:
+def clean_text(text: str) -> str:
     """Return text from a file fit for a message: one line, no control characters, not endless."""
     if text.isprintable() and len(text) <= 400:
         return text
@@ -23,10 +23,10 @@ class FileError(Exception):
 
     def __init__(self, path: str | Path, cause: str, where: str = "", remedy: str = "") -> None:
         self.path, self.cause, self.where, self.remedy = Path(path), cause, where, remedy
-        name = shown(self.path.name)  # a name may be bytes in no known encoding
-        place = phrase("{file}, {where}", file=name, where=shown(where)) if where else name
+        name = clean_text(self.path.name)  # a name may be bytes in no known encoding
+        place = phrase("{file}, {where}", file=name, where=clean_text(where)) if where else name
         words = "{place}: {cause}. {remedy}" if remedy else "{place}: {cause}."
-        super().__init__(phrase(words, place=place, cause=shown(cause), remedy=remedy))
+        super().__init__(phrase(words, place=place, cause=clean_text(cause), remedy=remedy))
 
     @property
     def words(self) -> str:
@@ -41,7 +41,7 @@ class FileError(Exception):
         return type(self), (self.path, self.cause, self.where, self.remedy)
 
 
-def error_words(error: BaseException) -> str:
+def describe_error(error: BaseException) -> str:
     """Return what an error says, as words that know their template where it was made of such."""
     first = error.args[0] if error.args else ""
     return first if isinstance(first, str) and str(error) == first else str(error)

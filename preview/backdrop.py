@@ -10,21 +10,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from preview import shaders
-from preview.camera import Camera
-from preview.drawing import Drawing, set_uniforms
+from preview.camera import OrbitCamera
+from preview.drawing import SceneDrawing, set_uniforms
 from preview.frame import Frame
-from preview.scene import Theme
+from preview.scene import SceneTheme
 
 Array = NDArray[Any]
 
 
-class Backdrop:
+class ViewBackdrop:
     """Belongs to one view: while its camera stands, ground and sky are kept."""
 
-    def __init__(self, drawing: Drawing) -> None:
+    def __init__(self, drawing: SceneDrawing) -> None:
         self._drawing = drawing
         self._held: list[Any] = []
-        self._seen: tuple[Camera, tuple[int, int], Theme, bool] | None = None  # how they were drawn last
+        self._seen: tuple[OrbitCamera, tuple[int, int], SceneTheme, bool] | None = (
+            None  # how they were drawn last
+        )
         self._kept, self._sky_from = False, 0  # whether they are kept, and the row the sky begins at
 
     def release(self) -> None:

@@ -6,12 +6,12 @@ from collections.abc import Collection
 from pathlib import Path
 
 from metagraph.formats.gltf.reader import read_character
-from metagraph.motion.character_mesh import no_character
+from metagraph.motion.character_mesh import explain_no_character
 from metagraph.motion.skeleton import Skeleton
-from preview.figure import Figure, SkinnedFigure, StickFigure
+from preview.figure import MeshFigure, SkinnedFigure, StickFigure
 
 
-def figure_of(path: Path | None, skeleton: Skeleton, hidden: Collection[str] = ()) -> Figure:
+def figure_from_file(path: Path | None, skeleton: Skeleton, hidden: Collection[str] = ()) -> MeshFigure:
     """Return the figure that is drawn for a skeleton; its `instead` says why where it is not the file's mesh.
 
     path: the character's file, None for a project without one. hidden: names of meshes that are not drawn.
@@ -20,7 +20,7 @@ def figure_of(path: Path | None, skeleton: Skeleton, hidden: Collection[str] = (
     if path is None:
         return StickFigure(skeleton)
     body = read_character(path)
-    why = no_character(body, skeleton)
+    why = explain_no_character(body, skeleton)
     shown = body.without(hidden)
     if why is None and not len(shown.triangles):
         why = "is hidden"

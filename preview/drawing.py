@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from preview.gpu import Store
-from preview.mesh import Mesh
-from preview.scene import Actor
+from preview.mesh import SkinnedMesh
+from preview.scene import SceneActor
 
 Array = NDArray[Any]
 
 
-class Drawing:
+class SceneDrawing:
     """Programs, vertex arrays without vertices, meshes and palettes of one context, each made when first
     asked for.
     """
@@ -62,7 +62,7 @@ class Drawing:
         target.use()
         self.ctx.enable_only(flags)
 
-    def triangles(self, mesh: Mesh, actor: Actor, program: moderngl.Program, kind: str) -> None:
+    def triangles(self, mesh: SkinnedMesh, actor: SceneActor, program: moderngl.Program, kind: str) -> None:
         """Draw the actor's batches that `program` is for: all (kind depth), the plain ones or the textured
         ones.
         """

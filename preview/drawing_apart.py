@@ -20,13 +20,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.child_channel import Child
-from preview.camera import Camera
-from preview.figure import Figure
+from preview.camera import OrbitCamera
+from preview.figure import MeshFigure
 from preview.offscreen import Offscreen
-from preview.scene import Scene, Theme
+from preview.scene import Scene, SceneTheme
 
 Array = NDArray[Any]
-Seen = tuple[Scene, Camera]
+Seen = tuple[Scene, OrbitCamera]
 
 MOST = 4  # processes; more would wait for whoever encodes
 # Pictures from which on starting processes costs less than it saves: each takes a second of a core, so that
@@ -37,11 +37,11 @@ PATIENCE = 2.0  # seconds for a process to end by itself
 WAITING = 4  # pictures under way for each process
 
 
-def drawn(
+def draw_scenes(
     scenes: Iterable[Seen],
     count: int,
     size: tuple[int, int],
-    theme: Theme,
+    theme: SceneTheme,
     into: Array | None = None,
     processes: int | None = None,
 ) -> Iterator[Array]:
@@ -77,7 +77,7 @@ def _drawn_apart(
     scenes: Iterator[Seen],
     first: Scene,
     here: Offscreen,
-    theme: Theme,
+    theme: SceneTheme,
     into: Array | None,
     processes: int,
     path: Path,
@@ -150,7 +150,7 @@ def _begin(drawer: Child, begin: bytes, free: queue.SimpleQueue[Child]) -> None:
 def _submitted(
     executor: ThreadPoolExecutor,
     free: queue.SimpleQueue[Child],
-    figures: Sequence[Figure],
+    figures: Sequence[MeshFigure],
     seen: Seen,
     slot: int,
 ) -> Future[int] | None:

@@ -13,13 +13,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from metagraph.common.child_channel import parent
+from metagraph.common.child_channel import connect_to_parent
 from preview.offscreen import Offscreen
 
 
 def main() -> None:
     os.environ["LP_NUM_THREADS"] = "1"  # each process has a core
-    channel = parent()
+    channel = connect_to_parent()
     try:
         figures, size, theme, path, slots = pickle.loads(channel.receive())
         pool = np.memmap(path, np.uint8, "r+", shape=(slots, size[1], size[0], 4))

@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.motion import rotation
-from metagraph.motion.character_mesh import Character, Material, followers
+from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, followers
 from metagraph.motion.skeleton import Skeleton
 from preview import joints as rules
 from preview.levels import Level, levels_of
-from preview.mesh import VERTEX, Batch, Mesh, Morphs, ball, capsule, egg, pieces
+from preview.mesh import VERTEX, Morphs, SkinnedMesh, TriangleBatch, ball, capsule, cut_at_bones, egg
 from preview.occlusion import Rods, main_matrices, rods
 
 Array = NDArray[Any]
@@ -28,7 +28,7 @@ LEFT_COLOR, MIDDLE_COLOR, RIGHT_COLOR = (
 )  # neutral: only light tells the sides apart
 
 
-class Figure:
+class MeshFigure:
     """A mesh that follows a skeleton.
 
     skeleton: whose global transforms the figure takes. mesh: in its rest pose. sources: `[M]`, for each
@@ -43,17 +43,17 @@ class Figure:
     instead: str = ""
     levels: tuple[Level, ...] = ()
 
-    def __init__(self, skeleton: Skeleton, mesh: Mesh, sources: Array) -> None:
+    def __init__(self, skeleton: Skeleton, mesh: SkinnedMesh, sources: Array) -> None:
         self.skeleton, self.mesh, self.sources = skeleton, mesh, sources
-        self.drawn = rules.drawn(skeleton)
+        self.drawn = rules.find_drawn_joints(skeleton)
         _, rest = skeleton.globals(skeleton.rest)
         self.height = max(1e-3, float(np.ptp(rest[self.drawn], axis=0).max()))
-        self._above = rules.above(skeleton, self.drawn)
+        self._above = rules.nearest_above(skeleton, self.drawn)
         self.lines = np.flatnonzero(self.drawn & (self._above >= 0))
         self.line_starts = self._above[self.lines]
         body = [k for k, i in enumerate(self.lines) if not rules.is_finger(skeleton.names[i])]
         self.shadow = (self.lines[body], self.line_starts[body])
-        self._head = rules.head(skeleton)
+        self._head = rules.find_head(skeleton)
 
     def simplify(self, cancelled: Callable[[], bool] = lambda: False) -> None:
         """Make the `levels`, or read those that were made before; a second or two where there were none, for
@@ -62,7 +62,7 @@ class Figure:
         if not self.levels:
             self.levels = levels_of(self.mesh, self.height, cancelled)
 
-    def finest(self, error: float) -> Mesh:
+    def finest(self, error: float) -> SkinnedMesh:
         """Return the mesh with the fewest triangles that is nowhere further off than `error`, metres."""
         return next((a.mesh for a in reversed(self.levels) if a.error <= error), self.mesh)
 
@@ -122,7 +122,7 @@ class Figure:
         """Return the mesh in pieces: the matrix each moves with `[B]`, and the corners of a box round it in
         rest pose `[B, 8, 3]`, as wide again as skinning and faces may move it.
         """
-        return pieces(self.mesh, 0.06 * self.height, 0.012 * self.height)
+        return cut_at_bones(self.mesh, 0.06 * self.height, 0.012 * self.height)
 
     @cached_property
     def _slack(self) -> tuple[Array, Array]:
@@ -168,23 +168,25 @@ class Figure:
         if self._head is None:
             top = np.argmax(np.asarray(positions)[..., 1], -1)
             return np.take_along_axis(np.asarray(positions), top[..., None, None], -2)[..., 0, :]
-        up = rotation.rotate(
+        up = rotation.rotate_vectors(
             rotation.conjugate(self._rest_rotation(self._head)), np.array([0, 0.05 * self.height, 0])
         )
-        return np.asarray(positions[..., self._head, :] + rotation.rotate(rotations[..., self._head, :], up))
+        return np.asarray(
+            positions[..., self._head, :] + rotation.rotate_vectors(rotations[..., self._head, :], up)
+        )
 
     def _rest_rotation(self, joint: int) -> Array:
         return np.asarray(self.skeleton.globals(self.skeleton.rest)[0][joint])
 
 
-class SkinnedFigure(Figure):
+class SkinnedFigure(MeshFigure):
     """A character's mesh on a project's skeleton, which may be another than its own.
 
     Joints are matched by name; one that is missing follows its nearest matched ancestor, and one without any
     such ancestor follows the first that matched. `matched` counts the joints found.
     """
 
-    def __init__(self, character: Character, skeleton: Skeleton | None = None) -> None:
+    def __init__(self, character: CharacterMesh, skeleton: Skeleton | None = None) -> None:
         own = character.skeleton
         skeleton = own if skeleton is None else skeleton
         rest_r, rest_p = own.globals(own.rest)
@@ -200,14 +202,14 @@ class SkinnedFigure(Figure):
         turn = rotation.multiply(np.asarray(rotations, np.float32)[..., sources, :], self._inverse_rotations)
         out = np.empty((*turn.shape[:-1], 3, 4), np.float32)
         out[..., :3] = rotation.to_matrix(turn)
-        out[..., 3] = np.asarray(positions, np.float32)[..., sources, :] - rotation.rotate(
+        out[..., 3] = np.asarray(positions, np.float32)[..., sources, :] - rotation.rotate_vectors(
             turn, self._rest_positions
         )
         out[..., self.sources < 0, :, :] = np.eye(3, 4, dtype=np.float32)
         return out
 
 
-class StickFigure(Figure):
+class StickFigure(MeshFigure):
     """Tapered bones, joint balls and a head for any skeleton, sized by it. The left is a little lighter than
     the right.
     """
@@ -218,7 +220,7 @@ class StickFigure(Figure):
         self._parts: list[tuple[tuple[Array, Array, Array], int, Array, tuple[int, int, int]]] = []
         super().__init__(
             skeleton,
-            Mesh(np.zeros(0, VERTEX), np.zeros((0, 3), np.uint32), (), 2 * count),
+            SkinnedMesh(np.zeros(0, VERTEX), np.zeros((0, 3), np.uint32), (), 2 * count),
             np.tile(np.arange(count), 2),
         )
         rest_r, rest_p = skeleton.globals(skeleton.rest)
@@ -227,7 +229,7 @@ class StickFigure(Figure):
         self._above_of[self.lines] = self.line_starts
         self.sources[count:] = self._above_of  # a bone is moved by the joint it starts at
         self._build(rest_p)
-        self.mesh = joined(self._parts, 2 * count)
+        self.mesh = join_parts(self._parts, 2 * count)
 
     def palette(self, rotations: Array, positions: Array) -> Array:
         rotations, positions = np.asarray(rotations, np.float32), np.asarray(positions, np.float32)
@@ -235,13 +237,15 @@ class StickFigure(Figure):
         count = turn.shape[-2]
         out = np.empty((*turn.shape[:-2], 2 * count, 3, 4), np.float32)
         out[..., :count, :, :3] = rotation.to_matrix(turn)
-        out[..., :count, :, 3] = positions - rotation.rotate(turn, self._rest_positions)
+        out[..., :count, :, 3] = positions - rotation.rotate_vectors(turn, self._rest_positions)
         # Bones lead from joint to joint wherever a file has moved those, and stretch with them.
         above = self._above_of
         before = (self._rest_positions - self._rest_positions[above]).astype(np.float32)
         now = positions - positions[..., above, :]
-        carried = rotation.rotate(turn[..., above, :], before)
-        aim = rotation.multiply(rotation.between(carried, now).astype(np.float32), turn[..., above, :])
+        carried = rotation.rotate_vectors(turn[..., above, :], before)
+        aim = rotation.multiply(
+            rotation.rotation_between(carried, now).astype(np.float32), turn[..., above, :]
+        )
         length = np.maximum(np.linalg.norm(before, axis=-1), 1e-6)
         axis = before / length[..., None]
         stretch = np.clip(np.linalg.norm(now, axis=-1) / length, 0.0, 20.0) - 1
@@ -257,7 +261,7 @@ class StickFigure(Figure):
 
     def _build(self, rest: Array) -> None:
         skeleton, height = self.skeleton, self.height
-        side = rules.sides(skeleton)
+        side = rules.sides_of_joints(skeleton)
         colors = {1: LEFT_COLOR, 0: MIDDLE_COLOR, -1: RIGHT_COLOR}
         finger = [rules.is_finger(n) for n in skeleton.names]
         radius = np.full(len(skeleton), 0.006 * height)
@@ -274,7 +278,7 @@ class StickFigure(Figure):
                 max(radius[parent], thick if not finger[child] else 0),
             )
             sides, rings = (6, 2) if small else (12, 3)
-            turn = rotation.between(np.array([0.0, 1, 0]), offset)
+            turn = rotation.rotation_between(np.array([0.0, 1, 0]), offset)
             self._add(
                 capsule(length, thick, thin, sides, rings),
                 len(skeleton) + int(child),
@@ -313,7 +317,11 @@ class StickFigure(Figure):
         positions, normals, triangles = shape
         self._parts.append(
             (
-                (rotation.rotate(turn, positions) + at, rotation.rotate(turn, normals), triangles),
+                (
+                    rotation.rotate_vectors(turn, positions) + at,
+                    rotation.rotate_vectors(turn, normals),
+                    triangles,
+                ),
                 matrix,
                 at,
                 color,
@@ -321,7 +329,7 @@ class StickFigure(Figure):
         )
 
 
-def joined(parts: list[Any], matrices: int) -> Mesh:
+def join_parts(parts: list[Any], matrices: int) -> SkinnedMesh:
     """Put rigid parts into one mesh."""
     vertices, triangles, count = [], [], 0
     for (positions, normals, corners), matrix, _, color in parts:
@@ -333,26 +341,26 @@ def joined(parts: list[Any], matrices: int) -> Mesh:
         triangles.append(corners + count)
         count += len(v)
     if not parts:
-        return Mesh(np.zeros(0, VERTEX), np.zeros((0, 3), np.uint32), (), matrices)
+        return SkinnedMesh(np.zeros(0, VERTEX), np.zeros((0, 3), np.uint32), (), matrices)
     indices = np.concatenate(triangles).astype(np.uint32)
-    return Mesh(np.concatenate(vertices), indices, (Batch(0, len(indices)),), matrices)
+    return SkinnedMesh(np.concatenate(vertices), indices, (TriangleBatch(0, len(indices)),), matrices)
 
 
-def _character_mesh(character: Character) -> Mesh:
+def _character_mesh(character: CharacterMesh) -> SkinnedMesh:
     """Bring a character's surfaces together by texture, so that a model of many plain materials is one
     draw.
     """
-    groups: dict[tuple[bytes | None, bool], list[tuple[Array, Material]]] = {}
+    groups: dict[tuple[bytes | None, bool], list[tuple[Array, MeshMaterial]]] = {}
     for surface in character.surfaces:
         material = (
             character.materials[surface.material]
             if surface.material < len(character.materials)
-            else Material("")
+            else MeshMaterial("")
         )
         run = np.asarray(character.triangles[surface.first : surface.first + surface.count])
         groups.setdefault((material.image, material.double_sided), []).append((run, material))
     if not character.surfaces and len(character.triangles):
-        groups[(None, False)] = [(np.asarray(character.triangles), Material(""))]
+        groups[(None, False)] = [(np.asarray(character.triangles), MeshMaterial(""))]
     vertices, triangles, batches, origins = [], [], [], []
     count = first = 0
     for (image, double_sided), runs in groups.items():
@@ -374,15 +382,15 @@ def _character_mesh(character: Character) -> Mesh:
             triangles.append(corners.reshape(-1, 3) + count)
             origins.append(used)
             count, first = count + len(used), first + len(run)
-        batches.append(Batch(start, first - start, image, double_sided))
+        batches.append(TriangleBatch(start, first - start, image, double_sided))
     if not batches:
-        return Mesh(np.zeros(0, VERTEX), np.zeros((0, 3), np.uint32), (), len(character.skeleton))
+        return SkinnedMesh(np.zeros(0, VERTEX), np.zeros((0, 3), np.uint32), (), len(character.skeleton))
     morphs = None
     if character.morph_positions is not None:
         offsets, origin = character.morph_positions, np.concatenate(origins)
         moved = np.flatnonzero((offsets != 0).any((0, 2))[origin])
         morphs = Morphs(moved, np.take(offsets, origin[moved], 1).astype(np.float32, copy=False))
-    return Mesh(
+    return SkinnedMesh(
         np.concatenate(vertices),
         np.concatenate(triangles).astype(np.uint32),
         tuple(batches),

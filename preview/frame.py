@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from preview.camera import Camera
-from preview.mesh import Mesh
-from preview.scene import Actor, Scene, Theme
+from preview.camera import OrbitCamera
+from preview.mesh import SkinnedMesh
+from preview.scene import Scene, SceneActor, SceneTheme
 
 Array = NDArray[Any]
 
@@ -33,16 +33,16 @@ class Frame:
     """
 
     scene: Scene
-    actors: list[Actor]
+    actors: list[SceneActor]
     rows: list[int]
-    camera: Camera
+    camera: OrbitCamera
     size: tuple[int, int]
-    theme: Theme
+    theme: SceneTheme
     matrix: Array
     bounds: tuple[Array, Array]
-    meshes: list[Mesh]
+    meshes: list[SkinnedMesh]
     boxes: Array
-    casters: list[Mesh]
+    casters: list[SkinnedMesh]
     light: Array | None = None
 
     @property
@@ -69,7 +69,7 @@ class Frame:
         return [i for i, actor in enumerate(self.actors) if (actor.opacity >= 1) == solid]
 
 
-def drawable(actor: Actor) -> bool:
+def is_drawable(actor: SceneActor) -> bool:
     """Whether there is something to draw, and all its numbers are some."""
     return bool(
         actor.count
@@ -79,13 +79,13 @@ def drawable(actor: Actor) -> bool:
     )
 
 
-def tall(actor: Actor, camera: Camera, height: int) -> float:
+def tall(actor: SceneActor, camera: OrbitCamera, height: int) -> float:
     """How many pixels tall the nearest instance is, about."""
     away = np.linalg.norm(np.asarray(actor.positions)[..., 0, :].reshape(-1, 3) - camera.eye, axis=1).min()
     return float(actor.figure.height / (2 * np.tan(camera.fov / 2) * max(float(away), 1e-3)) * height)
 
 
-def covered(frame: Frame) -> Array:
+def find_covered(frame: Frame) -> Array:
     """Return the parts of the picture with figures in them `[N, 4]`: left, low, right, high, pixels from
     below; rectangles that do not overlap.
 
@@ -121,7 +121,7 @@ def covered(frame: Frame) -> Array:
     return np.asarray(np.minimum(runs, (width, height, width, height)))
 
 
-def boxes(actors: Sequence[Actor], palettes: Sequence[Array]) -> Array:
+def piece_boxes(actors: Sequence[SceneActor], palettes: Sequence[Array]) -> Array:
     """Return the corners of the boxes round all actors' pieces `[N, 8, 3]`. palettes: each actor's
     `[instances, M, 3, 4]`.
     """
@@ -130,7 +130,7 @@ def boxes(actors: Sequence[Actor], palettes: Sequence[Array]) -> Array:
     )
 
 
-def _corners(actor: Actor, palette: Array) -> Array:
+def _corners(actor: SceneActor, palette: Array) -> Array:
     """Return the corners of the boxes round an actor's pieces, in all its instances `[N, 8, 3]`."""
     matrix, corners = actor.figure.boxes
     moved = palette[:, matrix].astype(float)

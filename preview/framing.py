@@ -9,7 +9,7 @@ from typing import Any, Literal
 from numpy.typing import NDArray
 
 from metagraph.motion.clip import Clip
-from metagraph.motion.moving import moved
+from metagraph.motion.moving import find_moved_parts
 from metagraph.motion.roles import find_roles, is_humanoid
 from metagraph.motion.skeleton import Skeleton
 
@@ -26,7 +26,7 @@ HAND = 0.07  # beyond a wrist
 
 def nearness(clip: Clip) -> Near:
     """Return how near a clip is to be looked at, by what it moves; from afar what is no humanoid."""
-    parts = set(moved(clip))
+    parts = set(find_moved_parts(clip))
     if not parts or parts & {"place", "legs"} or not is_humanoid(find_roles(clip.skeleton)):
         return "whole"
     return "upper" if parts & {"arms", "spine"} else "head"

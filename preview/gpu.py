@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from metagraph.common.budgets import PICTURE_PIXELS
 from metagraph.common.pictures import picture_size
-from preview.mesh import VERTEX, Batch, Mesh, arranged
+from preview.mesh import VERTEX, SkinnedMesh, TriangleBatch, arrange_vertices
 from preview.occlusion import Rods
-from preview.paint import painted
-from preview.scene import Actor
+from preview.paint import without_invisible_texture
+from preview.scene import SceneActor
 
 Array = NDArray[Any]
 
@@ -42,7 +42,7 @@ class LoadedMesh:
     """
 
     order: Array
-    batches: tuple[Batch, ...]
+    batches: tuple[TriangleBatch, ...]
     vertices: moderngl.Buffer
     positions: moderngl.Buffer
     indices: moderngl.Buffer
@@ -84,14 +84,14 @@ class Store:
 
     def __init__(self, ctx: moderngl.Context, software: bool = False) -> None:
         self._ctx, self._software = ctx, software
-        self._meshes: dict[Mesh, LoadedMesh] = {}
+        self._meshes: dict[SkinnedMesh, LoadedMesh] = {}
         self._images: dict[bytes, moderngl.Texture] = {}  # which a mesh and its levels of detail share
         self.palette = ctx.texture((3, 1), 4, dtype="f4")
         self.marks = ctx.texture((1, 1), 4)
-        self._written: list[Actor] = []  # whose palettes and marks these are
+        self._written: list[SceneActor] = []  # whose palettes and marks these are
         self.palettes: list[Array] = []  # of each of them `[instances, M, 3, 4]`
 
-    def __getitem__(self, mesh: Mesh) -> LoadedMesh:
+    def __getitem__(self, mesh: SkinnedMesh) -> LoadedMesh:
         return self._meshes[mesh]
 
     def __len__(self) -> int:
@@ -105,7 +105,7 @@ class Store:
         self.palette.release()
         self.marks.release()
 
-    def prepare(self, actors: Sequence[Actor], meshes: Sequence[Mesh]) -> list[int]:
+    def prepare(self, actors: Sequence[SceneActor], meshes: Sequence[SkinnedMesh]) -> list[int]:
         """Load meshes, palettes (all in one texture) and marks; return each actor's first row in the palette
         texture.
 
@@ -136,7 +136,7 @@ class Store:
             self._write_marks(actors)
         return rows
 
-    def _write_palettes(self, actors: Sequence[Actor], rows: Sequence[int], height: int) -> None:
+    def _write_palettes(self, actors: Sequence[SceneActor], rows: Sequence[int], height: int) -> None:
         width = max(a.figure.mesh.matrices for a in actors)
         self.palettes = [
             a.figure.palette(a.rotations, a.positions).reshape(a.count, -1, 3, 4) for a in actors
@@ -152,7 +152,7 @@ class Store:
             self.palette.filter = moderngl.NEAREST, moderngl.NEAREST
         self.palette.write(np.ascontiguousarray(data, "<f4"), viewport=(0, 0, 3 * width, height))
 
-    def _write_marks(self, actors: Sequence[Actor]) -> None:
+    def _write_marks(self, actors: Sequence[SceneActor]) -> None:
         width = max(a.figure.mesh.matrices for a in actors)
         marks = np.zeros((len(actors), width, 4), np.uint8)
         for row, actor in zip(marks, actors, strict=True):
@@ -165,14 +165,16 @@ class Store:
         self.marks = self._ctx.texture((width, len(actors)), 4, marks.tobytes())
         self.marks.filter = moderngl.NEAREST, moderngl.NEAREST
 
-    def _load(self, mesh: Mesh) -> None:
+    def _load(self, mesh: SkinnedMesh) -> None:
         loaded = self._meshes.get(mesh)
         if loaded is None:
             buffer = self._ctx.buffer
             drawn, origins = (
-                painted(mesh, decoded) if self._software else (mesh, np.arange(len(mesh.vertices)))
+                without_invisible_texture(mesh, decode_texture)
+                if self._software
+                else (mesh, np.arange(len(mesh.vertices)))
             )
-            order, triangles = arranged(drawn)
+            order, triangles = arrange_vertices(drawn)
             vertices = drawn.vertices[order]
             loaded = self._meshes[mesh] = LoadedMesh(
                 origins[order],
@@ -184,7 +186,7 @@ class Store:
             )
         loaded.idle = 0
 
-    def shape(self, mesh: Mesh, weights: Array | None) -> None:
+    def shape(self, mesh: SkinnedMesh, weights: Array | None) -> None:
         """Give a loaded mesh the face of who is drawn next, at rest where it has none; two may share a mesh.
         weights: `[K]` of its morph targets.
         """
@@ -207,7 +209,7 @@ class Store:
     def _image(self, encoded: bytes) -> moderngl.Texture:
         if encoded in self._images:
             return self._images[encoded]
-        size, pixels = decoded(encoded)
+        size, pixels = decode_texture(encoded)
         texture = self._ctx.texture(size, 4, pixels)
         # What is smaller holds flat colours; and mipmaps cost a stall in software.
         if max(size) > PALETTE and min(size) > NARROW:
@@ -218,7 +220,7 @@ class Store:
 
 
 @lru_cache(maxsize=32)
-def decoded(encoded: bytes) -> tuple[tuple[int, int], bytes]:
+def decode_texture(encoded: bytes) -> tuple[tuple[int, int], bytes]:
     """Return a texture's size and RGBA pixels; one that cannot be read becomes white, as the figure is worth
     more than its paint.
 

@@ -24,7 +24,7 @@ _RIGHT = re.compile(r"right|(^|[^a-z])r([^a-z]|$)")
 
 
 @lru_cache(maxsize=4096)  # the same joints are asked about for each picture
-def words(name: str) -> str:
+def split_humps(name: str) -> str:
     """Return the name in lower case with its humps split: `mixamorig:LeftUpLeg2` gives
     `mixamorig:left_up_leg2`.
     """
@@ -33,11 +33,11 @@ def words(name: str) -> str:
 
 def is_control(name: str) -> bool:
     """Whether the joint is a rig's helper (IK goal, twist, end marker), not part of the body."""
-    return bool(_CONTROL.search(re.sub(r"\d+", "", words(name))))
+    return bool(_CONTROL.search(re.sub(r"\d+", "", split_humps(name))))
 
 
 def is_finger(name: str) -> bool:
-    return bool(_FINGER.search(words(name)))
+    return bool(_FINGER.search(split_humps(name)))
 
 
 def is_face(name: str) -> bool:
@@ -46,18 +46,22 @@ def is_face(name: str) -> bool:
     """
     return bool(
         _FACE.search(
-            words(name).replace("forearm", "").replace("fore_arm", "").replace("gear", "").replace("rear", "")
+            split_humps(name)
+            .replace("forearm", "")
+            .replace("fore_arm", "")
+            .replace("gear", "")
+            .replace("rear", "")
         )
     )
 
 
-def sides(skeleton: Skeleton) -> NDArray[Any]:
+def sides_of_joints(skeleton: Skeleton) -> NDArray[Any]:
     """Return `[J]`: 1 left, -1 right, 0 middle; by name, else as the parent, as left and right are rarely
     said twice.
     """
     out = np.zeros(len(skeleton), np.int8)
     for i, name in enumerate(skeleton.names):
-        word = words(name)
+        word = split_humps(name)
         left, right = bool(_LEFT.search(word)), bool(_RIGHT.search(word))
         parent = int(skeleton.parents[i])
         out[i] = 1 if left and not right else -1 if right and not left else out[parent] if parent >= 0 else 0
@@ -65,19 +69,19 @@ def sides(skeleton: Skeleton) -> NDArray[Any]:
 
 
 @lru_cache(maxsize=64)
-def head(skeleton: Skeleton) -> int | None:
+def find_head(skeleton: Skeleton) -> int | None:
     """Return the head's joint by name, else by its role ("JtSkullA"); None where there is none."""
     found = [
         i
         for i, n in enumerate(skeleton.names)
-        if re.search(r"(^|[^a-z])head([^a-z]|$)", re.sub(r"\d+", "", words(n))) and not is_control(n)
+        if re.search(r"(^|[^a-z])head([^a-z]|$)", re.sub(r"\d+", "", split_humps(n))) and not is_control(n)
     ]
     return found[0] if found else find_roles(skeleton).get("head")
 
 
-def drawn(skeleton: Skeleton) -> NDArray[Any]:
+def find_drawn_joints(skeleton: Skeleton) -> NDArray[Any]:
     """Return `[J]` bool: the joints a stick figure shows. Always at least one."""
-    count, top = len(skeleton), head(skeleton)
+    count, top = len(skeleton), find_head(skeleton)
     keep = np.array([not is_control(n) and not is_face(n) for n in skeleton.names])
     offsets = np.linalg.norm(skeleton.rest_translations, axis=1)
     below = np.ones(count, int)
@@ -102,7 +106,7 @@ def drawn(skeleton: Skeleton) -> NDArray[Any]:
     return keep
 
 
-def above(skeleton: Skeleton, shown: NDArray[Any]) -> NDArray[Any]:
+def nearest_above(skeleton: Skeleton, shown: NDArray[Any]) -> NDArray[Any]:
     """Return `[J]`: for each joint the nearest one above it of those shown `[J]`, or -1."""
     out = np.full(len(skeleton), -1)
     for i, parent in enumerate(skeleton.parents):  # parents stand before their children

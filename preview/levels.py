@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.disk_cache import DiskCache, cache_folder
-from preview.mesh import Mesh
-from preview.simplify import Fewer, simplified
+from preview.mesh import SkinnedMesh
+from preview.simplify import Fewer, simplify
 
 Array = NDArray[Any]
 
@@ -35,27 +35,29 @@ class Level:
     """error: how far the surface is off, metres, about."""
 
     error: float
-    mesh: Mesh
+    mesh: SkinnedMesh
 
 
-def kept_in() -> Path | None:
+def levels_folder() -> Path | None:
     """Return the folder levels are kept in, None where nothing is."""
     told = os.environ.get("METAGRAPH_MESH_CACHE")
     return cache_folder("meshes") if told is None else Path(told) if told else None
 
 
-def levels_of(mesh: Mesh, height: float, cancelled: Callable[[], bool] = lambda: False) -> tuple[Level, ...]:
+def levels_of(
+    mesh: SkinnedMesh, height: float, cancelled: Callable[[], bool] = lambda: False
+) -> tuple[Level, ...]:
     """Return the levels of a mesh whose figure is `height` metres tall, finer ones first; none where there
     is little to take away, or once it is `cancelled`.
     """
     if not LEAST <= len(mesh.triangles) <= LARGEST or not np.isfinite(mesh.vertices["position"]).all():
         return ()
     errors = [share * height for share in ERRORS]
-    cache, key = DiskCache(kept_in(), MOST, ".npz"), _key(mesh, errors)
+    cache, key = DiskCache(levels_folder(), MOST, ".npz"), _key(mesh, errors)
     content = cache.read(key)
     found = None if content is None else _read(content, mesh)
     if found is None:
-        found = list(simplified(mesh, errors, cancelled))
+        found = list(simplify(mesh, errors, cancelled))
         if len(found) < len(errors):
             return ()
         cache.write(key, _written(found))
@@ -67,7 +69,7 @@ def levels_of(mesh: Mesh, height: float, cancelled: Callable[[], bool] = lambda:
     return tuple(out)
 
 
-def _key(mesh: Mesh, errors: list[float]) -> str:
+def _key(mesh: SkinnedMesh, errors: list[float]) -> str:
     out = hashlib.blake2b(repr((MADE, errors, mesh.matrices)).encode(), digest_size=20)
     out.update(repr([(b.first, b.count) for b in mesh.batches]).encode())
     for values in (mesh.vertices, mesh.triangles):
@@ -88,7 +90,7 @@ def _written(levels: list[Fewer]) -> bytes:
     return out.getvalue()
 
 
-def _read(content: bytes, mesh: Mesh) -> list[Fewer] | None:
+def _read(content: bytes, mesh: SkinnedMesh) -> list[Fewer] | None:
     """Return what was kept; None where it cannot be what was."""
     try:
         with np.load(io.BytesIO(content), allow_pickle=False) as held:

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from preview.scene import THEMES, Color, Theme
+from preview.scene import THEMES, Color, SceneTheme
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Light:
 
 
 @dataclass(frozen=True)
-class Backdrop:
+class BackdropLook:
     """words: its name. top, bottom: of the gradient, outside and behind the figure, sRGB. floor: the ground
     near by. line: of its grid, None for no grid. shadow:
     whether the ground has any.
@@ -41,8 +41,8 @@ class Backdrop:
     shadow: bool = True
 
 
-def _plain(words: str, color: Color, shadow: bool = True) -> Backdrop:
-    return Backdrop(words, color, color, color, None, shadow)
+def _plain(words: str, color: Color, shadow: bool = True) -> BackdropLook:
+    return BackdropLook(words, color, color, color, None, shadow)
 
 
 STUDIO, STAGE = "studio", "stage"
@@ -85,15 +85,15 @@ LIGHTS: Mapping[str, Light | None] = {
         dark=0.35,
     ),
 }
-BACKDROPS: Mapping[str, Backdrop | None] = {
+BACKDROPS: Mapping[str, BackdropLook | None] = {
     STAGE: None,
-    "sky": Backdrop(
+    "sky": BackdropLook(
         "Sky", (0.48, 0.62, 0.78), (0.80, 0.87, 0.92), (0.66, 0.68, 0.68), line=(0.50, 0.52, 0.53)
     ),
-    "dusk": Backdrop(
+    "dusk": BackdropLook(
         "Dusk", (0.15, 0.13, 0.22), (0.47, 0.30, 0.30), (0.20, 0.17, 0.20), line=(0.44, 0.36, 0.38)
     ),
-    "warm": Backdrop(
+    "warm": BackdropLook(
         "Warm paper", (0.80, 0.76, 0.70), (0.93, 0.90, 0.85), (0.86, 0.83, 0.78), line=(0.66, 0.62, 0.57)
     ),
     "neutral": _plain("Neutral grey, for recording", (0.46, 0.46, 0.46)),
@@ -104,13 +104,13 @@ BACKDROPS: Mapping[str, Backdrop | None] = {
 NAMES_OF_KEPT = {STUDIO: "Studio", STAGE: "Stage, as the window"}
 
 
-def words_of(name: str) -> str:
+def look_name(name: str) -> str:
     """Return what a light or a background is called."""
     found = LIGHTS.get(name) or BACKDROPS.get(name)
     return found.words if found is not None else NAMES_OF_KEPT[name]
 
 
-def look_of(theme: str, light: str = STUDIO, backdrop: str = STAGE) -> Theme:
+def look_of(theme: str, light: str = STUDIO, backdrop: str = STAGE) -> SceneTheme:
     """Return a theme in a light before a background; those that are not known are left out."""
     out, lamp, back = THEMES[theme], LIGHTS.get(light), BACKDROPS.get(backdrop)
     if lamp is not None:

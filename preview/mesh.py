@@ -27,7 +27,7 @@ VERTEX = np.dtype(
 
 
 @dataclass(frozen=True, eq=False)
-class Batch:
+class TriangleBatch:
     """Triangles `first .. first + count` that share a texture and a side rule."""
 
     first: int
@@ -62,7 +62,7 @@ class Morphs:
 
 
 @dataclass(frozen=True, eq=False)
-class Mesh:
+class SkinnedMesh:
     """vertices: `[V]` of VERTEX in rest pose. triangles: `[N, 3]`. matrices: how many the palette holds.
 
     morphs: what a face moves, or None. Compared by identity: the renderer keeps one copy per value.
@@ -70,12 +70,12 @@ class Mesh:
 
     vertices: Array
     triangles: Array
-    batches: tuple[Batch, ...]
+    batches: tuple[TriangleBatch, ...]
     matrices: int
     morphs: Morphs | None = None
 
 
-def arranged(mesh: Mesh) -> tuple[Array, Array]:
+def arrange_vertices(mesh: SkinnedMesh) -> tuple[Array, Array]:
     """Return the order vertices are best given to a graphics card in `[U]`, and the triangles `[N, 3]` that
     count by it, each batch where it was.
 
@@ -102,7 +102,7 @@ def arranged(mesh: Mesh) -> tuple[Array, Array]:
     return order, number[triangles]
 
 
-def pieces(mesh: Mesh, length: float, margin: float) -> tuple[Array, Array]:
+def cut_at_bones(mesh: SkinnedMesh, length: float, margin: float) -> tuple[Array, Array]:
     """Cut a mesh where its bones are, and each bone's part along its longest side.
 
     Returns the matrix of each piece `[B]` and the corners of a box round it in rest pose `[B, 8, 3]`, with

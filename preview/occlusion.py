@@ -38,7 +38,7 @@ LIMBS: tuple[tuple[str, tuple[str, ...], tuple[str, ...], str], ...] = (
 OWN, WHOLE, FROM_START, FROM_END = range(4)
 
 
-def ways() -> Array:
+def occlusion_ways() -> Array:
     """Return how rod c counts for a vertex on limb v, `[v, c]`."""
     names = [name for name, *_ in LIMBS]
     out = np.full((len(LIMBS), len(LIMBS)), WHOLE)

@@ -12,16 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.wording import phrase
-from preview.camera import Camera
+from preview.camera import OrbitCamera
 from preview.renderer import Renderer
-from preview.scene import DARK, Scene, Theme
+from preview.scene import DARK, Scene, SceneTheme
 
 
 class OpenGLError(RuntimeError):
     """There is no OpenGL 3.3 here; the message says what to install."""
 
 
-def no_opengl(reasons: str) -> OpenGLError:
+def no_opengl_error(reasons: str) -> OpenGLError:
     """Return what to raise where OpenGL 3.3 cannot be had. reasons: what the system says."""
     remedy = {
         "linux": phrase("Install Mesa's software renderer, on Debian or Ubuntu: apt install libegl1 libgl1"),
@@ -45,7 +45,7 @@ def standalone_context() -> moderngl.Context:
             return moderngl.create_context(standalone=True, require=330, **options)
         except Exception as error:  # each backend raises its own kinds
             reasons.append(f"{options.get('backend', 'system')}: {error}")
-    raise no_opengl("; ".join(dict.fromkeys(reasons)))
+    raise no_opengl_error("; ".join(dict.fromkeys(reasons)))
 
 
 class Offscreen:
@@ -78,8 +78,8 @@ class Offscreen:
     def render(
         self,
         scene: Scene,
-        camera: Camera,
-        theme: Theme = DARK,
+        camera: OrbitCamera,
+        theme: SceneTheme = DARK,
         size: tuple[int, int] | None = None,
         into: NDArray[np.uint8] | None = None,
     ) -> NDArray[np.uint8]:
@@ -98,7 +98,7 @@ class Offscreen:
         into[...] = picture
         return into
 
-    def draw(self, scene: Scene, camera: Camera, theme: Theme = DARK) -> None:
+    def draw(self, scene: Scene, camera: OrbitCamera, theme: SceneTheme = DARK) -> None:
         """Draw to the end without reading the picture: what a window's frame costs."""
         with self._ctx:
             self.renderer.draw(scene, camera, self.size, self._fbo, theme)

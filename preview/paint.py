@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from preview.mesh import Batch, Mesh
+from preview.mesh import SkinnedMesh, TriangleBatch
 
 Array = NDArray[Any]
 
@@ -23,7 +23,9 @@ _GAMMA = 2.2
 _LINEAR = ((np.arange(256) / 255) ** _GAMMA).astype(np.float32)  # what the shader makes of a vertex's colours
 
 
-def painted(mesh: Mesh, decoded: Callable[[bytes], tuple[tuple[int, int], bytes]]) -> tuple[Mesh, Array]:
+def without_invisible_texture(
+    mesh: SkinnedMesh, decoded: Callable[[bytes], tuple[tuple[int, int], bytes]]
+) -> tuple[SkinnedMesh, Array]:
     """Return a mesh that looks the same with fewer triangles that have a texture, and which vertex of `mesh`
     each of its vertices is. Triangles stay in their batch, or in what that becomes: where batches are one
     after the other, so are these. decoded: size and RGBA of an image.
@@ -51,7 +53,7 @@ def painted(mesh: Mesh, decoded: Callable[[bytes], tuple[tuple[int, int], bytes]
         part[plain] = count + np.searchsorted(kept, part[plain])
         part[:] = np.concatenate([part[plain], part[~plain]])
         first, rest = int(plain.sum()), int((~plain).sum())
-        batches.append(Batch(batch.first, first, None, batch.double_sided))
+        batches.append(TriangleBatch(batch.first, first, None, batch.double_sided))
         if rest:
             batches.append(replace(batch, first=batch.first + first, count=rest))
         vertices.append(more)
@@ -61,7 +63,7 @@ def painted(mesh: Mesh, decoded: Callable[[bytes], tuple[tuple[int, int], bytes]
         return mesh, origins[0]
     # The morphs stay behind: whoever wants them finds the vertices they are of by the origins.
     return (
-        Mesh(np.concatenate(vertices), triangles, tuple(batches), mesh.matrices),
+        SkinnedMesh(np.concatenate(vertices), triangles, tuple(batches), mesh.matrices),
         np.concatenate(origins),
     )
 

@@ -11,13 +11,13 @@ import moderngl
 import numpy as np
 
 from preview import shaders
-from preview.backdrop import Backdrop
-from preview.camera import Camera
-from preview.drawing import Drawing, set_uniforms
-from preview.frame import MARGIN, Array, Frame, boxes, covered, drawable, tall
-from preview.mesh import Mesh
-from preview.scene import DARK, Actor, Scene, Theme
-from preview.shadows import SHADOW_LIMIT, Shadows, depths, shadow_casters
+from preview.backdrop import ViewBackdrop
+from preview.camera import OrbitCamera
+from preview.drawing import SceneDrawing, set_uniforms
+from preview.frame import MARGIN, Array, Frame, find_covered, is_drawable, piece_boxes, tall
+from preview.mesh import SkinnedMesh
+from preview.scene import DARK, Scene, SceneActor, SceneTheme
+from preview.shadows import SHADOW_LIMIT, Shadows, draw_depths, shadow_casters
 
 GHOST_BACK = (2.0, 1500.0)  # by slope, and in steps of the depth; about a centimetre where a figure stands
 CONTACT, CONTACT_HIGH = 0.75, 0.16  # how much darker a sole is, and of the height, up to where
@@ -51,11 +51,11 @@ class Renderer:
         self.software = is_software(ctx)
         self.samples = min((0 if self.software else 4) if samples is None else samples, int(ctx.max_samples))
         self._beside = beside
-        self._drawing: Drawing = Drawing(ctx, self.software) if beside is None else beside._drawing
+        self._drawing: SceneDrawing = SceneDrawing(ctx, self.software) if beside is None else beside._drawing
         self._shadows: Shadows = Shadows(self._drawing, self.software) if beside is None else beside._shadows
         self.store = self._drawing.store
         self.occlusion = not self.software  # a tenth of a picture's time where the processor draws
-        self._backdrop = Backdrop(self._drawing)
+        self._backdrop = ViewBackdrop(self._drawing)
         self._size = (0, 0)
         self._targets: list[Any] = []
         self._resize(1, 1)
@@ -73,10 +73,10 @@ class Renderer:
     def draw(
         self,
         scene: Scene,
-        camera: Camera,
+        camera: OrbitCamera,
         size: tuple[int, int],
         target: moderngl.Framebuffer,
-        theme: Theme = DARK,
+        theme: SceneTheme = DARK,
     ) -> None:
         """Draw into `target`'s lower left `size` (width, height, pixels). Sets all state it needs; keeps none
         of the caller's.
@@ -84,14 +84,14 @@ class Renderer:
         Actors whose transforms hold something that is not a number are left out.
         """
         width, height = max(1, int(size[0])), max(1, int(size[1]))
-        actors = [a for a in scene.actors if drawable(a)]
+        actors = [a for a in scene.actors if is_drawable(a)]
         self._resize(width, height)
         self._drawing.begin()
         solid = [a for a in actors if a.opacity >= 1]
         cast = scene.shadow and 0 < sum(a.count for a in solid) <= SHADOW_LIMIT
         crowd = sum(a.count for a in actors) > SHADOW_LIMIT
 
-        def mesh(a: Actor) -> Mesh:
+        def mesh(a: SceneActor) -> SkinnedMesh:
             second = self.software and (self._beside is not None or a.opacity < 1)
             off = max(OFF_CROWD if crowd else OFF[self.software], OFF_BESIDE if second else 0.0)
             return a.figure.finest(off * a.figure.height / max(1.0, tall(a, camera, height)))
@@ -101,7 +101,7 @@ class Renderer:
         rows = self._drawing.store.prepare(actors, meshes + casters)
         matrix = camera.matrix(width / height)
         bounds = Scene(tuple(solid)).bounds()
-        round_pieces = boxes(actors, self.store.palettes if actors else ())
+        round_pieces = piece_boxes(actors, self.store.palettes if actors else ())
         frame = Frame(
             scene, actors, rows, camera, (width, height), theme, matrix, bounds, meshes, round_pieces, casters
         )
@@ -113,7 +113,7 @@ class Renderer:
         ground_to = self._backdrop.draw(frame, target)
         if ground_to > 0 and solid and scene.shadow:
             self._shadows.on_ground(frame, target, ground_to, solid)
-        parts = covered(frame)
+        parts = find_covered(frame)
         if len(parts):
             self._drawing.state(self._main, (0, 0, width, height), moderngl.DEPTH_TEST)
             self._clear(parts)
@@ -173,7 +173,7 @@ class Renderer:
         self.ctx.polygon_offset = GHOST_BACK
         self._main.color_mask = (False, False, False, False)
         self._main.use()  # a mask counts from the next use
-        depths(self._drawing, frame, which, frame.matrix, frame.meshes)
+        draw_depths(self._drawing, frame, which, frame.matrix, frame.meshes)
         self._main.color_mask = (True, True, True, True)
         self._main.use()
         self.ctx.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA

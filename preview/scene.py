@@ -11,14 +11,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from preview.figure import Figure
+from preview.figure import MeshFigure
 
 Array = NDArray[Any]
 Color = tuple[float, float, float]
 
 
 @dataclass(frozen=True, eq=False)
-class Actor:
+class SceneActor:
     """A figure in one pose, or in many at once (a crowd is one draw).
 
     rotations `[..., J, 4]` xyzw and positions `[..., J, 3]`: global, on the figure's skeleton. morphs:
@@ -26,7 +26,7 @@ class Actor:
     skeleton over the mesh. opacity below 1 makes a ghost, without shadow.
     """
 
-    figure: Figure
+    figure: MeshFigure
     rotations: Array
     positions: Array
     morphs: Array | None = None
@@ -47,7 +47,7 @@ class Scene:
     no ground, either.
     """
 
-    actors: tuple[Actor, ...] = ()
+    actors: tuple[SceneActor, ...] = ()
     ground: bool = True
     shadow: bool = True
     background: tuple[float, float, float, float] | None = None
@@ -72,7 +72,7 @@ class Scene:
         return np.min([b[0] for b in boxes], axis=0), np.max([b[1] for b in boxes], axis=0)
 
 
-def _same(a: Actor, b: Actor) -> bool:
+def _same(a: SceneActor, b: SceneActor) -> bool:
     return a is b or (
         a.figure is b.figure
         and (a.bones, a.opacity, a.marks) == (b.bones, b.opacity, b.marks)
@@ -83,7 +83,7 @@ def _same(a: Actor, b: Actor) -> bool:
 
 
 @dataclass(frozen=True)
-class Theme:
+class SceneTheme:
     """Colours: sky, floor and ink in sRGB 0..1; lights linear. All neutral: in the window colour means
     kind.
     """
@@ -119,7 +119,7 @@ class Theme:
         return out
 
 
-DARK = Theme(
+DARK = SceneTheme(
     "dark",
     top=(0.150, 0.158, 0.176),
     bottom=(0.250, 0.262, 0.290),
@@ -133,7 +133,7 @@ DARK = Theme(
     rim=(0.42, 0.46, 0.55),
     ink=(0.96, 0.97, 0.98),
 )
-LIGHT = Theme(
+LIGHT = SceneTheme(
     "light",
     top=(0.855, 0.865, 0.880),
     bottom=(0.965, 0.968, 0.975),

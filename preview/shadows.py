@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from preview import shaders
-from preview.drawing import Drawing, set_uniforms
+from preview.drawing import SceneDrawing, set_uniforms
 from preview.frame import Frame
-from preview.mesh import Mesh
-from preview.scene import Actor
+from preview.mesh import SkinnedMesh
+from preview.scene import SceneActor
 
 Array = NDArray[Any]
 
@@ -45,7 +45,7 @@ class _Map:
 
     def __init__(self, ctx: moderngl.Context, size: int) -> None:
         self.size = size
-        self.seen: tuple[list[Actor], tuple[float, ...], Array] | None = None  # actors, lamp, matrix
+        self.seen: tuple[list[SceneActor], tuple[float, ...], Array] | None = None  # actors, lamp, matrix
         self.depth = ctx.depth_texture((size, size))
         self.depth.compare_func = "<="
         self.depth.repeat_x = self.depth.repeat_y = False
@@ -59,7 +59,7 @@ class _Map:
 class Shadows:
     """Belongs to a drawing; views of one scene share what the lamp saw of the whole of it."""
 
-    def __init__(self, drawing: Drawing, software: bool) -> None:
+    def __init__(self, drawing: SceneDrawing, software: bool) -> None:
         self._drawing, self._taps, ctx = drawing, TAPS[software], drawing.ctx
         self._off_least = OFF_LEAST[software]
         size, small = SHADOW_SIZE[software]
@@ -68,7 +68,9 @@ class Shadows:
         self._soft = ctx.texture(SOFT_SIZE, 1)
         self._soft_fbo = ctx.framebuffer([self._soft])
         self._soft.repeat_x = self._soft.repeat_y = False
-        self._softened: tuple[list[Actor], tuple[float, ...]] | None = None  # whose shadow lies on the ground
+        self._softened: tuple[list[SceneActor], tuple[float, ...]] | None = (
+            None  # whose shadow lies on the ground
+        )
 
     def release(self) -> None:
         """Give everything back."""
@@ -97,7 +99,7 @@ class Shadows:
         map, 0..1. Near by, what is in the picture has a map of its own.
         """
         axes, (centre, radius) = frame.theme.lamp, _lit(frame)
-        pixels, low, high = seen_window(frame, axes)
+        pixels, low, high = find_seen_window(frame, axes)
         if pixels * 2 * radius < NEAR * self._whole.size:
             small = pixels * 2 * radius < SMALL * self._low.size
             self._used = self._low if small else self._whole
@@ -123,10 +125,10 @@ class Shadows:
     def _drawn(self, frame: Frame, into: _Map, matrix: Array) -> Array:
         self._drawing.state(into.target, (0, 0, into.size, into.size), moderngl.DEPTH_TEST, colors=False)
         into.target.clear(depth=1.0)
-        depths(self._drawing, frame, frame.which(solid=True), matrix, frame.casters)
+        draw_depths(self._drawing, frame, frame.which(solid=True), matrix, frame.casters)
         return np.asarray(_HALF @ matrix)
 
-    def on_ground(self, frame: Frame, target: Any, ground_to: int, solid: Sequence[Actor]) -> None:
+    def on_ground(self, frame: Frame, target: Any, ground_to: int, solid: Sequence[SceneActor]) -> None:
         """What darkens the ground multiplies what is there. ground_to: the row, from below, it ends at."""
         strip = _strip(frame) if frame.light is not None else None
         if strip is not None:
@@ -197,13 +199,13 @@ def _strip(frame: Frame) -> Strip | None:
     return patch, (x, z), ((fade_x[0] + fade_x[1]) / 2, (fade_z[0] + fade_z[1]) / 2, wide)
 
 
-def shadow_casters(actors: Sequence[Actor]) -> list[Mesh]:
+def shadow_casters(actors: Sequence[SceneActor]) -> list[SkinnedMesh]:
     """Return what throws each actor's shadow."""
     return [a.figure.finest(CAST_OFF * a.figure.height) for a in actors]
 
 
-def depths(
-    drawing: Drawing, frame: Frame, which: Sequence[int], matrix: Array, meshes: Sequence[Mesh]
+def draw_depths(
+    drawing: SceneDrawing, frame: Frame, which: Sequence[int], matrix: Array, meshes: Sequence[SkinnedMesh]
 ) -> None:
     """Draw nothing but depth, as seen through `matrix`. meshes: one for each actor of the frame."""
     program = drawing.program("depth", shaders.DEPTH_VERTEX, shaders.DEPTH)
@@ -220,7 +222,7 @@ def _lit(frame: Frame) -> tuple[Array, float]:
     return (low + high) / 2, max(0.05, math.dist(low, high) / 2)
 
 
-def seen_window(frame: Frame, axes: Array) -> tuple[float, Array, Array]:
+def find_seen_window(frame: Frame, axes: Array) -> tuple[float, Array, Array]:
     """Return how many pixels a metre has where what is seen is nearest, and the part of the lamp's picture
     `[2], [2]`, metres, that shades what is seen. No pixels where nothing is.
     """
@@ -256,12 +258,12 @@ def seen_window(frame: Frame, axes: Array) -> tuple[float, Array, Array]:
     return tall / near, middle - half, middle + half
 
 
-def _alike(before: Sequence[Actor], now: Sequence[Actor]) -> bool:
+def _alike(before: Sequence[SceneActor], now: Sequence[SceneActor]) -> bool:
     """Whether they are the very same actors."""
     return len(before) == len(now) and all(a is b for a, b in zip(before, now, strict=True))
 
 
-def _spots(actor: Actor) -> Array:
+def _spots(actor: SceneActor) -> Array:
     """Where a body darkens the ground `[S, 4]`: x, z, radius, strength; wider and weaker with height."""
     ends, starts = actor.figure.shadow
     p = np.asarray(actor.positions, float).reshape(-1, len(actor.figure.skeleton), 3)

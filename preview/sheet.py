@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.errors import FileError
-from metagraph.formats.outputs import being_written
+from metagraph.formats.outputs import claim_output
 
 Array = NDArray[Any]
 Color = tuple[int, int, int]
@@ -73,7 +73,7 @@ def write_png(path: str | Path, picture: Array) -> None:
     part = path.with_name(f".{path.name}.part")
     try:
         Image.fromarray(np.ascontiguousarray(picture)).save(part, "PNG", compress_level=6)
-        with being_written(path):
+        with claim_output(path):
             part.replace(path)
     except OSError as error:
         raise FileError(

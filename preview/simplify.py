@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from preview.mesh import Batch, Mesh
+from preview.mesh import SkinnedMesh, TriangleBatch
 
 Array = NDArray[Any]
 
@@ -40,19 +40,19 @@ class Fewer:
     triangles: Array
     counts: Array
 
-    def of(self, mesh: Mesh) -> Mesh:
+    def of(self, mesh: SkinnedMesh) -> SkinnedMesh:
         """Return it as a mesh; morph targets come along."""
         ends = np.cumsum(self.counts)
         batches = [
-            Batch(int(end - count), int(count), b.image, b.double_sided)
+            TriangleBatch(int(end - count), int(count), b.image, b.double_sided)
             for b, end, count in zip(mesh.batches, ends, self.counts, strict=True)
         ]
         morphs = None if mesh.morphs is None else mesh.morphs.of(self.used)
-        return Mesh(mesh.vertices[self.used], self.triangles, tuple(batches), mesh.matrices, morphs)
+        return SkinnedMesh(mesh.vertices[self.used], self.triangles, tuple(batches), mesh.matrices, morphs)
 
 
-def simplified(
-    mesh: Mesh, errors: Sequence[float], cancelled: Callable[[], bool] = lambda: False
+def simplify(
+    mesh: SkinnedMesh, errors: Sequence[float], cancelled: Callable[[], bool] = lambda: False
 ) -> Iterator[Fewer]:
     """Yield what is left of a mesh for each error, less and less. errors: metres, rising, that the surface
     moves by, on the average of where it is simplified.
@@ -72,7 +72,7 @@ def simplified(
 class _Faces:
     """What is left of a mesh. A point is all vertices at one place."""
 
-    def __init__(self, mesh: Mesh) -> None:
+    def __init__(self, mesh: SkinnedMesh) -> None:
         self._mesh = mesh
         vertices = mesh.vertices
         place = np.ascontiguousarray(vertices["position"] + np.float32(0))  # no -0
@@ -254,7 +254,7 @@ class _Faces:
         self._corners, self._batch = corners[left], self._batch[left]
 
 
-def _spread(mesh: Mesh, which: Array) -> Array:
+def _spread(mesh: SkinnedMesh, which: Array) -> Array:
     """Return vertices in the space that errors are told in `[N, 8]`: place, what moves them, texture."""
     vertices = mesh.vertices[which]
     place = vertices["position"].astype(float)

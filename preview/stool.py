@@ -10,16 +10,16 @@ from numpy.typing import NDArray
 
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Skeleton
-from preview.figure import Figure, joined
+from preview.figure import MeshFigure, join_parts
 from preview.mesh import capsule, lathe
-from preview.scene import Actor
+from preview.scene import SceneActor
 
 Array = NDArray[Any]
 
 SEAT_COLOR, LEG_COLOR = (116, 119, 126), (84, 87, 94)  # neutral: in the window colour means kind
 
 
-class Stool(Figure):
+class Stool(MeshFigure):
     """A stool of a height and a radius, metres; its one joint is the middle of the top of its seat."""
 
     def __init__(self, height: float, radius: float) -> None:
@@ -39,14 +39,14 @@ class Stool(Figure):
             top, foot = way * 0.62 * radius - [0, thick, 0], way * 0.95 * radius - [0, height, 0]
             length, width = float(np.linalg.norm(top - foot)), 0.035 * height
             positions, normals, triangles = capsule(length - width, width, width, 10, 3)
-            turn = rotation.between(np.array([0.0, 1, 0]), top - foot)
+            turn = rotation.rotation_between(np.array([0.0, 1, 0]), top - foot)
             shape = (
-                rotation.rotate(turn, positions) + foot + [0, width, 0],
-                rotation.rotate(turn, normals),
+                rotation.rotate_vectors(turn, positions) + foot + [0, width, 0],
+                rotation.rotate_vectors(turn, normals),
                 triangles,
             )
             parts.append((shape, 0, foot, LEG_COLOR))
-        super().__init__(one, joined(parts, 1), np.zeros(1, int))
+        super().__init__(one, join_parts(parts, 1), np.zeros(1, int))
         self.height = height
 
     def palette(self, rotations: Array, positions: Array) -> Array:
@@ -62,7 +62,7 @@ def _stool(height: float, radius: float) -> Stool:
     return Stool(height, radius)
 
 
-def stool(at: tuple[float, float, float], radius: float) -> Actor:
+def stool(at: tuple[float, float, float], radius: float) -> SceneActor:
     """Return a stool that stands on the ground. at: the middle of the top of its seat, metres."""
     figure = _stool(round(max(at[1], 0.05), 3), round(radius, 3))
-    return Actor(figure, np.array([[0.0, 0, 0, 1]], np.float32), np.array([at], np.float32))
+    return SceneActor(figure, np.array([[0.0, 0, 0, 1]], np.float32), np.array([at], np.float32))

@@ -13,11 +13,11 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Pose
 from preview import joints as rules
-from preview.camera import Camera
-from preview.figure import Figure
+from preview.camera import OrbitCamera
+from preview.figure import MeshFigure
 from preview.framing import Box, near_box, nearness
 from preview.offscreen import Offscreen
-from preview.scene import DARK, Actor, Scene, Theme
+from preview.scene import DARK, Scene, SceneActor, SceneTheme
 
 Array = NDArray[Any]
 
@@ -51,7 +51,7 @@ class ThumbnailStyle:
     scale: int = 2
     tint: tuple[float, float, float] | None = None
     paper: tuple[float, float, float] | None = (0.110, 0.114, 0.129)
-    theme: Theme = DARK
+    theme: SceneTheme = DARK
 
     @property
     def background(self) -> tuple[float, float, float, float]:
@@ -69,7 +69,7 @@ USUAL = ThumbnailStyle()
 
 def thumbnail(
     offscreen: Offscreen,
-    figure: Figure,
+    figure: MeshFigure,
     rotations: Array,
     positions: Array,
     style: ThumbnailStyle = USUAL,
@@ -82,8 +82,8 @@ def thumbnail(
     pixels = style.size * style.scale
     # The figure is turned to the lamp, not the camera round it: all thumbnails are in the same light.
     turn = rotation.from_axis_angle(np.array([0.0, 1, 0]), np.array(-_heading(figure, positions)))
-    centred = rotation.rotate(turn, positions - positions[0] * [1, 0, 1])
-    actor = Actor(figure, rotation.multiply(turn, rotations), centred)
+    centred = rotation.rotate_vectors(turn, positions - positions[0] * [1, 0, 1])
+    actor = SceneActor(figure, rotation.multiply(turn, rotations), centred)
     camera = _camera(_person(figure, figure.posed_bounds(actor.rotations, actor.positions)))
     scene = Scene((actor,), background=style.background)
     return offscreen.render(scene, camera, style.theme, (pixels, pixels))
@@ -91,11 +91,11 @@ def thumbnail(
 
 def thumbnails(
     offscreen: Offscreen,
-    figure: Figure,
+    figure: MeshFigure,
     clip: Clip,
     frames: Array,
     pixels: int = 320,
-    theme: Theme = DARK,
+    theme: SceneTheme = DARK,
     paper: tuple[float, float, float] | None = None,
 ) -> list[Array]:
     """Return square pictures `[pixels, pixels, 4]` uint8 of a clip's frames `[N]`, as near as what the clip
@@ -106,7 +106,7 @@ def thumbnails(
     every = np.concatenate((looked[:1], np.unique(np.concatenate((looked, frames)))))
     rotations, positions = clip.skeleton.globals(clip.poses()[every])
     turn = rotation.from_axis_angle(np.array([0.0, 1, 0]), np.array(-_heading(figure, positions[0])))
-    centred = rotation.rotate(turn, positions - positions[:, :1] * [1, 0, 1])
+    centred = rotation.rotate_vectors(turn, positions - positions[:, :1] * [1, 0, 1])
     turned = rotation.multiply(turn, rotations)
     near = nearness(clip)
     if near == "whole":
@@ -120,14 +120,14 @@ def thumbnails(
     at = 1 + np.searchsorted(every[1:], frames)
     return [
         offscreen.render(
-            Scene((Actor(figure, turned[n], centred[n]),), background=background),
+            Scene((SceneActor(figure, turned[n], centred[n]),), background=background),
             camera, theme, (pixels, pixels),
         )
         for n in at
     ]  # fmt: skip
 
 
-def _person(figure: Figure, whole: Box) -> Box:
+def _person(figure: MeshFigure, whole: Box) -> Box:
     """Return a box that is no smaller than that of a person with half-raised arms, turned as the character
     is.
     """
@@ -140,19 +140,21 @@ def _person(figure: Figure, whole: Box) -> Box:
     return low, high
 
 
-def _camera(box: Box) -> Camera:
-    return Camera().facing(np.radians(22), np.radians(6)).frame(box, 1.0, margin=1.02)
+def _camera(box: Box) -> OrbitCamera:
+    return OrbitCamera().facing(np.radians(22), np.radians(6)).frame(box, 1.0, margin=1.02)
 
 
-def clip_thumbnail(offscreen: Offscreen, figure: Figure, clip: Clip, style: ThumbnailStyle = USUAL) -> Array:
+def clip_thumbnail(
+    offscreen: Offscreen, figure: MeshFigure, clip: Clip, style: ThumbnailStyle = USUAL
+) -> Array:
     """Return `thumbnail` of the clip's telling frame; the clip is on the figure's skeleton."""
     rotations, positions = clip.skeleton.globals(clip.poses()[telling_frame(clip)])
     return thumbnail(offscreen, figure, rotations, positions, style)
 
 
-def _heading(figure: Figure, positions: Array) -> float:
+def _heading(figure: MeshFigure, positions: Array) -> float:
     """Where the hips face, radians about +Y: across the line from the right limbs to the left ones."""
-    side = rules.sides(figure.skeleton) * figure.drawn
+    side = rules.sides_of_joints(figure.skeleton) * figure.drawn
     if not ((side > 0).any() and (side < 0).any()):
         return 0.0
     p = np.asarray(positions, float)

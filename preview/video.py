@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.errors import FileError
-from metagraph.formats.outputs import being_written
+from metagraph.formats.outputs import claim_output
 
 Array = NDArray[Any]
 
@@ -69,7 +69,7 @@ def write_video(
             video.end()
             if sound is not None:
                 _write_sound(container, video.voice, sound[0], round(video.count / fps * sound[1]))
-        with being_written(path):
+        with claim_output(path):
             part.replace(path)
     except OSError as error:
         raise FileError(

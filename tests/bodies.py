@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from metagraph.motion import rotation
-from metagraph.motion.character_mesh import Character, Material, Surface
+from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, Surface
 from metagraph.motion.skeleton import Skeleton
 from preview.mesh import ball
 
@@ -19,12 +19,14 @@ def column(joints: int = 6) -> Skeleton:
     return Skeleton(
         tuple(f"j{n}" for n in range(joints)),
         np.arange(-1, joints - 1),
-        rotation.identity((joints,)),
+        rotation.identity_rotations((joints,)),
         offsets,
     )
 
 
-def body(skeleton: Skeleton, balls: dict[int, float], at: dict[int, list[float]] | None = None) -> Character:
+def body(
+    skeleton: Skeleton, balls: dict[int, float], at: dict[int, list[float]] | None = None
+) -> CharacterMesh:
     """Balls of some radii round joints, metres; `at` puts a joint's ball elsewhere."""
     _, rest = skeleton.globals(skeleton.rest)
     points, corners, joints, surfaces = [], [], [], []
@@ -37,7 +39,7 @@ def body(skeleton: Skeleton, balls: dict[int, float], at: dict[int, list[float]]
         surfaces.append(Surface(first, len(t), 0, f"ball {joint}", joint))
         count, first = count + len(p), first + len(t)
     positions = np.concatenate(points).astype(np.float32)
-    return Character(
+    return CharacterMesh(
         "someone",
         skeleton,
         positions,
@@ -46,11 +48,11 @@ def body(skeleton: Skeleton, balls: dict[int, float], at: dict[int, list[float]]
         np.array(joints),
         np.tile(np.float32([1, 0, 0, 0]), (count, 1)),
         np.concatenate(corners),
-        (Material("plain"),),
+        (MeshMaterial("plain"),),
         tuple(surfaces),
         meshes=tuple(s.mesh for s in surfaces),
     )
 
 
-def everywhere(skeleton: Skeleton, radius: float = 0.15) -> Character:
+def everywhere(skeleton: Skeleton, radius: float = 0.15) -> CharacterMesh:
     return body(skeleton, dict.fromkeys(range(len(skeleton)), radius))

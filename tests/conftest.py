@@ -40,7 +40,7 @@ os.environ["METAGRAPH_MESH_CACHE"] = str(ROOT / ".pytest_cache" / "meshes")
 
 # A process reads and hears each sound once: the samples' conversations were heard a hundred times. Before
 # others take these names from their modules.
-sound.hear = heard_once(sound.hear)
+sound.analyse_sound = heard_once(sound.analyse_sound)
 sound.read_recording = read_once(sound.read_recording)
 pitch.pitch = heard_once(pitch.pitch)
 
@@ -229,9 +229,9 @@ def memory() -> float:
 @pytest.fixture(scope="session")
 def qapp() -> object:
     """The application as the program makes it, so that windows can be opened later in this process, too."""
-    from app.main import prepare
+    from app.main import prepare_application
 
-    return prepare()
+    return prepare_application()
 
 
 @pytest.fixture(scope="module")
@@ -362,9 +362,11 @@ class Toy:
             ("fidget", ("rest scratch", "rest cough", "up yawn")),
         ):
             for name in names:
-                project = edits.place(project, [clip[name]], layer, kind, stance[name.split()[0]])  # type: ignore[arg-type]
+                project = edits.place_clips(project, [clip[name]], layer, kind, stance[name.split()[0]])  # type: ignore[arg-type]
         for a, b in ways:
-            project = edits.place(project, [clip[f"{a} to {b}"]], layer, "transition", stance[a], stance[b])
+            project = edits.place_clips(
+                project, [clip[f"{a} to {b}"]], layer, "transition", stance[a], stance[b]
+            )
         return edits.set_base(project, clip["rest loop"])
 
     @staticmethod

@@ -63,31 +63,33 @@ def provide(name: str) -> Path:
 
 def compile_all() -> None:
     """Call everything that is compiled."""
-    from app.features.motion_graph.synthesis_jobs import Wish, synthesise, takes_of, usable
+    from app.features.motion_graph.synthesis_jobs import Wish, list_usable_clips, synthesise, takes_of
     from metagraph.formats.store import open_project
-    from metagraph.synthesis.constraints import heard
+    from metagraph.synthesis.constraints import find_heard_at
     from metagraph.synthesis.extending.path import PathExtender, driver_graph
-    from metagraph.synthesis.graph import build
-    from metagraph.synthesis.states import states_of
+    from metagraph.synthesis.graph import build_graph
+    from metagraph.synthesis.states import read_states
 
     project = open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project
-    takes = takes_of(project, [i for i in usable(project) if project.clips[i].name.endswith("__stance")])
-    graph = build(states_of(takes.clips))
+    takes = takes_of(
+        project, [i for i in list_usable_clips(project) if project.clips[i].name.endswith("__stance")]
+    )
+    graph = build_graph(read_states(takes.clips))
     synthesise(graph, takes, Wish(4.0, ()), "new")
-    PathExtender(driver_graph(graph, heard(graph.states, [() for _ in takes.clips]))).step()
+    PathExtender(driver_graph(graph, find_heard_at(graph.states, [() for _ in takes.clips]))).step()
     compile_searches()
 
 
 def compile_searches() -> None:
     """Search with all that motion may be asked to have."""
-    from metagraph.synthesis.graph import build
+    from metagraph.synthesis.graph import build_graph
     from tests.synthesis.test_blocks import LIMIT, made
     from tests.synthesis.test_iconic_words import (
         test_motion_comes_from_around_the_word_in_the_take,
         test_words_that_must_be_met_are_and_are_given_up_last_but_one,
     )
 
-    build(made(200), LIMIT, most=7)
+    build_graph(made(200), LIMIT, most=7)
     test_motion_comes_from_around_the_word_in_the_take()
     test_words_that_must_be_met_are_and_are_given_up_last_but_one()
 

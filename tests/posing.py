@@ -17,7 +17,7 @@ from metagraph.motion.skeleton import Pose
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.life.body import Body
 from metagraph.playback.life.evaluate import LifeStage, Playing
-from metagraph.playback.life.gaze import Gaze
+from metagraph.playback.life.gaze import BodyGaze
 from metagraph.playback.life.schedule import Schedule
 from metagraph.playback.life.track import Track
 from metagraph.playback.manual_playback import ManualEvaluator, ManualPlan
@@ -76,8 +76,8 @@ def face_weights(
     return LifeStage(project, schedule, track, body_of(project)).morphs(seconds, pose, playing)
 
 
-def gaze_of(schedule: Schedule, life: Life, body: Body, points: Mapping[str, Point]) -> Gaze:
-    return Gaze(schedule, life, body, points)
+def gaze_of(schedule: Schedule, life: Life, body: Body, points: Mapping[str, Point]) -> BodyGaze:
+    return BodyGaze(schedule, life, body, points)
 
 
 def rig(project: Project) -> ComposerRig:

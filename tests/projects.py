@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
-from metagraph.common.network_paths import reason
+from metagraph.common.network_paths import explain_refusal
 from metagraph.formats.store import open_project, save_project
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
@@ -112,7 +112,7 @@ def clip(name: str, frames: int = 31) -> Clip:
 
 
 # Those that may be opened: COM0.glb is a device.
-_clip_paths = names.map(lambda name: f"clips/{name}.glb").filter(lambda path: reason(path) is None)
+_clip_paths = names.map(lambda name: f"clips/{name}.glb").filter(lambda path: explain_refusal(path) is None)
 
 
 def _import(draw: Any, project: Project) -> Project:
@@ -147,7 +147,7 @@ def _place(draw: Any, project: Project) -> Project:
         return project
     chosen = draw(st.lists(st.sampled_from([*project.clips]), min_size=1, max_size=3))
     try:
-        return edits.place(
+        return edits.place_clips(
             project,
             chosen,
             layer,
@@ -284,7 +284,7 @@ def _rest(draw: Any, project: Project) -> Project:
 
 def _manual(draw: Any, project: Project) -> Project:
     layer = draw(st.sampled_from(LAYERS))
-    found = manual_edits.machine(project, layer)
+    found = manual_edits.get_machine(project, layer)
     states, links = [*found.states], [*found.links]
     if not states or (project.clips and draw(st.integers(0, 3)) == 0):
         chosen = (
@@ -301,7 +301,7 @@ def _manual(draw: Any, project: Project) -> Project:
             return manual_groups.add_alias(project, layer, some, draw(st.booleans()))
         changes = {"again": draw(st.booleans()), "entry": draw(st.none() | st.sampled_from(states))}
         after = manual_groups.update_aliases(project, aliases[-1:], name=draw(names), **changes)
-        return manual_groups.choose(after, aliases[-1], some, draw(st.booleans()))
+        return manual_groups.set_alias_states(after, aliases[-1], some, draw(st.booleans()))
     if step < 3 or not links:
         entered = [a.id for a in project.manual[layer].aliases.values() if a.entry is not None]
         return manual_edits.add_link(
@@ -340,12 +340,12 @@ def _manual(draw: Any, project: Project) -> Project:
             project, [draw(st.sampled_from(links))], condition=condition, **fields
         )
     if step == 5:
-        return manual_edits.paste(
-            project, layer, manual_edits.copied(project, some), draw(times), draw(times)
+        return manual_edits.paste_states(
+            project, layer, manual_edits.copy_states(project, some), draw(times), draw(times)
         )[0]
     if step == 6:
-        return manual_edits.remove(project, [*some[:1], *aliases[:1]], [draw(st.sampled_from(links))])
-    return manual_edits.set_start(
+        return manual_edits.remove_states(project, [*some[:1], *aliases[:1]], [draw(st.sampled_from(links))])
+    return manual_edits.set_start_state(
         manual_edits.move_nodes(project, layer, {some[0]: (draw(times), 0.5), ANY: (-3.0, 4.0)}), some[-1]
     )
 

@@ -10,12 +10,12 @@ import numpy as np
 
 from metagraph.motion import own_contact, rotation
 from metagraph.motion.clip import Clip
-from metagraph.motion.joint_map import ARM, LEG, SIDES, JointMap, proposed
+from metagraph.motion.joint_map import ARM, LEG, SIDES, JointMap, propose_joint_map
 from metagraph.motion.own_contact import OwnContact
 from metagraph.motion.retarget import retarget
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.motion.standing import Figure
+from metagraph.motion.standing import StandingFigure
 
 Array = Any
 
@@ -24,17 +24,19 @@ LOOSE = 0.001  # of a limb's length: bones that shift more do not hold together
 SHORT = 0.005  # of half the shoulders: a hand of the middle figure so far from its place fell short of it
 
 
-def figures(clip: Clip, target: Skeleton, joint_map: JointMap, pose: Pose, other: Pose) -> list[Figure]:
+def figures(
+    clip: Clip, target: Skeleton, joint_map: JointMap, pose: Pose, other: Pose
+) -> list[StandingFigure]:
     """The clip's figure and the target's, as they stand."""
     roles = {p.role: p for p in joint_map.pairs if p.role}
     ours = {r: clip.skeleton.index(p.source) for r, p in roles.items()}
     theirs = {r: target.index(p.target) for r, p in roles.items()}
-    return [Figure(clip.skeleton, ours, pose), Figure(target, theirs, other)]
+    return [StandingFigure(clip.skeleton, ours, pose), StandingFigure(target, theirs, other)]
 
 
-def motion(figure: Figure, clip: Clip) -> tuple[Array, Array]:
+def motion(figure: StandingFigure, clip: Clip) -> tuple[Array, Array]:
     turns, places = clip.skeleton.globals(clip.poses())
-    return rotation.multiply(figure.turn, turns), rotation.rotate(figure.turn, places)
+    return rotation.multiply(figure.turn, turns), rotation.rotate_vectors(figure.turn, places)
 
 
 def round_trip(
@@ -46,7 +48,7 @@ def round_trip(
     What cannot: a leg or arm stretched out on the middle figure, whose hips then come down or whose hand
     falls short of its place; limbs of the clip whose joints shift in their sockets, which stiff bones do not.
     """
-    joint_map = replace(proposed(clip.skeleton, middle), contacts=contacts)
+    joint_map = replace(propose_joint_map(clip.skeleton, middle), contacts=contacts)
     out = retarget(clip, middle, joint_map, source_pose=pose, target_pose=other)
     back = retarget(out, clip.skeleton, joint_map.reversed, source_pose=other, target_pose=pose)
     turned = rotation.angle_between(
@@ -74,7 +76,7 @@ def round_trip(
     return degrees, {role: known.get(role, legs | True) for role in degrees}
 
 
-def _holds(figure: Figure, turns: Array, places: Array, side: str, parts: tuple[str, ...]) -> Array:
+def _holds(figure: StandingFigure, turns: Array, places: Array, side: str, parts: tuple[str, ...]) -> Array:
     """Whether a limb's joints are where the standing pose has them, in their own bones."""
     names = [f"{side}_{part}" for part in parts]
     base = "hips" if parts == LEG else names[0]
@@ -87,24 +89,24 @@ def _holds(figure: Figure, turns: Array, places: Array, side: str, parts: tuple[
         turn = rotation.conjugate(
             rotation.multiply(turns[:, joint], rotation.conjugate(figure.rotations[joint]))
         )
-        now = rotation.rotate(turn, places[:, figure.roles[b]] - places[:, figure.roles[a]])
+        now = rotation.rotate_vectors(turn, places[:, figure.roles[b]] - places[:, figure.roles[a]])
         fine &= np.linalg.norm(now - (figure.at(b) - figure.at(a)), axis=-1) < LOOSE * length
     return fine
 
 
-def _reaches(figure: Figure, places: Array, side: str, parts: tuple[str, ...]) -> Array:
+def _reaches(figure: StandingFigure, places: Array, side: str, parts: tuple[str, ...]) -> Array:
     first, *_, last = (f"{side}_{part}" for part in parts)
     far = np.linalg.norm(places[:, figure.roles[last]] - places[:, figure.roles[first]], axis=-1)
     return far < LIMIT * figure.length(*[f"{side}_{part}" for part in parts])
 
 
-def _aside(figure: Figure, moved: tuple[Array, Array], side: str) -> Array:
+def _aside(figure: StandingFigure, moved: tuple[Array, Array], side: str) -> Array:
     """How far a hand is to its own side of the middle, level, in half the shoulders."""
     turns, places = moved
     chest = next(r for r in ("upper_chest", "chest", "spine", "hips") if r in figure.roles)
     joint, sign = figure.roles[chest], 1 if side == "left" else -1
     turn = rotation.multiply(turns[:, joint], rotation.conjugate(figure.rotations[joint]))
-    level = rotation.rotate(turn, np.array([1.0, 0, 0])) * [1, 0, 1]
+    level = rotation.rotate_vectors(turn, np.array([1.0, 0, 0])) * [1, 0, 1]
     level = level / np.maximum(np.linalg.norm(level, axis=-1, keepdims=True), 0.3)
     away = places[:, figure.roles[f"{side}_hand"]] - places[:, figure.roles[f"{side}_upper_arm"]]
     return sign * np.einsum("fi,fi->f", away, level) / figure.half_shoulders + 1
@@ -117,7 +119,7 @@ def contact_errors(
     the place that it should touch; the same `[M]` of hands that touch each other; and the greatest
     acceleration of a wrist, heights / s2.
     """
-    joint_map = replace(proposed(clip.skeleton, target), contacts=contacts)
+    joint_map = replace(propose_joint_map(clip.skeleton, target), contacts=contacts)
     source, figure = figures(clip, target, joint_map, pose, other)
     contact = OwnContact(source, figure, *motion(source, clip))
     out = retarget(clip, target, joint_map, source_pose=pose, target_pose=other)

@@ -8,7 +8,7 @@ import sys
 from functools import cache
 from pathlib import Path
 
-from metagraph.formats.project.journal_records import framed, whole_record
+from metagraph.formats.project.journal_records import frame_record, parse_record
 
 
 @cache
@@ -23,8 +23,8 @@ def kill_sittings(folder: Path) -> None:
     """Let every journal and lock in a folder be of a process that was killed."""
     for path in [*folder.glob(".*.journal"), *folder.glob(".*.lock")]:
         first, _, rest = path.read_bytes().partition(b"\n")
-        record = whole_record(first)
+        record = parse_record(first)
         head = record.data if record is not None else json.loads(first)
         head.get("owner", head)["pid"] = ended()
-        line = framed(head, 0)[:-2] if record is not None else json.dumps(head).encode()
+        line = frame_record(head, 0)[:-2] if record is not None else json.dumps(head).encode()
         path.write_bytes(line + b"\n" + rest)

@@ -20,10 +20,10 @@ import pytest
 from app.cli.parser import main
 from metagraph.engines import vectors
 from metagraph.formats.language_files import read_pack
-from metagraph.formats.store import from_text
+from metagraph.formats.store import parse_project
 from metagraph.research.study.perceive.perceive_plan import PerceivePlan
-from metagraph.research.study.perceive.perceive_plan import from_text as perceive_from_text
-from metagraph.research.study.study_plan import from_text as study_from_text
+from metagraph.research.study.perceive.perceive_plan import parse_perceive_plan as perceive_from_text
+from metagraph.research.study.study_plan import parse_study_plan as study_from_text
 from tests.thorough import many
 
 # Papers are drawn by Qt; whoever opens windows later in this process needs its application.
@@ -111,8 +111,8 @@ RUN: set[str] = set()  # commands that have run, without the slashes that folder
 def test_commands_in_the_pages_run(
     page: Path, n: int, samples: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    every = vectors.every_case
-    monkeypatch.setattr(vectors, "every_case", lambda project: [*every(project)][:: many(40, 1)])
+    every = vectors.list_cases
+    monkeypatch.setattr(vectors, "list_cases", lambda project: [*every(project)][:: many(40, 1)])
     lines = blocks(page)[n][1].splitlines()
     for path in (samples / "clips").iterdir():
         if path.name.startswith(THREE):
@@ -150,7 +150,7 @@ def test_project_and_study_files_in_the_pages_can_be_read(page: Path, n: int, tm
     if text.startswith("perceive:"):
         assert perceive_from_text(text).pairs
         return
-    project = from_text(text, Path("page.metagraph.yaml"))
+    project = parse_project(text, Path("page.metagraph.yaml"))
     assert project.clips and project.skeleton is not None
     assert any(a.kind == "gesture" for a in project.actions()) or any(
         m.links for m in project.manual.values()
@@ -211,10 +211,10 @@ def test_every_field_of_the_schema_is_described() -> None:
 
 def test_every_field_of_a_study_file_and_every_event_of_its_log_is_described() -> None:
     from metagraph.research.study.logs.log import TYPES
-    from metagraph.research.study.study_plan import schema_text
+    from metagraph.research.study.study_plan import study_schema_text
 
     text = (ROOT / "docs" / "researchers" / "timing-studies.md").read_text(encoding="utf-8")
-    schema = json.loads(schema_text())
+    schema = json.loads(study_schema_text())
     fields = {name for part in schema["$defs"].values() for name in part["properties"]}
     assert not {f for f in fields | set(TYPES) if f"`{f}`" not in text}
 

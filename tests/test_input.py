@@ -43,7 +43,7 @@ def test_half_a_character_in_a_journal_is_opened_saved_and_exported(toy: Any, tm
     for n, one in enumerate((left.project, odd)):
         save_project(one, tmp_path / f"{n}.metagraph.yaml")
         assert read_project(tmp_path / f"{n}.metagraph.yaml").name == "a\ufffdb"
-    made = registry.write(odd, "metagraph", tmp_path / "out")
+    made = registry.write_for_target(odd, "metagraph", tmp_path / "out")
     assert "a\ufffdb" in made.files[0].read_text(encoding="utf-8")
 
 

@@ -254,9 +254,9 @@ def _axes(animal: Animal, joint: str) -> Array:
     children = [c for c in joints_of(animal) if _parent(animal, c) == joint]
     if not animal.bones or not children:
         above = _parent(animal, joint)
-        return _axes(animal, above) if animal.bones and above is not None else rotation.identity()
+        return _axes(animal, above) if animal.bones and above is not None else rotation.identity_rotations()
     along = _place(animal, children[0]) - _place(animal, joint)
-    return rotation.between(np.array([0.0, 1, 0]), along / np.linalg.norm(along))
+    return rotation.rotation_between(np.array([0.0, 1, 0]), along / np.linalg.norm(along))
 
 
 def _local(above: Array | None, own: Array) -> Array:
@@ -278,12 +278,12 @@ def clip_of(name: str, take: str = "calisthenics") -> Clip:
         moving[joint] = rotation.multiply(_moves(joint, t, TAKES[take]), axes)
         if animal.kind == ".bvh":  # where joints have no turn at rest: all is told from there
             moving[joint] = rotation.multiply(moving[joint], rotation.conjugate(resting[joint]))
-            resting[joint] = rotation.identity()
+            resting[joint] = rotation.identity_rotations()
     rows: list[tuple[str, int, Array, Array, Array]] = []
     turned = (
         rotation.from_axis_angle(np.array([1.0, 0, 0]), np.pi / 2)
         if animal.up == "Z"
-        else rotation.identity()
+        else rotation.identity_rotations()
     )
     if animal.above is not None:
         rows.append((animal.above, -1, turned, np.zeros(3), np.tile(turned, (len(t), 1))))
@@ -297,25 +297,26 @@ def clip_of(name: str, take: str = "calisthenics") -> Clip:
         called = animal.called(joint)
         assert called is not None
         if above is None:
-            first = rotation.identity() if animal.above is not None else turned
-            offset = rotation.rotate(first, _place(animal, joint))
+            first = rotation.identity_rotations() if animal.above is not None else turned
+            offset = rotation.rotate_vectors(first, _place(animal, joint))
             own, path = rotation.multiply(first, resting[joint]), rotation.multiply(first, moving[joint])
         else:
             # BVH's offsets are those of the rest pose; elsewhere they lie in the parent's axes.
             apart = _place(animal, joint) - _place(animal, above)
-            hanging = rotation.rotate(_drop(above, animal.arms), apart)
+            hanging = rotation.rotate_vectors(_drop(above, animal.arms), apart)
             offset = (
                 hanging
                 if animal.kind == ".bvh"
-                else rotation.rotate(rotation.conjugate(resting[above]), hanging)
+                else rotation.rotate_vectors(rotation.conjugate(resting[above]), hanging)
             )
             own, path = _local(resting[above], resting[joint]), _local(moving[above], moving[joint])
         rows.append((called, parent if above is not None else len(rows) - 1, own, offset / animal.unit, path))
     names, parents, rest, offsets, paths = zip(*rows, strict=True)
     if animal.kind == ".bvh":  # the offsets turn, not the rest pose
-        rest = tuple(rotation.identity() for _ in rest)
+        rest = tuple(rotation.identity_rotations() for _ in rest)
         offsets = tuple(
-            rotation.rotate(turned, o) if n > (animal.above is not None) else o for n, o in enumerate(offsets)
+            rotation.rotate_vectors(turned, o) if n > (animal.above is not None) else o
+            for n, o in enumerate(offsets)
         )
         back = rotation.conjugate(turned)
         paths = tuple(
@@ -342,7 +343,7 @@ def places(name: str, joint: str, take: str = "calisthenics") -> Array:
         line.insert(0, above)
     at = np.tile(_place(animal, line[0]), (len(t), 1))
     for above, below in pairwise(line):
-        at = at + rotation.rotate(
+        at = at + rotation.rotate_vectors(
             _moves(above, t, TAKES[take]), _place(animal, below) - _place(animal, above)
         )
     return at

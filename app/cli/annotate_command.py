@@ -12,7 +12,13 @@ from typing import Any
 
 from app.cli.kept_options import kept_name
 from app.cli.outputs import ProjectOutput
-from app.project.annotation_reading import Reading, begin, into, replayed, told
+from app.project.annotation_reading import (
+    AnnotationReading,
+    begin_reading,
+    count_replayed,
+    describe_doubts,
+    work_into_project,
+)
 from app.project.opening import open_whole
 from metagraph.errors import FileError
 from metagraph.formats.elan import read_elan
@@ -26,11 +32,11 @@ from metagraph.playback.learning.annotation import (
     is_meaning,
     label_of,
 )
-from metagraph.playback.learning.compare import compare
-from metagraph.playback.learning.learn import Act, learn, state_words, states_of
+from metagraph.playback.learning.compare import compare_model
+from metagraph.playback.learning.learn import Act, describe_state, learn_model, model_states
 
 
-def arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument("annotation", type=Path, help="an .eaf file")
     parser.add_argument(
@@ -83,14 +89,14 @@ def _annotated(options: Namespace, output: ProjectOutput | None) -> int:
     reading = _reading(read_elan(options.annotation), options, project.tiers, project.labels)
     if options.smoothing < 0:
         raise ValueError("--smoothing is 0 or more")
-    doubts = told(reading)
+    doubts = describe_doubts(reading)
     if not any(reading.observed.values()) and (options.learn or options.perform is not None):
         tiers = ", ".join(repr(t.name) for t in reading.annotation.tiers[:12]) or "none"
         raise FileError(
             options.annotation, f"nothing in it is read as an action; its tiers are {tiers}", "in its tiers",
             f"Say what they stand for: --tier \"NAME=left arm\" (or {', '.join(list(ROLES)[1:])}).",
         )  # fmt: skip
-    made = into(
+    made = work_into_project(
         project, reading, LAYERS if options.learn else (), options.states, options.perform, options.smoothing
     )
     saved = output is not None and (bool(made.learned) or made.performance is not None)
@@ -109,7 +115,7 @@ def _annotated(options: Namespace, output: ProjectOutput | None) -> int:
         "layers": models,
         "learned": list(made.learned),
         "performance": made.performance,
-        "replayed": replayed(made.project, made.performance) if made.performance is not None else {},
+        "replayed": count_replayed(made.project, made.performance) if made.performance is not None else {},
         "saved": saved,
         "notes": notes,
     }
@@ -121,19 +127,19 @@ def _annotated(options: Namespace, output: ProjectOutput | None) -> int:
 
 def _reading(
     annotation: Annotation, options: Namespace, tiers: Mapping[str, str], labels: Mapping[str, str]
-) -> Reading:
+) -> AnnotationReading:
     names = [tier.name for tier in annotation.tiers]
     roles = _said(options.tier, "--tier", "LH=left arm", names)
     for role in roles.values():
         if role not in (*ROLES, *SPEECH, IGNORE):
             raise ValueError(f"a tier is read as one of {', '.join((*ROLES, *SPEECH, IGNORE))}, not '{role}'")
-    found = begin(annotation, roles, tiers, labels=(labels,))
+    found = begin_reading(annotation, roles, tiers, labels=(labels,))
     here = [x for label in found.labels for x in (label.text, label.key)]
     said = _said(options.label, "--label", "nod=gesture positive", here, label_of)
     for meaning in said.values():
         if not is_meaning(meaning):
             raise ValueError(f"a label means {', '.join(MEANINGS)}, with tags behind it, not '{meaning}'")
-    return Reading(annotation, found.roles, said, found.memory)
+    return AnnotationReading(annotation, found.roles, said, found.memory)
 
 
 def _said(
@@ -156,13 +162,13 @@ def _said(
 
 def _layer(layer: Layer, acts: tuple[Act, ...], options: Namespace) -> dict[str, Any]:
     """Return a layer's model and how often it makes what was seen."""
-    model = learn(layer, [acts], options.states, options.smoothing)
-    found = compare(model, [acts])
+    model = learn_model(layer, [acts], options.states, options.smoothing)
+    found = compare_model(model, [acts])
     assert found.observed is not None
     return {
         "actions": len(acts),
         "per_minute": round(found.observed.rate, 2),
-        "states": [state_words(state, layer) for state in states_of(model)],
+        "states": [describe_state(state, layer) for state in model_states(model)],
         "matrix": [[round(p, 4) for p in row] for row in model.matrix],
         "lengths": [list(pair) for pair in model.lengths],
         "gap": model.gap,
@@ -174,7 +180,7 @@ def _layer(layer: Layer, acts: tuple[Act, ...], options: Namespace) -> dict[str,
     }
 
 
-def _lines(data: Mapping[str, Any], reading: Reading, path: Path) -> Iterable[str]:
+def _lines(data: Mapping[str, Any], reading: AnnotationReading, path: Path) -> Iterable[str]:
     yield f"{data['annotation']}: {data['seconds']:g} s, {len(data['tiers'])} tiers"
     for tier in reading.annotation.tiers:
         yield f"  {tier.name:24} {len(tier.intervals):5}  {reading.roles[tier.name]}"

@@ -6,13 +6,13 @@ import json
 from argparse import ArgumentParser, Namespace
 from collections import Counter
 
-from app.cli.command_output import opened
+from app.cli.command_output import open_for_command
 from app.cli.journal_note import warn_of_journals
-from metagraph.graph.check import check as find_problems
+from metagraph.graph.check import check_project as find_problems
 from metagraph.graph.check import grave
 
 
-def arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument(
         "--strict", action="store_true", help="warnings count as problems for the exit code, too"
@@ -20,7 +20,7 @@ def arguments(parser: ArgumentParser) -> None:
 
 
 def run(options: Namespace) -> int:
-    problems = find_problems(opened(options.project))
+    problems = find_problems(open_for_command(options.project))
     warn_of_journals(options.project)
     counts = Counter(p.severity for p in problems)
     if options.json:

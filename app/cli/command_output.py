@@ -12,19 +12,19 @@ from pathlib import Path
 from typing import Any
 
 from app.project.opening import open_whole
-from metagraph.formats.outputs import reads
+from metagraph.formats.outputs import declare_inputs
 from metagraph.formats.store import files_of
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Performance
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.planning.running_plan import asks_of, perform
+from metagraph.playback.planning.running_plan import list_kept_asks, plan_performance
 
 LONGEST = 36000  # seconds of one performance, ten hours
 
 
 @contextlib.contextmanager
-def until_told_to_stop() -> Iterator[None]:
+def run_until_stopped() -> Iterator[None]:
     """Leave what runs inside by Ctrl+C or SIGTERM, also where the program was started with interrupts
     ignored, as `nohup` and background jobs of scripts do: Python itself does not listen to them there. Call
     it in the main thread.
@@ -42,16 +42,16 @@ def until_told_to_stop() -> Iterator[None]:
             signal.signal(number, handler)
 
 
-def opened(path: Path) -> Project:
+def open_for_command(path: Path) -> Project:
     """Read a project with what it names, which the command must not write over; say what is odd about it."""
     found = open_whole(path)
-    reads(*files_of(found.project, path.resolve().parent))
+    declare_inputs(*files_of(found.project, path.resolve().parent))
     for note in found.notes:
         print(f"note: {note}", file=sys.stderr)
     return found.project
 
 
-def staged(project: Project, options: Namespace) -> Plan:
+def stage_performance(project: Project, options: Namespace) -> Plan:
     """Return the performance that is asked for, or an improvised one; its length goes into the options."""
     kept = _kept(project, options.performance) if options.performance is not None else None
     if options.seconds is None:
@@ -65,7 +65,7 @@ def staged(project: Project, options: Namespace) -> Plan:
     if kept is None:
         return make_plan(project, length, seed=options.seed)
     seed = kept.seed if options.seed is None else options.seed
-    return perform(project, asks_of(kept), length, seed, dict(kept.stances), kept.idle)
+    return plan_performance(project, list_kept_asks(kept), length, seed, dict(kept.stances), kept.idle)
 
 
 def _kept(project: Project, name: str) -> Performance:
@@ -92,7 +92,7 @@ def may_delete(options: Namespace, folder: Path) -> bool:
     return input(asked).lower() == "y"
 
 
-def performance_arguments(parser: ArgumentParser, seconds: float) -> None:
+def add_performance_arguments(parser: ArgumentParser, seconds: float) -> None:
     """Add the options that say which performance, and how much of it. seconds: the usual length."""
     parser.add_argument(
         "-s", "--seconds", type=float, help=f"length of the performance (default: its own, else {seconds:g})"

@@ -7,15 +7,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.command_output import opened, say
-from app.cli.outputs import ProjectOutput, project_name
+from app.cli.command_output import open_for_command, say
+from app.cli.outputs import ProjectOutput, with_project_ending
 from metagraph.formats.outputs import claim, wrote
 
 if TYPE_CHECKING:
     from metagraph.graph.model import Layer, Project
 
 
-def arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument("-o", "--out", type=Path, help="the project to write (default: the same)")
     parser.add_argument("--list", action="store_true", help="write nothing: list what would be found")
@@ -33,7 +33,7 @@ def run(options: Namespace) -> int:
     """Find contacts, measure the body, and write the project."""
     if options.list:
         return _found(options, None)
-    out = options.project if options.out is None else project_name(options.out)
+    out = options.project if options.out is None else with_project_ending(options.out)
     if not (out.exists() and out.samefile(options.project)):
         claim(out)
         with ProjectOutput(out) as output:
@@ -50,9 +50,9 @@ def _found(options: Namespace, output: ProjectOutput | None) -> int:
 
     from metagraph.formats.gltf.reader import read_character
     from metagraph.graph import edits
-    from metagraph.suggest.find_contacts import measured, with_contacts
+    from metagraph.suggest.find_contacts import with_contacts, with_measured_body
 
-    project = opened(options.project)
+    project = open_for_command(options.project)
     chosen = [a for a in project.actions() if not options.action or {a.id, a.name} & set(options.action)]
     if options.action and not chosen:
         raise ValueError(f"there is no action called {' or '.join(map(repr, options.action))}")
@@ -61,7 +61,9 @@ def _found(options: Namespace, output: ProjectOutput | None) -> int:
         project = edits.update_actions(project, idents, contacts=())
     else:
         mesh = options.project.parent / project.character if project.character is not None else None
-        project = measured(project, read_character(mesh) if mesh is not None and mesh.exists() else None)
+        project = with_measured_body(
+            project, read_character(mesh) if mesh is not None and mesh.exists() else None
+        )
         project = with_contacts(project, [a.id for a in chosen if _moves_arms(project, a.layer)])
     changes = {n: getattr(options, n) == "on" for n in ("contacts", "guard") if getattr(options, n)}
     project = replace(project, touch=msgspec.structs.replace(project.touch, **changes))

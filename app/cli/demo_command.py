@@ -6,53 +6,53 @@ import json
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from app.cli.command_output import opened, performance_arguments, staged
-from app.cli.render_command import Shot, draw_to, figure_of, sound_of
-from app.stage.playback_source import Shown
+from app.cli.command_output import add_performance_arguments, open_for_command, stage_performance
+from app.cli.render_command import Shot, draw_to, load_figure, mix_sound
+from app.stage.playback_source import ShownPlayback
 from metagraph.formats.store import SUFFIX
-from metagraph.graph.expand import size
+from metagraph.graph.expand import count_machine_size
 from metagraph.graph.model import LAYERS
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / f"sample{SUFFIX}"
 
 
-def arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument("-o", "--out", type=Path, default=Path("out"), help="a folder (default: out)")
-    performance_arguments(parser, 60.0)
+    add_performance_arguments(parser, 60.0)
 
 
 def run(options: Namespace) -> int:
     """The main job without a window: graph, performance, contact sheet, video, export; say where the results
     are.
     """
-    from metagraph.engines.export import export as write_export
+    from metagraph.engines.export import export_project as write_export
     from metagraph.engines.export import stem_of
     from metagraph.formats.outputs import claim, wrote
 
     source: Path = getattr(options, "project", None) or SAMPLE
-    project = opened(source)
+    project = open_for_command(source)
     folder = source.resolve().parent
-    made = staged(project, options)
+    made = stage_performance(project, options)
     out: Path = options.out
     sheet, video = out / f"{project.name}.png", out / f"{project.name}.mp4"
     own = out / f"{stem_of(project)}.json", out / f"{stem_of(project)}.glb"
     claim(sheet, video, *own)
     out.mkdir(parents=True, exist_ok=True)
-    whole = size(project)
+    whole = count_machine_size(project)
     cues = sum(len(made.layers[layer].cues) for layer in LAYERS)
     quiet = options.json
     if not quiet:
         print(f"{project.name}: {whole.clips} clips placed")
         print(f"the machine nobody had to draw: {whole.states} states, {whole.connections:,} connections")
         print(f"planned {made.end:g} s: {cues} actions on {len(LAYERS)} layers")
-    shown = Shown(project, made, made.end)
-    seen = [(figure_of(project, folder), shown)]
+    shown = ShownPlayback(project, made, made.end)
+    seen = [(load_figure(project, folder), shown)]
     draw_to(sheet, seen, Shot(made.end, (960, 540), 30, 24, "dark"))
     if not quiet:
         print(f"contact sheet  {sheet.resolve()}", flush=True)
     shot = Shot(made.end, (640, 360), 30, 0, "dark")
-    draw_to(video, seen, shot, sound_of(shown, folder, made.end))
+    draw_to(video, seen, shot, mix_sound(shown, folder, made.end))
     if not quiet:
         print(f"video          {video.resolve()}", flush=True)
     exported = write_export(project, out, character=folder / project.character if project.character else None)

@@ -8,7 +8,7 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import Any
 
-from app.cli.command_output import opened, say, until_told_to_stop
+from app.cli.command_output import open_for_command, run_until_stopped, say
 from metagraph.common.files import is_inside
 from metagraph.engines.export_error import ExportError
 from metagraph.errors import FileError
@@ -17,7 +17,7 @@ LOOK = 0.3  # seconds between two looks at the project file
 SHOWN = 8  # files named on the screen
 
 
-def arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument("project", type=Path, nargs="?", help="the project file")
     parser.add_argument("-o", "--out", type=Path, help="a folder")
@@ -93,7 +93,7 @@ def run(options: Namespace) -> int:
     if not (options.watch or options.serve):
         _once(options)
         return 0
-    with until_told_to_stop():
+    with run_until_stopped():
         _go_on(options)
     print("stopped", file=sys.stderr)
     return 0
@@ -142,7 +142,7 @@ def _once(options: Namespace) -> None:
     from metagraph.engines.targets.target import Contents
     from metagraph.graph.manual.meta import exportable
 
-    project, differences = exportable(opened(options.project))
+    project, differences = exportable(open_for_command(options.project))
     character = (
         options.project.resolve().parent / project.character
         if project.character and not options.no_mesh
@@ -161,7 +161,9 @@ def _once(options: Namespace) -> None:
         lambda p: any(is_inside(p, x) for x in options.sounds),
         options.compress,
     )
-    made = registry.write(project, options.target, options.out, contents, overwrite=options.overwrite)
+    made = registry.write_for_target(
+        project, options.target, options.out, contents, overwrite=options.overwrite
+    )
     files = list(made.files)
     if options.tools:
         from metagraph.engines.tools_file import write_tools

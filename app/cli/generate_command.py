@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 
-def arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Add the actions of `generate`, each with its options."""
     actions = parser.add_subparsers(dest="action", metavar="action", required=True)
 
@@ -19,21 +19,21 @@ def arguments(parser: ArgumentParser) -> None:
 
     from app.cli import generate_judging, generate_motion, generate_training
 
-    generate_training.arguments(action("train", "learn a model from takes", generate_training.train))
-    new = action("sample", "make motion to speech", generate_motion.sample)
-    generate_motion.model_argument(new)
-    generate_motion.speech_arguments(new, needed=True)
+    generate_training.add_arguments(action("train", "learn a model from takes", generate_training.train))
+    new = action("sample", "make motion to speech", generate_motion.write_motion)
+    generate_motion.add_model_argument(new)
+    generate_motion.add_heard_arguments(new, needed=True)
     new.add_argument("-o", "--out", type=Path, required=True, help="a .bvh or .glb file")
-    judged = action("evaluate", "judge models on takes they have not seen", generate_judging.evaluate)
-    generate_judging.arguments(judged)
+    judged = action("evaluate", "judge models on takes they have not seen", generate_judging.judge_models)
+    generate_judging.add_arguments(judged)
     ablated = action(
-        "ablate", "train with one thing changed at a time, and compare", generate_training.ablate
+        "ablate", "train with one thing changed at a time, and compare", generate_training.run_ablation
     )
-    generate_training.ablate_arguments(ablated)
-    pieces = action("cut", "make minutes of motion and cut clips of them", generate_motion.cut)
+    generate_training.add_ablation_arguments(ablated)
+    pieces = action("cut", "make minutes of motion and cut clips of them", generate_motion.write_pieces)
     generate_motion.cut_arguments(pieces)
-    generate_motion.model_argument(action("info", "tell what a model is", generate_motion.info))
-    made = action("planted", "make takes of which the truth is known, to try models on", planted)
+    generate_motion.add_model_argument(action("info", "tell what a model is", generate_motion.print_model))
+    made = action("planted", "make takes of which the truth is known, to try models on", write_planted_takes)
     made.add_argument("-o", "--out", type=Path, required=True, help="a folder")
     made.add_argument("--count", type=int, default=25, help="conversations, two takes each (default: 25)")
     made.add_argument("-s", "--seconds", type=float, default=180.0, help="of each (default: 180)")
@@ -52,21 +52,21 @@ def run(options: Namespace) -> int:
     return int(options.run(options))
 
 
-def planted(options: Namespace) -> int:
+def write_planted_takes(options: Namespace) -> int:
     """Write planted takes."""
-    from app.cli.command_output import opened, say
+    from app.cli.command_output import open_for_command, say
     from app.cli.demo_command import SAMPLE
-    from app.cli.generate_takes import telling
+    from app.cli.generate_takes import make_progress_printer
     from metagraph.research.generation.planted import Planted, write_planted
 
     own = options.project is None
-    project = opened(SAMPLE if own else options.project)
+    project = open_for_command(SAMPLE if own else options.project)
     for name in ("seed", "moves"):
         if getattr(options, name) < 0:
             raise ValueError(f"--{name} is a whole number from 0 on")
     asked = Planted(count=options.count, seconds=options.seconds, seed=options.seed, moves=options.moves)
     licence = "MIT: synthetic speech, and motion of Metagraph's own sample clips." if own else ""
-    new = write_planted(project, options.out, asked, licence, telling(options, "conversations"))
+    new = write_planted(project, options.out, asked, licence, make_progress_printer(options, "conversations"))
     hours = 2 * asked.count * asked.seconds / 3600
     words = (
         f"{asked.count} conversations, {2 * asked.count} takes, {hours:.2f} h in {options.out} "

@@ -11,12 +11,12 @@ if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.generation.poses import PoseRig
     from metagraph.generation.stored import Model
     from metagraph.generation.takes import Take
-    from metagraph.research.generation.evaluation import Manner
+    from metagraph.research.generation.evaluation import SamplingManner
 
 
-def arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Add the options of `evaluate`. What are models and what takes is told by their endings."""
-    from app.cli.generate_takes import speech_argument
+    from app.cli.generate_takes import add_speech_argument
 
     parser.add_argument(
         "given",
@@ -26,7 +26,7 @@ def arguments(parser: ArgumentParser) -> None:
         help="models (.mgmodel), and clips or folders of them that the models have not learned from; of "
         "folders they have learned from, what was held out is taken",
     )
-    speech_argument(parser)
+    add_speech_argument(parser)
     parser.add_argument("-o", "--out", type=Path, help="write a page, JSON and CSV into this folder")
     parser.add_argument(
         "--floor",
@@ -35,10 +35,10 @@ def arguments(parser: ArgumentParser) -> None:
         help="other true motion to the same speech, clips of the same names (default: of planted takes, "
         "another performance; else half of the takes beside the other half)",
     )
-    manner_arguments(parser)
+    add_manner_arguments(parser)
 
 
-def manner_arguments(parser: ArgumentParser) -> None:
+def add_manner_arguments(parser: ArgumentParser) -> None:
     """Add the options that say how models are sampled and judged."""
     parser.add_argument("--seeds", type=int, default=5, help="takes of each model (default: 5)")
     parser.add_argument("--temperature", type=float, default=1.0, help="0 to 1.2 (default: 1)")
@@ -51,10 +51,10 @@ def manner_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--draws", type=int, default=200, help="draws of blocks for intervals (default: 200)")
 
 
-def manner_of(options: Namespace) -> Manner:
+def read_manner(options: Namespace) -> SamplingManner:
     """Return how models are sampled. Raises ValueError."""
     from metagraph.generation.chunks import GUIDANCE
-    from metagraph.research.generation.evaluation import Manner
+    from metagraph.research.generation.evaluation import SamplingManner
 
     if not 1 <= options.seeds <= 100:
         raise ValueError(f"--seeds is 1 to 100, not {options.seeds}")
@@ -63,38 +63,38 @@ def manner_of(options: Namespace) -> Manner:
     if options.lookahead is not None and options.lookahead < 0:
         raise ValueError("--lookahead is 0 frames or more")
     guidance = GUIDANCE if options.guidance is None else options.guidance
-    return Manner(options.seeds, options.temperature, options.lookahead, guidance)
+    return SamplingManner(options.seeds, options.temperature, options.lookahead, guidance)
 
 
-def evaluate(options: Namespace) -> int:
+def judge_models(options: Namespace) -> int:
     """Judge models; print the table, with `out` write it and the figures."""
     from app.cli.command_output import say
-    from app.cli.generate_report import REPORT, data_of, text_of, write_report
-    from app.cli.generate_takes import models_of, read_all, telling
+    from app.cli.generate_report import REPORT, report_as_data, report_as_text, write_generation_report
+    from app.cli.generate_takes import make_progress_printer, read_all, read_models
     from metagraph.formats.outputs import claim
     from metagraph.generation.stored import SUFFIX
-    from metagraph.research.generation.evaluation import HeldOut, for_all, judge
+    from metagraph.research.generation.evaluation import HeldOut, for_all, judge_on_takes
 
     paths = [p for p in options.given if p.suffix.lower() == SUFFIX]
     options.takes = [p for p in options.given if p.suffix.lower() != SUFFIX]
     if not paths or not options.takes:
         missing = "are no takes to judge them on" if paths else f"is no model ({SUFFIX})"
         raise ValueError(f"give models and takes: there {missing}")
-    manner = manner_of(options)
+    manner = read_manner(options)
     if options.out is not None:
         claim(*(options.out / name for name in REPORT))
-    models = models_of(paths)
+    models = read_models(paths)
     first = next(iter(models.values()))
-    alike(models)
+    require_alike(models)
     batch = read_all(options, first.rig, first.card.tracks)
     takes, left = for_all(models, batch.takes)
     if left:
         print(f"note: {len(left)} takes are left out, since a model has learned from them", file=sys.stderr)
-    held = HeldOut(takes, floor_of(options.floor, options.takes, takes, first.rig))
-    show = telling(options, "made")
-    judged = judge(first.rig, models, held, manner, draws=options.draws, progress=show)
+    held = HeldOut(takes, find_floor(options.floor, options.takes, takes, first.rig))
+    show = make_progress_printer(options, "made")
+    judged = judge_on_takes(first.rig, models, held, manner, draws=options.draws, progress=show)
     beside = {r.name for r in judged.rows} if judged.floor is None else {"other motion"}
-    notes = cautions(models, takes, beside)
+    notes = list_judging_cautions(models, takes, beside)
     said: dict[str, Any] = {
         "takes": len(takes),
         "minutes": round(sum(t.seconds for t in takes) / 60, 2),
@@ -104,15 +104,19 @@ def evaluate(options: Namespace) -> int:
         "guidance": manner.guidance,
         "models": ", ".join(f"{n} ({m.card.kind}, {m.card.steps:,} steps)" for n, m in models.items()),
     }
-    written = write_report(judged, said, notes, options.out) if options.out is not None else []
+    written = write_generation_report(judged, said, notes, options.out) if options.out is not None else []
     lines = [f"{len(takes)} takes, {said['minutes']:g} min, {manner.seeds} seeds of each model"]
-    lines += [text_of(judged.rows), *(f"note: {n}" for n in notes), *(f"written: {p}" for p in written)]
-    data = {**data_of(judged.rows, said), "notes": list(notes), "written": [str(p) for p in written]}
+    lines += [
+        report_as_text(judged.rows),
+        *(f"note: {n}" for n in notes),
+        *(f"written: {p}" for p in written),
+    ]
+    data = {**report_as_data(judged.rows, said), "notes": list(notes), "written": [str(p) for p in written]}
     say(options, "\n".join(lines), data)
     return 0
 
 
-def alike(models: dict[str, Model]) -> None:
+def require_alike(models: dict[str, Model]) -> None:
     """Raise ValueError where models cannot be judged on the same takes."""
     first, *others = models.items()
     for name, model in others:
@@ -122,23 +126,23 @@ def alike(models: dict[str, Model]) -> None:
             raise ValueError(f"'{name}' hears or moves otherwise than '{first[0]}': judge them one by one")
 
 
-def floor_of(
+def find_floor(
     folder: Path | None, given: list[Path], takes: tuple[Take, ...], rig: PoseRig
 ) -> list[Any] | None:
     """Return other true motion to the same speech, poses of each take; None where there is none. Raises
     ValueError.
     """
-    from metagraph.generation.take_files import find_takes, read_takes
+    from metagraph.generation.take_files import find_takes, read_take_batch
 
     if folder is not None:
-        batch = read_takes(find_takes([folder])[0], rig)
+        batch = read_take_batch(find_takes([folder])[0], rig)
         found = {t.source.name: t for t in batch.takes}
         missing = [t.source.name for t in takes if t.source.name not in found]
         if missing:
             why = f" ({batch.failures[0]})" if batch.failures else ""
             raise ValueError(f"{folder} holds no other motion for '{missing[0]}'{why}")
         return [part_like(found[t.source.name], t) for t in takes]
-    return planted_floor(given, takes, rig)
+    return perform_planted_floor(given, takes, rig)
 
 
 def part_like(whole: Take, take: Take) -> Any:
@@ -146,22 +150,24 @@ def part_like(whole: Take, take: Take) -> Any:
     return whole.poses[first : first + len(take.poses)]
 
 
-def planted_floor(given: list[Path], takes: tuple[Take, ...], rig: PoseRig) -> list[Any] | None:
+def perform_planted_floor(given: list[Path], takes: tuple[Take, ...], rig: PoseRig) -> list[Any] | None:
     """Return planted takes performed anew, None where they are not planted or not by the sample project."""
-    from app.cli.command_output import opened
+    from app.cli.command_output import open_for_command
     from app.cli.demo_command import SAMPLE
     from metagraph.research.generation.planted import again, read_planted
 
     cards = [card for folder in given if folder.is_dir() and (card := read_planted(folder)) is not None]
     if len(cards) != 1 or len(given) != 1:
         return None
-    project = opened(SAMPLE)
+    project = open_for_command(SAMPLE)
     if project.skeleton is None or project.skeleton.fingerprint != cards[0].project:
         return None
     return [part_like(again(project, cards[0], t, rig), t) for t in takes]
 
 
-def cautions(models: dict[str, Model], takes: tuple[Take, ...], beside: set[str]) -> tuple[str, ...]:
+def list_judging_cautions(
+    models: dict[str, Model], takes: tuple[Take, ...], beside: set[str]
+) -> tuple[str, ...]:
     """Return what nobody should read into the table. beside: names of its rows where the floor is no other
     motion to the same speech.
     """

@@ -13,7 +13,7 @@ from app.cli.outputs import ProjectOutput
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.generation.stored import Model, ModelCard
-    from metagraph.generation.take_files import Speech
+    from metagraph.generation.take_files import TakeSpeech
     from metagraph.motion.clip import Clip
 
 OUT = (".bvh", ".glb")
@@ -22,13 +22,13 @@ LEAST = 1.0  # seconds of sound
 MINUTES = 60.0  # at most
 
 
-def model_argument(parser: ArgumentParser) -> None:
+def add_model_argument(parser: ArgumentParser) -> None:
     parser.add_argument("model", type=Path, help="a model (.mgmodel)")
 
 
-def speech_arguments(parser: ArgumentParser, needed: bool) -> None:
+def add_heard_arguments(parser: ArgumentParser, needed: bool) -> None:
     """Add the options that say what is heard, and how motion is made of it."""
-    from app.cli.language_options import language_arguments
+    from app.cli.language_options import add_language_arguments
 
     more = "" if needed else " (default: planted speech)"
     parser.add_argument(
@@ -47,7 +47,7 @@ def speech_arguments(parser: ArgumentParser, needed: bool) -> None:
         help="what is said: TextGrid, ELAN, WebVTT, SRT, JSON or CTM (default: as the sound is called, "
         "else by loudness)",
     )
-    language_arguments(parser)
+    add_language_arguments(parser)
     parser.add_argument("--side", type=int, choices=(1, 2), default=1, help="whose motion (default: 1)")
     parser.add_argument("--seed", type=int, default=1, help="another take (default: 1)")
     parser.add_argument("--temperature", type=float, default=1.0, help="0 to 1.2 (default: 1)")
@@ -71,8 +71,8 @@ def speech_arguments(parser: ArgumentParser, needed: bool) -> None:
 
 def cut_arguments(parser: ArgumentParser) -> None:
     """Add the options of `cut`."""
-    model_argument(parser)
-    speech_arguments(parser, needed=False)
+    add_model_argument(parser)
+    add_heard_arguments(parser, needed=False)
     parser.add_argument("-o", "--out", type=Path, required=True, help="a folder for the pieces")
     parser.add_argument(
         "--minutes", type=float, default=3.0, help="how much is made to be cut, by several seeds (default: 3)"
@@ -83,7 +83,7 @@ def cut_arguments(parser: ArgumentParser) -> None:
 
 
 @dataclass(frozen=True, eq=False)
-class Heard:
+class HeardInput:
     """What a model is given. samples: `[C, N]`, own voice first; activity: `[T, 4]`."""
 
     samples: Any
@@ -91,7 +91,7 @@ class Heard:
     name: str
 
 
-def heard_of(options: Namespace, tracks: int) -> Heard:
+def read_heard(options: Namespace, tracks: int) -> HeardInput:
     """Return what is heard. Raises FileError, ValueError."""
     import numpy as np
 
@@ -110,23 +110,23 @@ def heard_of(options: Namespace, tracks: int) -> Heard:
         activity = as_role(activity, options.activity)
     if tracks == 2 and len(samples) == 1:
         samples = np.concatenate([samples, np.zeros_like(samples)])
-    return Heard(samples, activity, name)
+    return HeardInput(samples, activity, name)
 
 
-def _planted_speech(options: Namespace) -> tuple[Speech, str]:
+def _planted_speech(options: Namespace) -> tuple[TakeSpeech, str]:
     """Return speech that was made up, with its name."""
-    from metagraph.generation.take_files import Speech
-    from metagraph.research.generation.planted_speech import converse
+    from metagraph.generation.take_files import TakeSpeech
+    from metagraph.research.generation.planted_speech import make_planted_speech
 
     name = "planted speech"
-    spoken = converse(min(options.minutes, 3.0) * 60, options.seed, 1, name)
+    spoken = make_planted_speech(min(options.minutes, 3.0) * 60, options.seed, 1, name)
     samples = spoken.samples[::-1] if options.side == 2 else spoken.samples
-    return Speech(samples, (0.0, 0.0), spoken.conversation), name
+    return TakeSpeech(samples, (0.0, 0.0), spoken.conversation), name
 
 
-def _read_speech(options: Namespace, paths: list[Path]) -> tuple[Speech, str]:
+def _read_speech(options: Namespace, paths: list[Path]) -> tuple[TakeSpeech, str]:
     """Return the speech of files, with its name. Raises FileError."""
-    from app.cli.language_options import speaking_of
+    from app.cli.language_options import read_speaking
     from metagraph.errors import FileError
     from metagraph.formats.conversations.files import SOUNDS
     from metagraph.generation.take_files import TakeFiles, read_speech
@@ -141,7 +141,7 @@ def _read_speech(options: Namespace, paths: list[Path]) -> tuple[Speech, str]:
     sounds = tuple(reversed(paths)) if swapped else tuple(paths)
     side = options.side - 1 if len(sounds) == 1 or words else 0
     files = TakeFiles(paths[0], sounds, tuple(words), side)
-    return read_speech(files, speaking_of(options)), paths[0].stem
+    return read_speech(files, read_speaking(options)), paths[0].stem
 
 
 def _words_beside(sound: Path) -> list[Path]:
@@ -153,35 +153,35 @@ def _words_beside(sound: Path) -> list[Path]:
     return [p for p in beside if p.suffix.lower() in known and p.stem == sound.stem][:1]
 
 
-def _check(speech: Speech, samples: Any, place: str) -> None:
+def _check(speech: TakeSpeech, samples: Any, place: str) -> None:
     """Raise FileError where a sound cannot be used; tell where it is cut off."""
     import numpy as np
 
     from metagraph.errors import FileError
     from metagraph.generation.features import RATE
-    from metagraph.generation.loudness import loudness
+    from metagraph.generation.loudness import integrated_loudness
 
     seconds = samples.shape[1] / RATE
     if not np.isfinite(samples).all():
         raise FileError(place, "holds a sample that is not a number", remedy="Export it anew.")
     if seconds < LEAST:
         raise FileError(place, f"lasts {seconds:.2f} s", remedy=f"Give at least {LEAST:g} s of speech.")
-    if not any(np.isfinite(loudness(channel, RATE)) for channel in samples):
+    if not any(np.isfinite(integrated_loudness(channel, RATE)) for channel in samples):
         raise FileError(place, "is silent", remedy="Check the microphone, or what was exported.")
     if max(speech.clipped, default=0.0) > 1e-4:
         share = 100 * max(speech.clipped)
         print(f"note: {share:.2g} % of the sound is cut off at full scale: record it softer", file=sys.stderr)
 
 
-def _activity(options: Namespace, speech: Speech, samples: Any, frames: int) -> Any:
+def _activity(options: Namespace, speech: TakeSpeech, samples: Any, frames: int) -> Any:
     """Return who speaks when: `[T, 4]`, of the words where there are any, else of the sound."""
     from metagraph.generation.features import conversation_activity
-    from metagraph.generation.sampler import heard_activity
+    from metagraph.generation.sampler import hear_activity
 
     if speech.conversation is None:
         if len(samples) == 1:
             print("note: one voice only: it is its own, and the partner never speaks", file=sys.stderr)
-        return heard_activity(samples)
+        return hear_activity(samples)
     if not speech.conversation.sides[options.side - 1].segments:
         print(f"note: side {options.side} says nothing: it listens", file=sys.stderr)
     return conversation_activity(speech.conversation, options.side - 1, frames)
@@ -201,22 +201,22 @@ def as_role(activity: Any, role: str) -> Any:
     return out
 
 
-def made(options: Namespace, model: Model, heard: Heard, seed: int) -> Clip:
+def make_motion(options: Namespace, model: Model, heard: HeardInput, seed: int) -> Clip:
     """Return a model's motion. Raises ValueError, FileError."""
     from metagraph.errors import FileError
-    from metagraph.formats.clips import read_clips
+    from metagraph.formats.clips import read_clip_file
     from metagraph.generation.chunks import GUIDANCE
-    from metagraph.generation.sampler import first_pose, whole
+    from metagraph.generation.sampler import first_pose, sample_whole
 
     first = None
     if options.first is not None:
-        stance = read_clips(options.first)[0]
+        stance = read_clip_file(options.first)[0]
         if stance.skeleton != model.rig.skeleton:
             raise FileError(
                 options.first, "has another skeleton than the model", remedy="Retarget it to the model's."
             )
         first = first_pose(stance)
-    return whole(
+    return sample_whole(
         model,
         heard.samples,
         heard.activity,
@@ -229,7 +229,7 @@ def made(options: Namespace, model: Model, heard: Heard, seed: int) -> Clip:
     )
 
 
-def sample(options: Namespace) -> int:
+def write_motion(options: Namespace) -> int:
     """Make motion to speech and write it."""
     from app.cli.command_output import say
     from metagraph.formats.bvh.file import write_bvh
@@ -240,8 +240,8 @@ def sample(options: Namespace) -> int:
     if out.suffix.lower() not in OUT:
         raise ValueError(f"motion is written as {' or '.join(OUT)}, not as '{out.suffix or out.name}'")
     model = read_model(options.model)
-    heard = heard_of(options, model.card.tracks)
-    clip = made(options, model, heard, options.seed)
+    heard = read_heard(options, model.card.tracks)
+    clip = make_motion(options, model, heard, options.seed)
     out.parent.mkdir(parents=True, exist_ok=True)
     if out.suffix.lower() == ".bvh":
         write_bvh(clip, out)
@@ -262,7 +262,7 @@ def sample(options: Namespace) -> int:
     return 0
 
 
-def cut(options: Namespace) -> int:
+def write_pieces(options: Namespace) -> int:
     """Make motion, cut it where that is safe, and write the pieces."""
     with ProjectOutput(options.project) if options.project is not None else nullcontext() as output:
         return _cut(options, output)
@@ -283,7 +283,7 @@ def _cut(options: Namespace, output: ProjectOutput | None) -> int:
     if not 0 < options.minutes <= MINUTES:
         raise ValueError(f"--minutes is above 0 and at most {MINUTES:g}, not {options.minutes:g}")
     model = read_model(options.model)
-    heard = heard_of(options, model.card.tracks)
+    heard = read_heard(options, model.card.tracks)
     out: Path = options.out
     claim(out / "pieces.json")
     out.mkdir(parents=True, exist_ok=True)
@@ -291,7 +291,7 @@ def _cut(options: Namespace, output: ProjectOutput | None) -> int:
     entries: list[dict[str, Any]] = []
     left, seed, why = options.minutes * 60, options.seed, ""
     while left > 0:
-        clip = made(options, model, heard, seed)
+        clip = make_motion(options, model, heard, seed)
         if clip.duration > left:
             clip = clip.trimmed(0, max(2, round(left * clip.fps)))
         left -= max(clip.duration, 0.1)
@@ -323,10 +323,10 @@ def _cut(options: Namespace, output: ProjectOutput | None) -> int:
 
 def _added(output: ProjectOutput, files: list[Path]) -> int:
     """Add pieces to a project; return how many. Their names, and so their entries, tell model and seed."""
-    from app.cli.command_output import opened
+    from app.cli.command_output import open_for_command
     from metagraph.formats.imports import import_files
 
-    project = opened(output.path)
+    project = open_for_command(output.path)
     result = import_files(project, output.path.resolve().parent, files)
     for failure in result.failures:
         print(f"left out: {failure}", file=sys.stderr)
@@ -335,7 +335,7 @@ def _added(output: ProjectOutput, files: list[Path]) -> int:
     return len(result.loaded)
 
 
-def info(options: Namespace) -> int:
+def print_model(options: Namespace) -> int:
     """Tell what a model is."""
     import msgspec
 

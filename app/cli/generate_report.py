@@ -14,9 +14,9 @@ from metagraph.common.csv_text import csv_text
 from metagraph.common.xml_text import escape
 from metagraph.formats.atomic import write_together
 from metagraph.generation.features import PARTNER, SELF
-from metagraph.generation.statistics import MEASURES, Row, mean_landmarks
+from metagraph.generation.statistics import MEASURES, MeasureRow, mean_landmarks
 from metagraph.research.generation import figures
-from metagraph.research.generation.evaluation import Judged
+from metagraph.research.generation.evaluation import JudgedModels
 from metagraph.research.study.reports.style import STYLE
 
 REPORT = ("report.html", "report.json", "report.csv")  # what is written
@@ -61,7 +61,7 @@ table {{ font-size: 12px; }} td:first-child {{ min-width: 110px; }} td .dim {{ f
 {figures.STYLE}"""
 
 
-def data_of(rows: Sequence[Row], told: dict[str, Any]) -> dict[str, Any]:
+def report_as_data(rows: Sequence[MeasureRow], told: dict[str, Any]) -> dict[str, Any]:
     """Return the table as plain data; what is unknown is null. told: what stands beside the rows."""
 
     def plain(value: float) -> float | None:
@@ -78,7 +78,7 @@ def data_of(rows: Sequence[Row], told: dict[str, Any]) -> dict[str, Any]:
     return {**told, "rows": out}
 
 
-def text_of(rows: Sequence[Row]) -> str:
+def report_as_text(rows: Sequence[MeasureRow]) -> str:
     """Return the table as text, a line a system."""
     wide = max([7, *(len(row.name) for row in rows)])
     short = [n.replace("nods_", "nods ").replace("_", " ") for n in NAMES]
@@ -92,7 +92,7 @@ def text_of(rows: Sequence[Row]) -> str:
     return "\n".join([*lines, f"{'perfect':{wide}}  {perfect}"])
 
 
-def csv_of(rows: Sequence[Row]) -> str:
+def report_as_csv(rows: Sequence[MeasureRow]) -> str:
     """Return the table as CSV: name, measure, value and its interval a line."""
     lines = [["system", "measure", "value", "low", "high"]]
     for row in rows:
@@ -104,28 +104,31 @@ def csv_of(rows: Sequence[Row]) -> str:
     return csv_text(lines)
 
 
-def write_report(judged: Judged, told: dict[str, Any], notes: Sequence[str], folder: Path) -> list[Path]:
+def write_generation_report(
+    judged: JudgedModels, told: dict[str, Any], notes: Sequence[str], folder: Path
+) -> list[Path]:
     """Write the page and the tables into a folder; return what was written. Raises FileError."""
     content = {
-        "report.html": page(judged, told, notes),
-        "report.json": json.dumps({**data_of(judged.rows, told), "notes": list(notes)}, indent=1) + "\n",
-        "report.csv": csv_of(judged.rows),
+        "report.html": format_generation_page(judged, told, notes),
+        "report.json": json.dumps({**report_as_data(judged.rows, told), "notes": list(notes)}, indent=1)
+        + "\n",
+        "report.csv": report_as_csv(judged.rows),
     }
     assert tuple(content) == REPORT
     return write_together(folder, {name: text.encode() for name, text in content.items()})
 
 
-def page(judged: Judged, told: dict[str, Any], notes: Sequence[str]) -> str:
+def format_generation_page(judged: JudgedModels, told: dict[str, Any], notes: Sequence[str]) -> str:
     """Return the page."""
     mean = mean_landmarks(judged.true)
     systems = {"true": judged.true}
     systems |= {name: seeds[0] for name, seeds in judged.made.items()}
-    far = {name: figures.distances(motion, mean) for name, motion in systems.items()}
+    far = {name: figures.landmark_distances(motion, mean) for name, motion in systems.items()}
     most = max(float(v.max()) for v in far.values())
     parts = ["<h1>Generated motion beside recorded motion</h1>", "<div class='card'>"]
     parts += [f"<p>{escape(str(k))}: {escape(str(v))}</p>" for k, v in told.items()]
     parts += ["</div>", *(f"<p class='warn'>{escape(n)}</p>" for n in notes)]
-    parts += ["<h2>Table</h2>", table_of(judged.rows)]
+    parts += ["<h2>Table</h2>", format_report_table(judged.rows)]
     parts.append(
         "<p class='dim'>Under each value what 95 % of draws of blocks of 15 s give. <i>floor</i>: other "
         "motion as true as the recorded one; <i>mismatched</i>: recorded motion to other speech; <i>mean "
@@ -134,21 +137,25 @@ def page(judged: Judged, told: dict[str, Any], notes: Sequence[str]) -> str:
     words = "".join(f"<dt>{escape(k)}</dt><dd>{escape(v)}</dd>" for k, v in MEANINGS.items())
     parts += [f"<dl>{words}</dl>", "<h2>Figure 6: distance from the mean pose</h2>"]
     for name, motion in systems.items():
-        parts.append(_figure(figures.over_time(motion[0], mean, most), f"{name}: the first take"))
-    parts.append(_figure(figures.boxes(far, "cm"), "All takes; whiskers by Tukey, notches about the median"))
+        parts.append(_figure(figures.draw_over_time(motion[0], mean, most), f"{name}: the first take"))
+    parts.append(
+        _figure(figures.draw_boxes(far, "cm"), "All takes; whiskers by Tukey, notches about the median")
+    )
     first = {name: motion[0] for name, motion in systems.items()}
-    parts.append(_figure(figures.overlaid(first), "Poses of the first take, one a second, from the front"))
+    parts.append(
+        _figure(figures.draw_overlaid(first), "Poses of the first take, one a second, from the front")
+    )
     for number, who, words in ((7, SELF, "oneself speaks"), (8, PARTNER, "the partner speaks")):
         parts.append(f"<h2>Figure {number}: how fast that distance changes while {words}</h2>")
-        grown = {name: figures.changes(motion, mean, who) for name, motion in systems.items()}
-        parts.append(_figure(figures.boxes(grown, "cm/s"), "All takes; the first seed of each model"))
+        grown = {name: figures.distance_changes(motion, mean, who) for name, motion in systems.items()}
+        parts.append(_figure(figures.draw_boxes(grown, "cm/s"), "All takes; the first seed of each model"))
     head = "<meta charset='utf-8'><title>Generated motion</title>"
     return f"<!DOCTYPE html><html lang='en'><head>{head}<style>{STYLE}{_STYLE}</style></head><body>" + (
         "\n".join(parts) + "</body></html>\n"
     )
 
 
-def table_of(rows: Sequence[Row]) -> str:
+def format_report_table(rows: Sequence[MeasureRow]) -> str:
     """Return the table as HTML: a measure a line, a system a column."""
     head = "".join(f"<th>{escape(n)}</th>" for n in ("", *(row.name for row in rows), "perfect"))
     body = []

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.generation.poses import PoseRig
     from metagraph.generation.stored import Model
-    from metagraph.generation.take_files import Batch
+    from metagraph.generation.take_files import TakeBatch
 
 SHOWN = 8  # notes that are printed
 
 
-def takes_arguments(parser: ArgumentParser) -> None:
+def add_takes_arguments(parser: ArgumentParser) -> None:
     """Add the options that say which takes."""
     parser.add_argument(
         "takes",
@@ -25,11 +25,11 @@ def takes_arguments(parser: ArgumentParser) -> None:
         help="clips, or folders of them, each with its sound beside it: talk.bvh and talk.wav, or talk_1.bvh "
         "and talk_2.bvh for the sides of talk.wav",
     )
-    speech_argument(parser)
+    add_speech_argument(parser)
 
 
-def speech_argument(parser: ArgumentParser) -> None:
-    from app.cli.language_options import language_arguments
+def add_speech_argument(parser: ArgumentParser) -> None:
+    from app.cli.language_options import add_language_arguments
 
     parser.add_argument(
         "--speech",
@@ -39,10 +39,10 @@ def speech_argument(parser: ArgumentParser) -> None:
         metavar="FILE",
         help="sounds and words that lie elsewhere, or folders of them (default: beside the clips)",
     )
-    language_arguments(parser)
+    add_language_arguments(parser)
 
 
-def telling(options: Namespace, what: str) -> Any:
+def make_progress_printer(options: Namespace, what: str) -> Any:
     """Return what tells how far the work is, on a terminal."""
     show = sys.stderr.isatty() and not options.json
 
@@ -53,13 +53,13 @@ def telling(options: Namespace, what: str) -> Any:
     return progress
 
 
-def read_all(options: Namespace, rig: PoseRig | None = None, tracks: int = 1) -> Batch:
+def read_all(options: Namespace, rig: PoseRig | None = None, tracks: int = 1) -> TakeBatch:
     """Read the takes that are asked for, and say what there is to know of them. Raises ValueError where none
     can be used.
     """
-    from app.cli.language_options import speaking_of
+    from app.cli.language_options import read_speaking
     from metagraph.errors import FileError
-    from metagraph.generation.take_files import find_takes, read_takes
+    from metagraph.generation.take_files import find_takes, read_take_batch
 
     for path in (*options.takes, *options.speech):
         if not path.exists():
@@ -67,15 +67,15 @@ def read_all(options: Namespace, rig: PoseRig | None = None, tracks: int = 1) ->
     speech = [p for p in options.speech if p.is_dir()]
     single = [p.parent for p in options.speech if p.is_file()]
     files, without = find_takes(options.takes, list(dict.fromkeys((*speech, *single))))
-    show = telling(options, "takes")
-    speaking = speaking_of(options)
-    batch = read_takes(
+    show = make_progress_printer(options, "takes")
+    speaking = read_speaking(options)
+    batch = read_take_batch(
         files, rig, tracks=tracks, progress=lambda n, _: show(n, len(files)), speaking=speaking
     )
     failures = (*without, *batch.failures)
     for words in failures:
         print(f"left out: {words}", file=sys.stderr)
-    told(batch.notes)
+    print_notes(batch.notes)
     if not batch.takes:
         place = ", ".join(str(p) for p in options.takes)
         if not failures:
@@ -84,7 +84,7 @@ def read_all(options: Namespace, rig: PoseRig | None = None, tracks: int = 1) ->
     return batch
 
 
-def told(notes: tuple[str, ...]) -> None:
+def print_notes(notes: tuple[str, ...]) -> None:
     """Print notes, the first of many."""
     for note in notes[:SHOWN]:
         print(f"note: {note}", file=sys.stderr)
@@ -92,7 +92,7 @@ def told(notes: tuple[str, ...]) -> None:
         print(f"note: and {len(notes) - SHOWN} more like these", file=sys.stderr)
 
 
-def models_of(paths: list[Path]) -> dict[str, Model]:
+def read_models(paths: list[Path]) -> dict[str, Model]:
     """Return models by the names of their files. Raises FileError, ValueError."""
     from metagraph.generation.stored import read_model
 

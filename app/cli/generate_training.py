@@ -13,19 +13,19 @@ from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
-    from metagraph.generation.take_files import Batch
+    from metagraph.generation.take_files import TakeBatch
     from metagraph.generation.takes import Take
-    from metagraph.generation.train_process import Event, TrainingProcess
-    from metagraph.research.generation.ablation import Job
+    from metagraph.generation.train_process import TrainingEvent, TrainingProcess
+    from metagraph.research.generation.ablation import AblationJob
 
 KINDS = ("flow-vae", "moglow", "cvae", "matching")
 MINUTES = 15.0
 EVERY = 30.0  # seconds between lines where nobody looks on
 
 
-def arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Add the options of `train`."""
-    from app.cli.generate_takes import speech_argument
+    from app.cli.generate_takes import add_speech_argument
 
     parser.add_argument(
         "takes",
@@ -35,9 +35,9 @@ def arguments(parser: ArgumentParser) -> None:
         help="clips, or folders of them, each with its sound beside it: talk.bvh and talk.wav, or talk_1.bvh "
         "and talk_2.bvh for the sides of talk.wav",
     )
-    speech_argument(parser)
+    add_speech_argument(parser)
     parser.add_argument("-o", "--out", type=Path, required=True, help="the model (.mgmodel)")
-    model_arguments(parser, "matching")
+    add_training_arguments(parser, "matching")
     parser.add_argument(
         "--minutes", type=float, help=f"of the clock, all runs together (default: {MINUTES:g})"
     )
@@ -52,7 +52,7 @@ def arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--resume", action="store_true", help="go on where it was stopped")
 
 
-def model_arguments(parser: ArgumentParser, kind: str) -> None:
+def add_training_arguments(parser: ArgumentParser, kind: str) -> None:
     parser.add_argument("--model", choices=KINDS, default=kind, help=f"what is trained (default: {kind})")
     parser.add_argument(
         "--size",
@@ -65,16 +65,16 @@ def model_arguments(parser: ArgumentParser, kind: str) -> None:
     parser.add_argument("--threads", type=int, default=0, help="of the processor (default: all)")
 
 
-def ablate_arguments(parser: ArgumentParser) -> None:
+def add_ablation_arguments(parser: ArgumentParser) -> None:
     """Add the options of `ablate`."""
-    from app.cli.generate_judging import manner_arguments
-    from app.cli.generate_takes import takes_arguments
+    from app.cli.generate_judging import add_manner_arguments
+    from app.cli.generate_takes import add_takes_arguments
 
-    takes_arguments(parser)
+    add_takes_arguments(parser)
     parser.add_argument(
         "-o", "--out", type=Path, required=True, help="a folder for models and table; what is there is kept"
     )
-    model_arguments(parser, "matching")
+    add_training_arguments(parser, "matching")
     parser.add_argument(
         "--seconds", type=float, default=300.0, help="of the processor for each training (default: 300)"
     )
@@ -86,12 +86,12 @@ def ablate_arguments(parser: ArgumentParser) -> None:
         help="only this change, beside the whole model; as often as you like (default: all)",
     )
     parser.add_argument("--floor", type=Path, metavar="FOLDER", help="as for evaluate")
-    manner_arguments(parser)
+    add_manner_arguments(parser)
 
 
-def check(options: Namespace) -> None:
+def require_trainable(options: Namespace) -> None:
     """Raise ValueError, RuntimeError for what cannot be trained."""
-    from metagraph.generation.train_process import missing
+    from metagraph.generation.train_process import find_missing_tools
 
     for name in ("minutes", "seconds"):
         value = getattr(options, name, None)
@@ -99,22 +99,22 @@ def check(options: Namespace) -> None:
             raise ValueError(f"--{name} is more than 0, not {value:g}")
     if not 0 <= options.threads <= 256:
         raise ValueError(f"--threads is 0 to 256, not {options.threads}")
-    if words := missing():
+    if words := find_missing_tools():
         raise RuntimeError(words)
 
 
 def train(options: Namespace) -> int:
     """Train a model, or go on with it, and tell how it does."""
     from app.cli.command_output import say
-    from metagraph.formats.outputs import keeps_up
+    from metagraph.formats.outputs import declare_updates
     from metagraph.generation.stored import SUFFIX, read_model
     from metagraph.generation.train_plan import folder_of
 
     out: Path = options.out
     if out.suffix.lower() != SUFFIX:
         raise ValueError(f"a model is written as {SUFFIX}, not as '{out.suffix or out.name}'")
-    check(options)
-    keeps_up(out, folder_of(out))  # what is there is gone on with, or refused
+    require_trainable(options)
+    declare_updates(out, folder_of(out))  # what is there is gone on with, or refused
     _go_on(options) if options.resume else _begin(options)
     process, stopped = _trained(options, out)
     card = read_model(out).card
@@ -147,7 +147,7 @@ def train(options: Namespace) -> int:
 def _begin(options: Namespace) -> None:
     """Read the takes and write the training's folder. Raises ValueError where that would lose something."""
     from app.cli.generate_takes import read_all
-    from metagraph.generation.takes import split
+    from metagraph.generation.takes import split_takes
     from metagraph.generation.train_plan import PLAN, folder_of, plan_of, settings_for, write_training
 
     out: Path = options.out
@@ -159,9 +159,9 @@ def _begin(options: Namespace) -> None:
     tracks = 2 if options.two_tracks else 1
     batch = read_all(options, tracks=tracks)
     assert batch.rig is not None
-    learned, held = split(batch.takes)
+    learned, held = split_takes(batch.takes)
     if options.mirror:
-        learned = (*learned, *twins_of(batch, learned))
+        learned = (*learned, *make_take_twins(batch, learned))
     plan = plan_of(
         batch.rig,
         learned,
@@ -188,23 +188,23 @@ def _go_on(options: Namespace) -> None:
     """Give a training that was stopped its new limits."""
     from msgspec.structs import replace
 
-    from metagraph.generation.train_plan import folder_of, read_plan, write_plan
+    from metagraph.generation.train_plan import folder_of, read_training_plan, write_plan
 
     folder = folder_of(options.out)
-    plan = read_plan(folder)
+    plan = read_training_plan(folder)
     new = _limits(options)
     if options.minutes is None and options.seconds is None:
         new |= {"minutes": plan.minutes, "seconds": plan.seconds}
     write_plan(folder, replace(plan, out=str(options.out.resolve()), **new))
 
 
-def twins_of(batch: Batch, takes: Sequence[Take]) -> list[Take]:
+def make_take_twins(batch: TakeBatch, takes: Sequence[Take]) -> list[Take]:
     """Return takes' mirror twins. Raises TakeError."""
-    from metagraph.generation.takes import mirrored
+    from metagraph.generation.takes import mirror_take
 
     assert batch.rig is not None
     clips = {t.source.digests: c for t, c in zip(batch.takes, batch.clips, strict=True)}
-    return [mirrored(batch.rig, clips[t.source.digests], t) for t in takes]
+    return [mirror_take(batch.rig, clips[t.source.digests], t) for t in takes]
 
 
 def _trained(options: Namespace, out: Path) -> tuple[TrainingProcess, bool]:
@@ -243,7 +243,7 @@ def _telling(options: Namespace, prefix: str = "") -> Any:
     show = sys.stderr.isatty() and not options.json
     told = [0.0]
 
-    def heard(event: Event) -> None:
+    def heard(event: TrainingEvent) -> None:
         if event.event == "note":
             print(f"note: {event.text}", file=sys.stderr)
         if event.event != "step" or options.json:
@@ -259,45 +259,45 @@ def _telling(options: Namespace, prefix: str = "") -> Any:
     return heard
 
 
-def ablate(options: Namespace) -> int:
+def run_ablation(options: Namespace) -> int:
     """Train a model with one thing changed at a time, and compare."""
     import json
 
     from app.cli.command_output import say
-    from app.cli.generate_judging import floor_of, manner_of
-    from app.cli.generate_report import csv_of, data_of, text_of
+    from app.cli.generate_judging import find_floor, read_manner
+    from app.cli.generate_report import report_as_csv, report_as_data, report_as_text
     from app.cli.generate_takes import read_all
     from metagraph.formats.atomic import write_atomically
     from metagraph.formats.outputs import claim
     from metagraph.generation.features import MELS
     from metagraph.generation.networks import sizes_of
     from metagraph.generation.take_files import find_takes
-    from metagraph.generation.takes import split
+    from metagraph.generation.takes import split_takes
     from metagraph.research.generation import ablation
     from metagraph.research.generation.evaluation import HeldOut
 
-    check(options)
+    require_trainable(options)
     claim(options.out / "table.json", options.out / "table.csv")
-    manner = manner_of(options)
-    changes = chosen(options.change)
+    manner = read_manner(options)
+    changes = choose_changes(options.change)
     tracks = 2 if options.two_tracks else 1
     batch = read_all(options, tracks=tracks)
     assert batch.rig is not None
     rig = batch.rig
-    learned, held = split(batch.takes)
+    learned, held = split_takes(batch.takes)
     files, _ = find_takes(options.takes, [p for p in options.speech if p.is_dir()])
     sizes = sizes_of(options.model, options.size, rig.numbers, tracks * MELS)
-    done = ablation.ablate(
+    done = ablation.ablate_model(
         options.out,
         lambda job: _train_one(options, rig, tracks, job),
-        ablation.Material(
+        ablation.AblationMaterial(
             rig,
             learned,
-            HeldOut(held, floor_of(options.floor, options.takes, held, rig)),
+            HeldOut(held, find_floor(options.floor, options.takes, held, rig)),
             {f.clip.stem: f for f in files},
-            lambda: twins_of(batch, learned),
+            lambda: make_take_twins(batch, learned),
         ),
-        ablation.Training(options.model, sizes, options.seconds, options.trainings),
+        ablation.AblationTraining(options.model, sizes, options.seconds, options.trainings),
         changes,
         manner,
         options.draws,
@@ -316,13 +316,13 @@ def ablate(options: Namespace) -> int:
         "kept": list(done.kept),
         "left_out": list(done.left),
     }
-    data = data_of(done.rows, said)
+    data = report_as_data(done.rows, said)
     write_atomically(options.out / "table.json", (json.dumps(data, indent=1) + "\n").encode())
-    write_atomically(options.out / "table.csv", csv_of(done.rows).encode())
+    write_atomically(options.out / "table.csv", report_as_csv(done.rows).encode())
     lines = [
         f"{said['model']}: {options.seconds:g} s of the processor each, {len(learned)} takes "
         f"({said['hours']:g} h), {len(held)} held out; {len(done.ran)} trained now, {len(done.kept)} kept",
-        text_of(done.rows),
+        report_as_text(done.rows),
         *(f"  {c.name}: {c.words}" for c in changes if c.name not in done.left),
         *(f"  left out, says nothing of such a model: {name}" for name in done.left),
         f"written: {options.out / 'table.json'}, {options.out / 'table.csv'}",
@@ -331,7 +331,7 @@ def ablate(options: Namespace) -> int:
     return 0
 
 
-def chosen(names: list[str] | None) -> list[Any]:
+def choose_changes(names: list[str] | None) -> list[Any]:
     """Return changes by name, the whole model always first. Raises ValueError."""
     from metagraph.research.generation.ablation import CHANGES, NAMES
 
@@ -341,14 +341,14 @@ def chosen(names: list[str] | None) -> list[Any]:
     return [c for n, c in enumerate(CHANGES) if not n or names is None or c.name in names]
 
 
-def _train_one(options: Namespace, rig: Any, tracks: int, job: Job) -> None:
+def _train_one(options: Namespace, rig: Any, tracks: int, job: AblationJob) -> None:
     """Train one model of an ablation; of one that was cut short, go on."""
     from metagraph.errors import FileError
     from metagraph.generation.train_plan import (
-        Settings,
+        TrainingSettings,
         folder_of,
         plan_of,
-        read_plan,
+        read_training_plan,
         write_plan,
         write_training,
     )
@@ -364,14 +364,14 @@ def _train_one(options: Namespace, rig: Any, tracks: int, job: Job) -> None:
         options.size,
         tracks,
         job.sizes,
-        settings=Settings(**job.settings),
+        settings=TrainingSettings(**job.settings),
         seed=job.seed,
         minutes=0.0,
         seconds=job.seconds,
         threads=options.threads,
     )
     try:
-        same = read_plan(folder).fingerprint() == plan.fingerprint()
+        same = read_training_plan(folder).fingerprint() == plan.fingerprint()
     except FileError:
         same = False
     if same:

@@ -6,12 +6,12 @@ import sys
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from app.cli.command_output import opened, say
-from app.cli.outputs import ProjectOutput, project_name
+from app.cli.command_output import open_for_command, say
+from app.cli.outputs import ProjectOutput, with_project_ending
 from metagraph.errors import FileError
-from metagraph.formats.action_labels import labelled, read_labels
+from metagraph.formats.action_labels import apply_labels, read_labels
 from metagraph.formats.clip_readers import clip_suffixes
-from metagraph.formats.import_words import counted, remedies, said
+from metagraph.formats.import_words import count_alike, describe_import, remedies
 from metagraph.formats.imports import import_files
 from metagraph.formats.project.pieces import read_other_project
 from metagraph.formats.store import SUFFIX
@@ -19,7 +19,7 @@ from metagraph.graph.editing.taking import words_of_taking
 from metagraph.graph.model import Project
 
 
-def arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument(
         "paths",
@@ -66,7 +66,7 @@ def run(options: Namespace) -> int:
     if not options.paths and options.labels is None:
         print("metagraph import: which clips? metagraph import my.metagraph.yaml clips/", file=sys.stderr)
         return 2
-    path: Path = options.project if options.project.is_file() else project_name(options.project)
+    path: Path = options.project if options.project.is_file() else with_project_ending(options.project)
     with ProjectOutput(path) as output:
         return _imported(options, output)
 
@@ -74,7 +74,7 @@ def run(options: Namespace) -> int:
 def _imported(options: Namespace, output: ProjectOutput) -> int:
     path = output.path
     rows = read_labels(options.labels) if options.labels is not None else ()
-    project = opened(path) if path.is_file() else Project(name=path.name.removesuffix(SUFFIX))
+    project = open_for_command(path) if path.is_file() else Project(name=path.name.removesuffix(SUFFIX))
     others = [other for other in options.paths if other.name.endswith(SUFFIX)]
     files = [file for file in options.paths if file not in others]
     taken: list[str] = []
@@ -107,10 +107,10 @@ def _imported(options: Namespace, output: ProjectOutput) -> int:
             "on importing it",
             f"Clips are {', '.join(clip_suffixes())} files.",
         )
-    for failure in counted(result.failures):
+    for failure in count_alike(result.failures):
         print(f"left out: {failure}", file=sys.stderr)
     if not options.json:
-        for note in counted(result.notes):
+        for note in count_alike(result.notes):
             print(f"note: {note}", file=sys.stderr)
     before = {(entry.path, entry.take) for entry in project.clips.values()}
     again = sum((file, take) in before for file, take, *_ in result.loaded)
@@ -118,7 +118,7 @@ def _imported(options: Namespace, output: ProjectOutput) -> int:
         project = result.into(project)
     at = {(entry.path, entry.take): entry.id for entry in project.clips.values()}
     fresh = {clip.name: at[file, take] for file, take, _, clip in result.loaded}
-    project, placed, left = labelled(project, rows, fresh)
+    project, placed, left = apply_labels(project, rows, fresh)
     for why in left:
         print(f"not labelled: {why}", file=sys.stderr)
     if result.loaded or placed or taken:
@@ -134,7 +134,7 @@ def _imported(options: Namespace, output: ProjectOutput) -> int:
         "notes": list(result.notes),
         "remedies": [remedy.command for remedy in remedies(result)],
     }
-    imported = said(result, window=False)
+    imported = describe_import(result, window=False)
     if again:
         imported += f" ({len(result.loaded) - again} new, {again} here already and read again)"
     found = [*taken, *([imported] if files or not taken else [])]

@@ -6,16 +6,16 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import Any
 
-from app.cli.command_output import opened, say
+from app.cli.command_output import open_for_command, say
 from app.cli.journal_note import warn_of_journals
 from metagraph.errors import FileError
 from metagraph.formats.clip_readers import clip_suffixes
-from metagraph.formats.clips import read_clips
-from metagraph.graph.expand import size
+from metagraph.formats.clips import read_clip_file
+from metagraph.graph.expand import count_machine_size
 from metagraph.graph.model import KINDS, LAYERS
 
 
-def arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument("path", type=Path, help="a project, an exported JSON, or a clip file")
 
@@ -30,7 +30,7 @@ def run(options: Namespace) -> int:
             "Name a project, an exported JSON or a clip file in it; 'metagraph verify' takes a folder.",
         )
     if path.suffix.lower() in clip_suffixes():
-        clips = read_clips(path)
+        clips = read_clip_file(path)
         from metagraph.motion.roles import find_roles
 
         roles = find_roles(clips[0].skeleton)
@@ -60,9 +60,9 @@ def run(options: Namespace) -> int:
         project = read_export(path, motions=False)
         glb_of(path)  # raises where it is another's
     else:
-        project = opened(path)
+        project = open_for_command(path)
         warn_of_journals(path)
-    whole = size(project)
+    whole = count_machine_size(project)
     layers = {
         layer: {
             "stances": len(project.graphs[layer].stances),

@@ -7,12 +7,12 @@ from collections.abc import Sized
 from pathlib import Path
 
 from metagraph.errors import FileError
-from metagraph.formats.recovery import left_journals, read_journal
+from metagraph.formats.recovery import find_left_journals, read_journal
 
 
 def warn_of_journals(path: Path) -> None:
     """Say on standard error which journals a crash has left beside a project file."""
-    for journal in left_journals(path.resolve()):
+    for journal in find_left_journals(path.resolve()):
         try:
             left = read_journal(journal, path)
         except FileError as error:

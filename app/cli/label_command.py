@@ -17,12 +17,12 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from app.cli.outputs import ProjectOutput
     from metagraph.graph.model import Project
-    from metagraph.suggest.alike import Example
+    from metagraph.suggest.alike import LabelledExample
     from metagraph.suggest.jumps.bridges import Bridge
     from metagraph.suggest.words.patterns import Patterns
 
 
-def arguments(parser: argparse.ArgumentParser) -> None:
+def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of `label`."""
     parser.add_argument(
         "folder", type=Path, help="a folder of clips, or a project whose clips wait to be labelled"
@@ -70,7 +70,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Label a folder or project; write the project and an HTML report beside it."""
-    from app.cli.outputs import ProjectOutput, project_name
+    from app.cli.outputs import ProjectOutput, with_project_ending
     from metagraph.errors import FileError
     from metagraph.formats.outputs import claim, wrote
     from metagraph.formats.store import SUFFIX
@@ -83,7 +83,7 @@ def run(options: Namespace) -> int:
             "on labelling it",
             "Give a folder of clips, or a project.",
         )
-    path = project_name(
+    path = with_project_ending(
         options.out
         or (source if source.is_file() else source.resolve().parent / f"{source.resolve().name}{SUFFIX}")
     )
@@ -98,13 +98,13 @@ def run(options: Namespace) -> int:
 
 def _labelled(options: Namespace, output: ProjectOutput) -> int:
     from app.cli.command_output import say
-    from app.cli.label_pictures import pictures
-    from app.cli.label_report import report
+    from app.cli.label_pictures import draw_label_pictures
+    from app.cli.label_report import format_label_report
     from metagraph.formats.atomic import write_atomically
-    from metagraph.formats.import_words import counted
-    from metagraph.graph.check import check, grave
-    from metagraph.suggest.flags import needs_a_look
-    from metagraph.suggest.jumps.bridges import bridged, told
+    from metagraph.formats.import_words import count_alike
+    from metagraph.graph.check import check_project, grave
+    from metagraph.suggest.flags import needs_look
+    from metagraph.suggest.jumps.bridges import bridge_all, describe_bridges
     from metagraph.suggest.left_aside import reasons
     from metagraph.suggest.propose import SOURCES, accept, propose
 
@@ -125,22 +125,26 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
     if any(True for _ in begun.before.actions()):
         labelled, bridges = _beside_work(project, taken.project, not options.no_bridges)
     else:
-        labelled, bridges = (taken.project, ()) if options.no_bridges else bridged(taken.project)
+        labelled, bridges = (taken.project, ()) if options.no_bridges else bridge_all(taken.project)
     taken = replace(taken, project=labelled)
     if not begun.merged or labelled != begun.before:
         output.save(taken.project, source if source.is_file() else None)
     place = _free_report(path)
-    drawn = {} if options.no_pictures else pictures(taken.project, path.resolve().parent, [*found.proposals])
-    write_atomically(place, report(taken.project, found, taken, drawn, notes, path).encode())
-    look = [p for p in found.doubtful if needs_a_look(p, taken.left)]
-    errors = [p.message for p in grave(check(taken.project))]
+    drawn = (
+        {}
+        if options.no_pictures
+        else draw_label_pictures(taken.project, path.resolve().parent, [*found.proposals])
+    )
+    write_atomically(place, format_label_report(taken.project, found, taken, drawn, notes, path).encode())
+    look = [p for p in found.doubtful if needs_look(p, taken.left)]
+    errors = [p.message for p in grave(check_project(taken.project))]
     seconds = time.perf_counter() - began
-    for note in counted(notes):
+    for note in count_alike(notes):
         print(f"note: {note}", file=sys.stderr)
     for stance, rest in taken.held.items():
         if (made := taken.project.stance(stance)) is not None:
             print(f"held: {made.name}: {rest.reason}", file=sys.stderr)
-    for line in told(taken.project, bridges):
+    for line in describe_bridges(taken.project, bridges):
         print(f"bridged: {line}", file=sys.stderr)
     for why, clips in reasons(found.aside):
         print(f"aside: {_several([project.clips[c].name for c in clips])}: {why}", file=sys.stderr)
@@ -161,7 +165,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
         "held": {
             s.name: r.reason for i, r in taken.held.items() if (s := taken.project.stance(i)) is not None
         },
-        "bridged": told(taken.project, bridges),
+        "bridged": describe_bridges(taken.project, bridges),
         "aside": {project.clips[c].name: why for c, why in found.aside.items()},
         "look": [names[p.clip] for p in look],
         "errors": errors,
@@ -204,12 +208,12 @@ def _several(names: Sequence[str]) -> str:
     )
 
 
-def _taught(options: Namespace, path: Path) -> tuple[Patterns | None, list[Example]]:
+def _taught(options: Namespace, path: Path) -> tuple[Patterns | None, list[LabelledExample]]:
     """Return the name patterns to read with and the examples to learn from; neither unless asked for, so that
     a run is the same everywhere.
     """
     from app.project.pattern_files import read_patterns
-    from metagraph.suggest.words.names import merged
+    from metagraph.suggest.words.names import merge_patterns
 
     given = read_patterns(options.patterns) if options.patterns is not None else None
     if not options.learned:
@@ -225,7 +229,7 @@ def _taught(options: Namespace, path: Path) -> tuple[Patterns | None, list[Examp
     learned = Learned()
     learned.failed.connect(lambda words: print(f"note: {words}", file=sys.stderr))
     patterns = learned.patterns
-    return merged(patterns, given) if given is not None else patterns, learned.examples_beside(path)
+    return merge_patterns(patterns, given) if given is not None else patterns, learned.examples_beside(path)
 
 
 @dataclass(frozen=True)
@@ -249,7 +253,7 @@ def _begun(options: Namespace, path: Path) -> Begun:
     """Return the project to label: the one that was given, or clips of a folder, added to the project that is
     at `path`.
     """
-    from app.cli.command_output import opened
+    from app.cli.command_output import open_for_command
     from metagraph.errors import FileError
     from metagraph.formats.imports import import_files
     from metagraph.formats.store import SUFFIX
@@ -258,10 +262,10 @@ def _begun(options: Namespace, path: Path) -> Begun:
 
     source: Path = options.folder
     if source.is_file():
-        project = opened(source)
+        project = open_for_command(source)
         return Begun(project, None, [], project)
     merged = path.is_file() and not options.overwrite
-    before = opened(path) if merged else Project(name=path.name.removesuffix(SUFFIX))
+    before = open_for_command(path) if merged else Project(name=path.name.removesuffix(SUFFIX))
     result = import_files(
         before,
         path.resolve().parent,
@@ -295,7 +299,7 @@ def _beside_work(before: Project, labelled: Project, bridge: bool) -> tuple[Proj
     bridges to the stances that are new.
     """
     from metagraph.graph.model import LAYERS
-    from metagraph.suggest.jumps.bridges import bridged_at
+    from metagraph.suggest.jumps.bridges import bridge_stance
 
     graphs = dict(labelled.graphs)
     for layer in LAYERS:
@@ -305,7 +309,7 @@ def _beside_work(before: Project, labelled: Project, bridge: bool) -> tuple[Proj
     made: list[Bridge] = []
     for layer in LAYERS if bridge else ():
         for stance in labelled.graphs[layer].stances.keys() - before.graphs[layer].stances.keys():
-            labelled, some = bridged_at(labelled, stance)
+            labelled, some = bridge_stance(labelled, stance)
             made += some
     return labelled, tuple(made)
 

@@ -12,9 +12,9 @@ from metagraph.graph.model import Project
 SIZE = 192  # pixels
 
 
-def pictures(project: Project, folder: Path, clips: Iterable[str]) -> Mapping[str, Any]:
+def draw_label_pictures(project: Project, folder: Path, clips: Iterable[str]) -> Mapping[str, Any]:
     """Return clip or stance -> `[H, W, 4]` uint8; none where nothing can be drawn here."""
-    from app.cli.render_command import figure_of
+    from app.cli.render_command import load_figure
     from metagraph.errors import FileError
     from preview.offscreen import Offscreen, OpenGLError
     from preview.thumbnail import ThumbnailStyle, clip_thumbnail, thumbnail
@@ -22,7 +22,7 @@ def pictures(project: Project, folder: Path, clips: Iterable[str]) -> Mapping[st
     out: dict[str, Any] = {}
     style = ThumbnailStyle(SIZE, scale=1)
     try:
-        figure = figure_of(project, folder)
+        figure = load_figure(project, folder)
         with Offscreen(SIZE, SIZE) as stage:
             for clip in clips:
                 if (motion := project.clips[clip].motion) is not None:

@@ -14,15 +14,15 @@ from pathlib import Path
 from typing import Any
 
 from app.cli.label_page import SCRIPT, STYLE
-from app.look.plural import clips_words
+from app.look.plural import count_clips
 from app.translation import tr_plural
 from metagraph.common.xml_text import escape
-from metagraph.formats.import_words import counted
+from metagraph.formats.import_words import count_alike
 from metagraph.graph.model import KINDS, LAYERS, Project
 from metagraph.suggest.estimate import Belief
-from metagraph.suggest.flags import chance_wrong, doubt, gain, needs_a_look
+from metagraph.suggest.flags import chance_wrong, doubt, gain, needs_look
 from metagraph.suggest.left_aside import reasons
-from metagraph.suggest.propose import Proposal, Proposals, Taken
+from metagraph.suggest.propose import AcceptedProposals, Proposal, Proposals
 
 KIND_MARKS = {
     "stance": "●",
@@ -32,10 +32,10 @@ KIND_MARKS = {
 }  # as in the window; its module needs Qt
 
 
-def report(
+def format_label_report(
     project: Project,
     found: Proposals,
-    taken: Taken,
+    taken: AcceptedProposals,
     pictures: Mapping[str, Any],
     notes: Iterable[str] = (),
     path: Path | None = None,
@@ -43,8 +43,8 @@ def report(
     """Return the page. pictures: clip, or stance of the labelled project -> `[H, W, 4]` uint8, of those that
     could be drawn. path: the project's file, which the page says how to open.
     """
-    doubtful = sorted((p for p in found.doubtful if needs_a_look(p, taken.left)), key=lambda p: -gain(p))
-    told = [f"<li>{escape(note)}</li>" for note in counted(notes)]
+    doubtful = sorted((p for p in found.doubtful if needs_look(p, taken.left)), key=lambda p: -gain(p))
+    told = [f"<li>{escape(note)}</li>" for note in count_alike(notes)]
     stances = {i: s.name for i in taken.held if (s := taken.project.stance(i)) is not None}
     held = [
         f"<li>{escape(stances[i])}: {escape(rest.reason)}</li>"
@@ -88,7 +88,7 @@ def _aside(project: Project, found: Proposals) -> str:
     lines = []
     for why, clips in reasons(found.aside):
         names = ", ".join(escape(project.clips[c].name) for c in clips)
-        count = clips_words(len(clips))
+        count = count_clips(len(clips))
         lines.append(f"<li>{count}: {escape(why)} <span class='dim'>({names})</span></li>")
     if not lines:
         return ""
@@ -128,7 +128,7 @@ def _overview(project: Project, pictures: Mapping[str, Any]) -> str:
             gestures = tr_plural("{count:,} gesture", "{count:,} gestures", count["gesture"])
             fidgets = tr_plural("{count:,} fidget", "{count:,} fidgets", count["fidget"])
             lines = (
-                f"{layer}, {clips_words(len(clips))}",
+                f"{layer}, {count_clips(len(clips))}",
                 f"{KIND_MARKS['gesture']} {gestures}, {KIND_MARKS['fidget']} {fidgets}",
                 f"{KIND_MARKS['transition']} {count['transition']} out, {into} in",
             )
@@ -145,7 +145,7 @@ def _cards(
     project: Project,
     found: Proposals,
     proposals: Iterable[Proposal],
-    taken: Taken,
+    taken: AcceptedProposals,
     pictures: Mapping[str, Any],
     path: Path | None,
 ) -> str:
@@ -162,7 +162,7 @@ def open_command(project: Project, clip: str, path: Path) -> str:
     return subprocess.list2cmdline(words) if os.name == "nt" else shlex.join(words)
 
 
-def _data_of(project: Project, found: Proposals, p: Proposal, taken: Taken) -> str:
+def _data_of(project: Project, found: Proposals, p: Proposal, taken: AcceptedProposals) -> str:
     """What the page's script filters and sorts a card by."""
     stance = f"{p.layer.value}/{found.places[p.stance.value].name}" if p.stance is not None else ""
     end = f"{p.layer.value}/{found.places[p.end_stance.value].name}" if p.end_stance is not None else ""
@@ -173,7 +173,7 @@ def _data_of(project: Project, found: Proposals, p: Proposal, taken: Taken) -> s
         "stance": stance,
         "end": end,
         "sure": f"{1 - chance_wrong(p):.3f}",
-        "look": "1" if needs_a_look(p, taken.left) else "0",
+        "look": "1" if needs_look(p, taken.left) else "0",
     }
     return " ".join(f"data-{key}='{escape(value, quote=True)}'" for key, value in values.items())
 
@@ -182,7 +182,7 @@ def _card(
     project: Project,
     found: Proposals,
     p: Proposal,
-    taken: Taken,
+    taken: AcceptedProposals,
     pictures: Mapping[str, Any],
     path: Path | None,
 ) -> str:
@@ -214,7 +214,7 @@ def _card(
             f"likelihood</summary><ul>{''.join(details)}</ul></details></li>"
         )
     warnings = [
-        *([doubt(p)] if needs_a_look(p) else p.conflicts),
+        *([doubt(p)] if needs_look(p) else p.conflicts),
         *([p.timing_reason] if p.good is False else []),
         *([taken.left[p.clip]] if p.clip in taken.left else []),
     ]

@@ -10,7 +10,7 @@ if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.formats.conversations.languages import Speaking
 
 
-def language_arguments(parser: ArgumentParser, usual: str = "auto") -> None:
+def add_language_arguments(parser: ArgumentParser, usual: str = "auto") -> None:
     """Add the options. usual: what is said of the default."""
     parser.add_argument(
         "--language",
@@ -29,7 +29,7 @@ def language_arguments(parser: ArgumentParser, usual: str = "auto") -> None:
     )
 
 
-def speaking_of(options: Namespace, project: str = "auto") -> Speaking:
+def read_speaking(options: Namespace, project: str = "auto") -> Speaking:
     """Return what to read words by. project: what the project is set to. Raises FileError, ValueError."""
     from metagraph.formats.conversations.languages import Speaking
     from metagraph.formats.language_files import packs_with, read_pack

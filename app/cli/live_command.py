@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     from metagraph.live.live_session import LiveSession
     from metagraph.live.played_voice import PlayedVoice
     from metagraph.live.server import Options, Server
-    from metagraph.live.wire import Batch, Ready, Result
+    from metagraph.live.wire import BatchResult, Ready, RequestBatch
 
 
-def arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Add the command's options."""
     parser.add_argument(
         "--port", type=int, help=f"of the WebSocket, 0 for any that is free (default: {PORT})"
@@ -58,7 +58,7 @@ def arguments(parser: ArgumentParser) -> None:
         help="keep what was asked in the project at the end, as a performance; and beside it what a motion "
         "graph moved with",
     )
-    live_graph_options.arguments(parser)
+    live_graph_options.add_arguments(parser)
 
 
 def run(options: Namespace) -> int:
@@ -67,11 +67,11 @@ def run(options: Namespace) -> int:
     import gc
 
     from app.project.opening import open_whole
-    from metagraph.generation.offered import offered
+    from metagraph.generation.offered import list_models
     from metagraph.live.live_session import LiveSession
-    from metagraph.live.server import Options, checked
+    from metagraph.live.server import Options, check_live_options
 
-    wanted = checked(
+    wanted = check_live_options(
         Options(
             host=options.host,
             port=_port(options, options.no_websocket, options.port, PORT),
@@ -82,17 +82,17 @@ def run(options: Namespace) -> int:
             mcp=options.mcp,
         )
     )
-    live_graph_options.checked(options)
+    live_graph_options.require_consistent_options(options)
     opened = open_whole(options.project)
     for note in opened.notes:
         print(f"note: {note}", file=sys.stderr)
-    graphs = live_graph_options.graphs_of(options, opened.project)
-    voice = live_graph_options.voice_of(options, graphs)
+    graphs = live_graph_options.read_graphs(options, opened.project)
+    voice = live_graph_options.read_live_voice(options, graphs)
     session = LiveSession(
         opened.project,
         options.seed,
         idle=not options.no_idle,
-        models=offered(options.project.resolve().parent),
+        models=list_models(options.project.resolve().parent),
         graphs=graphs,
     )
     session.warm()
@@ -124,7 +124,7 @@ async def _play(
     _greet(server, ready, options, as_json)
     begin = time.monotonic()
 
-    def step(batch: Batch | None) -> Result:
+    def step(batch: RequestBatch | None) -> BatchResult:
         now = time.monotonic() - begin
         if voice is not None:
             voice.play(session, now)

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.takes import speech_arguments
+from app.cli.takes import add_speech_arguments
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.graph.model import Project
@@ -21,7 +21,7 @@ NAME = "takes"  # what clients call the graph
 SUFFIX = ".motion.json"
 
 
-def arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument(
         "--takes",
@@ -32,7 +32,7 @@ def arguments(parser: ArgumentParser) -> None:
         help="long takes: clip files, folders of them, or projects, whose motion graph clients may ask to "
         f'`generate` motion, as "{NAME}"; with --speech',
     )
-    speech_arguments(parser, required=False)
+    add_speech_arguments(parser, required=False)
     parser.add_argument(
         "--retarget", action="store_true", help="bring takes of another skeleton onto the character's"
     )
@@ -50,7 +50,7 @@ def arguments(parser: ArgumentParser) -> None:
     )
 
 
-def checked(options: Namespace) -> None:
+def require_consistent_options(options: Namespace) -> None:
     """Raise ValueError for options that do not go together."""
     if options.takes and not options.speech:
         raise ValueError("--takes needs --speech: what was said in each take, a file called as the take is")
@@ -62,14 +62,14 @@ def checked(options: Namespace) -> None:
         raise ValueError("--announce is 0 to 60 seconds")
 
 
-def graphs_of(options: Namespace, project: Project) -> dict[str, LiveGraph]:
+def read_graphs(options: Namespace, project: Project) -> dict[str, LiveGraph]:
     """Return the motion graph of the takes that were given, else of the project's own, by name. Raises
     FileError and ValueError.
     """
-    from metagraph.live.graph_motion import live_graph, recorded_takes
+    from metagraph.live.graph_motion import list_recorded_takes, live_graph
 
     if not options.takes:
-        own, told = recorded_takes(project)
+        own, told = list_recorded_takes(project)
         if not own:
             return {}
         try:
@@ -79,9 +79,9 @@ def graphs_of(options: Namespace, project: Project) -> dict[str, LiveGraph]:
             print(f"note: the project's own takes make no motion graph: {error}", file=sys.stderr)
             return {}
         return {NAME: graph}
-    from app.cli.takes import paired_speech
+    from app.cli.takes import pair_speech
 
-    clips, speech = paired_speech(options)
+    clips, speech = pair_speech(options)
     graph = live_graph(_brought(clips, project, options.retarget), speech)
     kept, edges = graph.driver.graph.size
     if not graph.fits(project):
@@ -108,7 +108,7 @@ def _brought(clips: list[Clip], project: Project, retarget: bool) -> list[Clip]:
     ]
 
 
-def voice_of(options: Namespace, graphs: Mapping[str, LiveGraph]) -> PlayedVoice | None:
+def read_live_voice(options: Namespace, graphs: Mapping[str, LiveGraph]) -> PlayedVoice | None:
     """Return the voice that was given, None for none. Raises FileError, and ValueError where no graph could
     move to it.
     """
@@ -116,9 +116,9 @@ def voice_of(options: Namespace, graphs: Mapping[str, LiveGraph]) -> PlayedVoice
         return None
     if NAME not in graphs:
         raise ValueError("--voice needs --takes, long takes to move with, or a project that has its own")
-    from metagraph.live.played_voice import read_voice
+    from metagraph.live.played_voice import read_played_voice
 
-    return read_voice(options.voice, NAME, options.announce)
+    return read_played_voice(options.voice, NAME, options.announce)
 
 
 def keep_motion(session: LiveSession, options: Namespace) -> None:

@@ -12,12 +12,12 @@ from app.cli.outputs import ProjectOutput
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.outputs import claim, wrote
-from metagraph.formats.project.merging import MergeError, merge
+from metagraph.formats.project.merging import MergeError, merge_projects
 from metagraph.formats.store import SUFFIX, read_project
 from metagraph.graph.model import Project
 
 
-def arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument("base", nargs="?", type=Path, help="the project as it was before either changed it")
     parser.add_argument(
@@ -50,7 +50,7 @@ and this into its .gitignore:
 
 def run(options: Namespace) -> int:
     if options.setup:
-        driver = f'"{program()}"'
+        driver = f'"{find_program()}"'
         say(options, SETUP.format(driver=driver, suffix=SUFFIX), {"driver": driver})
         return 0
     if options.theirs is None:
@@ -75,7 +75,7 @@ def run(options: Namespace) -> int:
     return code
 
 
-def program() -> Path:
+def find_program() -> Path:
     """Return where the `metagraph` command is that belongs to this Python."""
     return Path(sys.executable).with_name("metagraph.exe" if os.name == "nt" else "metagraph")
 
@@ -86,9 +86,9 @@ def _merged(options: Namespace, output: ProjectOutput) -> int:
     sides = (phrase("in ours"), phrase("in theirs"))
     try:
         if options.prefer == "theirs":
-            found = merge(base, theirs, ours, sides[::-1])
+            found = merge_projects(base, theirs, ours, sides[::-1])
         else:
-            found = merge(base, ours, theirs, sides)
+            found = merge_projects(base, ours, theirs, sides)
     except MergeError as error:
         raise FileError(
             options.theirs,

@@ -15,7 +15,7 @@ from metagraph.graph.words import LAYERS
 if TYPE_CHECKING:
     from metagraph.graph.model import Project
     from metagraph.graph.requests import Performance
-    from metagraph.mimicry.keypoint_layouts import Keypoints
+    from metagraph.mimicry.keypoint_layouts import KeypointTrack
     from metagraph.mimicry.performing import Mimicry
     from metagraph.playback.plan import Plan
 
@@ -23,7 +23,7 @@ OUT = (".mp4", ".png", ".glb", ".usda", ".bvh", ".json")
 TAKES = (".bvh", ".glb")
 
 
-def arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Add the command's options."""
     parser.add_argument(
         "keypoints",
@@ -75,15 +75,15 @@ def run(options: Namespace) -> int:
     """Tell what is seen in keypoints; with `out` write the character mimicking it, with `keep` keep it in the
     project.
     """
-    from app.cli.render_command import size_of
+    from app.cli.render_command import read_size
 
     if options.out is not None and options.out.suffix not in OUT:
         name = options.out.suffix or options.out.name
         raise ValueError(f"it is written as {', '.join(OUT)}, not as '{name}'")
     if options.take is not None and options.take.suffix not in TAKES:
         raise ValueError(f"a take is written as {' or '.join(TAKES)}, not as '{options.take.suffix}'")
-    picture = size_of(options.picture) if options.picture else None
-    size = size_of(options.size)
+    picture = read_size(options.picture) if options.picture else None
+    size = read_size(options.size)
     with ProjectOutput(options.project) if options.keep is not None else nullcontext() as output:
         return _mimicked(options, picture, size, output)
 
@@ -95,19 +95,19 @@ def _mimicked(
     output: ProjectOutput | None,
 ) -> int:
     """output: where the project is saved, if it is."""
-    from app.cli.command_output import opened
+    from app.cli.command_output import open_for_command
     from metagraph.formats.keypoints.reader import read_keypoints
     from metagraph.graph.requests import Performance
-    from metagraph.mimicry.performing import REST, mimic_performance, placed
+    from metagraph.mimicry.performing import REST, mimic_performance, place_requests
 
-    project = opened(options.project)
+    project = open_for_command(options.project)
     seen = read_keypoints(options.keypoints, options.fps, picture)
     length = round(seen.seconds + REST, 3)
     new = Performance(name=options.keep or options.keypoints.stem, seed=options.seed, length=length)
     found = mimic_performance(
         project, seen, not options.no_mirror, options.layer or LAYERS, options.gaze, new
     )
-    kept = placed(project, found.performance)
+    kept = place_requests(project, found.performance)
     made = _planned(project, kept)
     written = [
         str(x)
@@ -130,12 +130,12 @@ def _mimicked(
     return 0 if rows else 3
 
 
-def _take(options: Namespace, project: Project, seen: Keypoints) -> Path | None:
+def _take(options: Namespace, project: Project, seen: KeypointTrack) -> Path | None:
     """Write the person's own motion, if it is wanted."""
     from metagraph.errors import FileError
     from metagraph.formats.bvh.file import write_bvh
     from metagraph.formats.gltf.writer import write_glb
-    from metagraph.mimicry.keypoint_take import KeypointTakeError, take_of
+    from metagraph.mimicry.keypoint_take import KeypointTakeError, clip_from_keypoints
 
     path: Path | None = options.take
     if path is None:
@@ -143,7 +143,9 @@ def _take(options: Namespace, project: Project, seen: Keypoints) -> Path | None:
     if project.skeleton is None:
         raise ValueError("a project without clips has no skeleton to move: import clips first")
     try:
-        clip = take_of(seen if options.no_mirror else seen.mirrored(), project.skeleton, path.stem)
+        clip = clip_from_keypoints(
+            seen if options.no_mirror else seen.mirrored(), project.skeleton, path.stem
+        )
     except KeypointTakeError as error:
         raise FileError(
             options.keypoints, str(error).partition(": ")[0], "", str(error).partition(": ")[2]
@@ -157,9 +159,11 @@ def _take(options: Namespace, project: Project, seen: Keypoints) -> Path | None:
 
 
 def _planned(project: Project, kept: Performance) -> Plan:
-    from metagraph.playback.planning.running_plan import asks_of, perform
+    from metagraph.playback.planning.running_plan import list_kept_asks, plan_performance
 
-    return perform(project, asks_of(kept), kept.length, kept.seed, dict(kept.stances), kept.idle)
+    return plan_performance(
+        project, list_kept_asks(kept), kept.length, kept.seed, dict(kept.stances), kept.idle
+    )
 
 
 def _keep(output: ProjectOutput | None, project: Project, kept: Performance) -> Path | None:
@@ -184,25 +188,25 @@ def _write(
 
         write_atomically(out, msgspec.json.format(msgspec.json.encode(kept), indent=1))
         return out
-    from app.cli.render_command import MOTION, Shot, bake_to, draw_to, figure_of
-    from app.stage.playback_source import Shown
+    from app.cli.render_command import MOTION, Shot, bake_to, draw_to, load_figure
+    from app.stage.playback_source import ShownPlayback
 
-    folder, shown = options.project.resolve().parent, Shown(project, made, kept.length)
+    folder, shown = options.project.resolve().parent, ShownPlayback(project, made, kept.length)
     if out.suffix in MOTION:
         bake_to(out, shown, kept.length, 30.0, folder)
     else:
-        draw_to(out, [(figure_of(project, folder), shown)], Shot(kept.length, size, 30.0, 24, "dark"))
+        draw_to(out, [(load_figure(project, folder), shown)], Shot(kept.length, size, 30.0, 24, "dark"))
     return out
 
 
 def _rows(project: Project, found: Mimicry, made: Plan) -> list[dict[str, Any]]:
     """Return of each sighting what was seen and when, and from when to when the character goes there."""
-    from metagraph.playback.planning.extend_performance import answer
+    from metagraph.playback.planning.extend_performance import answer_ask
 
     rows = []
     for sight in found.sightings:
         stance = project.stance(sight.stance)
-        said = answer(made, sight.id)
+        said = answer_ask(made, sight.id)
         rows.append(
             {
                 "at": round(sight.at, 3),
@@ -219,7 +223,7 @@ def _rows(project: Project, found: Mimicry, made: Plan) -> list[dict[str, Any]]:
     return rows
 
 
-def _facts(options: Namespace, seen: Keypoints) -> dict[str, Any]:
+def _facts(options: Namespace, seen: KeypointTrack) -> dict[str, Any]:
     return {
         "keypoints": str(options.keypoints),
         "seconds": round(seen.seconds, 3),
@@ -229,7 +233,9 @@ def _facts(options: Namespace, seen: Keypoints) -> dict[str, Any]:
     }
 
 
-def _lines(options: Namespace, seen: Keypoints, rows: list[dict[str, Any]], written: list[str]) -> list[str]:
+def _lines(
+    options: Namespace, seen: KeypointTrack, rows: list[dict[str, Any]], written: list[str]
+) -> list[str]:
     how = "as in a mirror" if not options.no_mirror else "left as left"
     out = [f"{options.keypoints}: {len(seen)} frames, {seen.seconds:.1f} s, {seen.dims} dimensions, {how}"]
     for row in rows:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
 
-from app.cli.command_output import opened, say
+from app.cli.command_output import open_for_command, say
 from app.cli.outputs import ProjectOutput
 from metagraph.graph.model import Project
 from metagraph.graph.words import FEELINGS
 
 
-def arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument(
         "--mood",
@@ -28,13 +28,13 @@ def arguments(parser: ArgumentParser) -> None:
 def run(options: Namespace) -> int:
     """Tell moods; set those that are asked for, and keep them in the project."""
     from metagraph.graph.editing.performances import set_life
-    from metagraph.playback.planning.understand import felt
+    from metagraph.playback.planning.understand import read_mood
 
-    told = felt(_mood(options.mood), options.intensity)  # type: ignore[arg-type]
+    told = read_mood(_mood(options.mood), options.intensity)  # type: ignore[arg-type]
     if not told and not options.from_voices:
-        return _said(options, opened(options.project))
+        return _said(options, open_for_command(options.project))
     with ProjectOutput(options.project) as output:
-        before = project = opened(options.project)
+        before = project = open_for_command(options.project)
         if told:
             project = set_life(project, **told)
         if options.from_voices:

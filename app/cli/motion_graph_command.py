@@ -13,8 +13,15 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from app.cli.motion_graph_soft import soft_options, soft_wish
-from app.cli.takes import beside, paired, paired_speech, read_spoken, read_takes, speech_arguments
+from app.cli.motion_graph_soft import add_soft_arguments, read_soft_wish
+from app.cli.takes import (
+    add_speech_arguments,
+    pair_speech,
+    pair_takes,
+    read_given_files,
+    read_side_speech,
+    read_take_files,
+)
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.graph.conversation.model import Segment
@@ -22,14 +29,14 @@ if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.synthesis.graph import MotionGraph, Threshold
     from metagraph.synthesis.prosody_costs import SpokenTake
     from metagraph.synthesis.search.path_quality import PathQuality
-    from metagraph.synthesis.search.relaxing import Answer
+    from metagraph.synthesis.search.relaxing import RelaxedAnswer
     from metagraph.synthesis.states import States
 
 OUT = (".bvh", ".glb")
 SPOKEN = ("clause", "response", "hesitation")
 
 
-def arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Add the actions of `motion-graph`, each with its options."""
     actions = parser.add_subparsers(dest="action", metavar="action", required=True)
 
@@ -45,11 +52,11 @@ def arguments(parser: ArgumentParser) -> None:
         )
         out.add_argument("--json", action="store_true", help="print what a program can read")
         if speech is not False:  # None: it may be given, and then its changes are key states too
-            speech_arguments(out, required=bool(speech))
+            add_speech_arguments(out, required=bool(speech))
         out.set_defaults(run=run)
         return out
 
-    built = action("build", "build the graph of takes, and tell what is in it", build, speech=None)
+    built = action("build", "build the graph of takes, and tell what is in it", build_and_print, speech=None)
     _graph_options(built)
     built.add_argument(
         "--keep",
@@ -58,12 +65,12 @@ def arguments(parser: ArgumentParser) -> None:
         help="keep what is finished there, to take up again after an end",
     )
     words = "compare graphs for k = 2, 3 and 4, before and after their loose parts are cut away"
-    _graph_options(action("table", words, table, speech=None), k=False)
+    _graph_options(action("table", words, print_states, speech=None), k=False)
     _synthesize_options(action("synthesize", "make motion that goes with speech", synthesize, speech=True))
     words = "hold out each take, search the others for its speech, and count what is found"
-    _evaluate_options(action("evaluate", words, evaluate, speech=True))
+    _evaluate_options(action("evaluate", words, print_evaluation, speech=True))
     words = "count how often hands and head move with what is said"
-    action("co-occurrence", words, co_occurrence, speech=True)
+    action("co-occurrence", words, print_co_occurrence, speech=True)
 
 
 def _graph_options(out: ArgumentParser, k: bool = True) -> None:
@@ -140,7 +147,7 @@ def _synthesize_options(made: ArgumentParser) -> None:
     )
     made.add_argument("--seed", type=int, default=1, help="another path of the greedy search (default: 1)")
     made.add_argument("-o", "--out", type=Path, required=True, help="a .bvh or .glb file")
-    soft_options(made)
+    add_soft_arguments(made)
 
 
 def _evaluate_options(tried: ArgumentParser) -> None:
@@ -157,7 +164,7 @@ def _evaluate_options(tried: ArgumentParser) -> None:
         help="instead: motion that is extended while it plays, for speech that is heard or announced",
     )
     tried.add_argument("--seed", type=int, default=1, help="other paths of the greedy search (default: 1)")
-    soft_options(tried)
+    add_soft_arguments(tried)
 
 
 def run(options: Namespace) -> int:
@@ -170,13 +177,13 @@ def run(options: Namespace) -> int:
 
 def _heard(options: Namespace) -> tuple[States, list[int]]:
     """Return the states of takes, and those where what is heard changes; none without speech."""
-    from metagraph.synthesis.constraints import changes
+    from metagraph.synthesis.constraints import find_change_states
 
     if not options.speech:
-        return _states([c for _, c in read_takes(options.takes)]), []
-    clips, speech = paired_speech(options)
+        return _states([c for _, c in read_take_files(options.takes)]), []
+    clips, speech = pair_speech(options)
     states = _states(clips)
-    return states, list(changes(states, speech))
+    return states, list(find_change_states(states, speech))
 
 
 def _telling(options: Namespace, what: str) -> Callable[[int, int], None]:
@@ -214,11 +221,11 @@ def _rates(clips: Sequence[Clip]) -> str:
 
 
 def _states(clips: Sequence[Clip]) -> States:
-    from metagraph.synthesis.states import states_of
+    from metagraph.synthesis.states import read_states
 
     if note := _rates(clips):
         print(f"note: {note}", file=sys.stderr)
-    return states_of(clips)
+    return read_states(clips)
 
 
 def _checked(options: Namespace) -> None:
@@ -232,14 +239,14 @@ def _checked(options: Namespace) -> None:
         raise ValueError("--most is at least 1")
 
 
-def build(options: Namespace) -> int:
+def build_and_print(options: Namespace) -> int:
     """Build a graph; print its states, threshold and transitions."""
     from time import perf_counter
 
     from app.cli.command_output import say
-    from metagraph.suggest.jumps.fits import fits
+    from metagraph.suggest.jumps.fits import fit_distributions
     from metagraph.synthesis.blocks import BlockMakers
-    from metagraph.synthesis.graph import build as build_graph
+    from metagraph.synthesis.graph import build_graph as build_graph
     from metagraph.synthesis.graph import largest, threshold
     from metagraph.synthesis.states import key_states
 
@@ -262,7 +269,7 @@ def build(options: Namespace) -> int:
         "takes": len(states.starts) - 1,
         "seconds": round(perf_counter() - begun, 3),
         **_limits(limit),
-        "fits": [asdict(f) for f in fits(limit.costs, limit.level)],
+        "fits": [asdict(f) for f in fit_distributions(limit.costs, limit.level)],
     }
     others = ", ".join(f"{f['name']} {f['limit']:.4g} m ({f['distance']:.3f})" for f in facts["fits"])
     words = (
@@ -294,12 +301,12 @@ def _limits(limit: Threshold) -> dict[str, Any]:
     return {"k": limit.k, "level": limit.level, "limit": limit.limit, "observed": limit.observed, "by": by}
 
 
-def table(options: Namespace) -> int:
+def print_states(options: Namespace) -> int:
     """Print states and edges for k = 2, 3 and 4, before and after what is not in the largest component is
     removed.
     """
     from app.cli.command_output import say
-    from metagraph.synthesis.graph import build as build_graph
+    from metagraph.synthesis.graph import build_graph as build_graph
     from metagraph.synthesis.graph import largest, threshold
     from metagraph.synthesis.states import SynthesisError, key_states
 
@@ -339,13 +346,13 @@ def synthesize(options: Namespace) -> int:
     """Write motion that goes with speech."""
     from app.cli.command_output import say
     from metagraph.graph.conversation.model import SOUNDS
-    from metagraph.research.motion_graph.search_evaluation import cut
+    from metagraph.research.motion_graph.search_evaluation import cut_segments
     from metagraph.synthesis.assemble import assemble
-    from metagraph.synthesis.constraints import changes, heard
-    from metagraph.synthesis.graph import build as build_graph
+    from metagraph.synthesis.constraints import find_change_states, find_heard_at
+    from metagraph.synthesis.graph import build_graph as build_graph
     from metagraph.synthesis.graph import threshold
     from metagraph.synthesis.search.path_quality import quality
-    from metagraph.synthesis.search.relaxing import Constraints, Searching, answer
+    from metagraph.synthesis.search.relaxing import Constraints, Searching, answer_speech
     from metagraph.synthesis.search.ruled_search import FREE, JUMP_RULES
     from metagraph.synthesis.soft_constraints import SoftMaterial, soft_report
     from metagraph.synthesis.states import key_states
@@ -355,8 +362,8 @@ def synthesize(options: Namespace) -> int:
         raise ValueError(
             f"motion is written as {' or '.join(OUT)}, not as '{options.out.suffix or options.out.name}'"
         )
-    wish = soft_wish(options)
-    clips, spoken, names = paired(options)
+    wish = read_soft_wish(options)
+    clips, spoken, names = pair_takes(options)
     if options.again is not None:
         return _again(options, clips, [one.segments for one in spoken])
     held_out = _take_number(options.take, names) if options.take is not None else None
@@ -368,7 +375,7 @@ def synthesize(options: Namespace) -> int:
     seconds = _seconds(options, new)
     speech = [one.segments for one in spoken]
     states = _states(clips)
-    keys = key_states(states, options.keys, changes(states, speech))
+    keys = key_states(states, options.keys, find_change_states(states, speech))
     graph = build_graph(states, threshold(states, options.k, options.level), keys, options.most)
     use = [k for k in SOUNDS if k not in options.without]
     asked = Constraints(
@@ -381,10 +388,10 @@ def synthesize(options: Namespace) -> int:
     soft = SoftMaterial(wish, states, clips, spoken, graph.threshold.limit).constraints(
         new, options.start, seconds, options.tolerance
     )
-    found = answer(
+    found = answer_speech(
         graph,
-        heard(states, speech),
-        cut(new.segments, options.start, seconds),
+        find_heard_at(states, speech),
+        cut_segments(new.segments, options.start, seconds),
         seconds,
         asked,
         Searching(options.search, options.seed, options.strict),
@@ -426,10 +433,12 @@ def _take_number(take: str, names: list[str]) -> int:
 
 def _speech_of_file(options: Namespace, needs_sound: bool) -> SpokenTake:
     """Return the speech of the file that was named as new. Raises ValueError."""
-    sound, transcript = (beside(options, what).get(options.new.stem) for what in ("sounds", "transcripts"))
+    sound, transcript = (
+        read_given_files(options, what).get(options.new.stem) for what in ("sounds", "transcripts")
+    )
     if needs_sound and sound is None:
         raise ValueError(f"no sound for {options.new.name}: --sounds has none that is called so")
-    return read_spoken(options.new, options.side, sound, transcript)
+    return read_side_speech(options.new, options.side, sound, transcript)
 
 
 def _seconds(options: Namespace, new: SpokenTake) -> float:
@@ -449,7 +458,7 @@ def _seconds(options: Namespace, new: SpokenTake) -> float:
     return seconds
 
 
-def _path_facts(found: Answer, states: States, looks: PathQuality) -> dict[str, Any]:
+def _path_facts(found: RelaxedAnswer, states: States, looks: PathQuality) -> dict[str, Any]:
     """Return what there is to tell a program about the path that was found."""
     path = found.path
     return {
@@ -482,28 +491,28 @@ def _again(options: Namespace, clips: list[Clip], speech: list[tuple[Segment, ..
     """Write the last motion of a live session once more."""
     from app.cli.command_output import say
     from metagraph.live.graph_motion import live_graph
-    from metagraph.live.kept_motion import made_again, read_kept
+    from metagraph.live.kept_motion import read_kept, remake_motion
 
     kept = read_kept(options.again)[-1]
     graph = live_graph(clips, speech, options.k, options.level, options.keys, options.most)
-    clip = made_again(graph, kept, options.out.stem)
+    clip = remake_motion(graph, kept, options.out.stem)
     _write(options.out, clip)
     data = {"out": str(options.out), "seconds": clip.duration, "frames": clip.frames, "begun": kept.begun}
     say(options, f"{options.out}: {clip.duration:.1f} s, from {kept.begun:.1f} s of the session on", data)
     return 0
 
 
-def evaluate(options: Namespace) -> int:
+def print_evaluation(options: Namespace) -> int:
     """Print, setting by setting, how much held-out speech finds motion."""
     from app.cli.command_output import say
     from metagraph.formats.atomic import write_atomically
-    from metagraph.research.motion_graph.evaluation_table import csv_of, table_of
+    from metagraph.research.motion_graph.evaluation_table import cases_as_csv, cases_as_text
     from metagraph.research.motion_graph.search_evaluation import SETTINGS, Beside, GraphMaking, Trials
-    from metagraph.research.motion_graph.search_evaluation import evaluate as run
+    from metagraph.research.motion_graph.search_evaluation import evaluate_search as run
 
     _checked(options)
-    wish = soft_wish(options)
-    clips, spoken, _ = paired(options)
+    wish = read_soft_wish(options)
+    clips, spoken, _ = pair_takes(options)
     if note := _rates(clips):
         print(f"note: {note}", file=sys.stderr)
     if options.live:
@@ -520,34 +529,38 @@ def evaluate(options: Namespace) -> int:
             Beside(wish, spoken),
         )
     if options.out is not None:
-        write_atomically(options.out, csv_of(found.cases).encode())
+        write_atomically(options.out, cases_as_csv(found.cases).encode())
     data = {
         "rows": [asdict(r) for r in found.rows],
         "graphs": [asdict(g) for g in found.graphs],
         "cases": len(found.cases),
         "whole": found.whole,
     }
-    say(options, table_of(found) + (f"\n{options.out}" if options.out is not None else ""), data)
+    say(options, cases_as_text(found) + (f"\n{options.out}" if options.out is not None else ""), data)
     return 0 if found.whole else 3
 
 
 def _evaluate_live(options: Namespace, clips: list[Clip], speech: list[tuple[Segment, ...]]) -> int:
     """Print how motion that is extended while it plays goes with speech that becomes known bit by bit."""
     from app.cli.command_output import say
-    from metagraph.research.motion_graph.extending_evaluation import held_out, rows_of, table_of
+    from metagraph.research.motion_graph.extending_evaluation import (
+        hold_out_takes,
+        rows_as_text,
+        score_extending,
+    )
 
-    graphs = held_out(clips, speech, options.k, options.level, options.keys, options.most)
-    rows = list(rows_of(graphs, seed=options.seed, progress=_telling(options, "drives")))
-    say(options, table_of(rows), [asdict(r) for r in rows])
+    graphs = hold_out_takes(clips, speech, options.k, options.level, options.keys, options.most)
+    rows = list(score_extending(graphs, seed=options.seed, progress=_telling(options, "drives")))
+    say(options, rows_as_text(rows), [asdict(r) for r in rows])
     return 0
 
 
-def co_occurrence(options: Namespace) -> int:
+def print_co_occurrence(options: Namespace) -> int:
     """Print how often each kind of segment goes with which movement, beside chance."""
     from app.cli.command_output import say
-    from metagraph.synthesis.cooccurrence import table as count
+    from metagraph.synthesis.cooccurrence import count_cooccurrence as count
 
-    clips, speech = paired_speech(options)
+    clips, speech = pair_speech(options)
     rows = count(clips, speech)
     lines = [f"{'':<34}{'matched':>8}{'total':>7}{'rate':>7}  {'95 %':<13}{'chance':>7}"]
     for r in rows:

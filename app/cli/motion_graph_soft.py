@@ -12,7 +12,7 @@ if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.synthesis.soft_constraints import SoftWish
 
 
-def soft_options(parser: ArgumentParser) -> None:
+def add_soft_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     group = parser.add_argument_group("beside the constraints")
     group.add_argument(
@@ -80,7 +80,7 @@ def soft_options(parser: ArgumentParser) -> None:
     )
 
 
-def soft_wish(options: Namespace) -> SoftWish:
+def read_soft_wish(options: Namespace) -> SoftWish:
     """Return what is wished. Raises ValueError, and FileError for a file of words."""
     from metagraph.formats.word_lists import read_word_lists
     from metagraph.synthesis.iconic_words import word_wish

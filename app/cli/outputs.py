@@ -55,9 +55,9 @@ def offer_overwrite(parser: ArgumentParser, command: str) -> None:
         parser.add_argument("--overwrite", action="store_true", help=OVERWRITE)
 
 
-def outputs_of(options: Namespace) -> Outputs:
+def claim_outputs(options: Namespace) -> Outputs:
     """Return the outputs of a command line, and claim what its options name. Raises FileError."""
-    from metagraph.formats.outputs import Outputs, all_paths, data_folder
+    from metagraph.formats.outputs import Outputs, data_folder, find_paths
 
     command, action = options.command, getattr(options, "step", None) or getattr(options, "action", None)
     name = " ".join(filter(None, (command, action)))
@@ -65,7 +65,7 @@ def outputs_of(options: Namespace) -> Outputs:
     written = [*OUTPUTS, *(dest for c, a, dest in WRITTEN if (c, a) == (command, action))]
     out: list[Path] = []
     for option, value in vars(options).items():
-        paths = all_paths([value])
+        paths = find_paths([value])
         if option in written:
             out += paths
         else:
@@ -74,7 +74,7 @@ def outputs_of(options: Namespace) -> Outputs:
     if data is not None:
         made.keeps_up(data)
     if command == "study" and action in STUDIES:
-        given = list(all_paths(getattr(options, option, None) for option in ("study", "folder")))
+        given = list(find_paths(getattr(options, option, None) for option in ("study", "folder")))
         made.keeps_up(*(p if p.is_dir() else p.parent for p in given))
     if command not in PROJECTS and (command, action) not in NEVER:
         for path in out:
@@ -95,7 +95,7 @@ class ProjectOutput:
 
     def __enter__(self) -> ProjectOutput:
         from metagraph.formats.locking import Lock, new_owner
-        from metagraph.formats.outputs import keeps_up, locked_error
+        from metagraph.formats.outputs import declare_updates, locked_error
         from metagraph.formats.store import file_digest
 
         self._lock = Lock(self.path, new_owner())
@@ -106,7 +106,7 @@ class ProjectOutput:
             self._digest = file_digest(self.path)
         except OSError:
             self._digest = None  # whoever reads it says why
-        keeps_up(self.path)
+        declare_updates(self.path)
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -119,7 +119,7 @@ class ProjectOutput:
         from app.project.version_count import version_count
         from metagraph.errors import FileError
         from metagraph.formats.project.versions import write_project
-        from metagraph.formats.store import encoded, file_digest, moved
+        from metagraph.formats.store import encode_project, file_digest, move_project
 
         if file_digest(self.path) != self._digest:
             raise FileError(
@@ -129,16 +129,16 @@ class ProjectOutput:
                 "It is as that program left it. Run the command again.",
             )
         if was_at is not None:
-            project = moved(project, was_at, self.path)
+            project = move_project(project, was_at, self.path)
         versions = version_count() if self.versions is None else self.versions
-        note = write_project(self.path, encoded(project, self.path), versions)
+        note = write_project(self.path, encode_project(project, self.path), versions)
         if note is not None:
             print(f"note: {note}", file=sys.stderr)
         self._digest = file_digest(self.path)
         return project
 
 
-def project_name(path: Path) -> Path:
+def with_project_ending(path: Path) -> Path:
     """Return a project's path with an ending that projects have."""
     from metagraph.formats.store import SUFFIX
 

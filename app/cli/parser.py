@@ -12,10 +12,10 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from app.cli.outputs import offer_overwrite, outputs_of
+from app.cli.outputs import claim_outputs, offer_overwrite
 from metagraph import __version__
 from metagraph.common.network_paths import allow
-from metagraph.common.programs import settle
+from metagraph.common.programs import leave_working_folder
 
 ERROR = 1
 NETWORK = "--network"  # of any command: open files on other computers that a project names
@@ -135,7 +135,7 @@ def _parser(chosen: str) -> argparse.ArgumentParser:
             command.add_argument("project", type=Path, help="the project file")
         if name not in GROUPS:
             command.add_argument("--json", action="store_true", help="print what a program can read")
-        _module(name).arguments(command)
+        _module(name).add_arguments(command)
         offer_overwrite(command, name)
     return parser
 
@@ -146,7 +146,7 @@ def _module(name: str) -> Any:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command line; return the exit code. Wrong usage and --help raise SystemExit, as argparse does."""
-    settle()
+    leave_working_folder()
     # Before NumPy is there. Its threads only wait for each other in a small model's sums; what is large
     # shares its blocks among threads itself.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -166,7 +166,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from metagraph.formats.outputs import writing
 
     try:
-        with writing(outputs_of(options)):
+        with writing(claim_outputs(options)):
             return int(_module(options.command).run(options))
     except BrokenPipeError:  # whoever read our words has read enough
         sys.stdout = None  # nothing is left to flush

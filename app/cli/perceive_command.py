@@ -8,13 +8,13 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from app.cli.perceive_planning import arguments as planning_arguments
-from app.cli.perceive_planning import empty
+from app.cli.perceive_planning import add_arguments as planning_arguments
+from app.cli.perceive_planning import require_empty
 
 NOTHING = 3  # exit code where nothing can be told
 
 
-def arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Add the actions, each with its options."""
     actions = parser.add_subparsers(dest="step", metavar="step", required=True)
 
@@ -24,29 +24,33 @@ def arguments(parser: ArgumentParser) -> None:
         out.set_defaults(run=run)
         return out
 
-    made = action("make", "draw the videos of a study and write the page that shows them", make)
+    made = action(
+        "make", "draw the videos of a study and write the page that shows them", make_perceptual_study
+    )
     made.add_argument("plan", type=Path, help="a perceive.yaml")
     made.add_argument(
         "--into", type=Path, required=True, metavar="FOLDER", help="a folder that is not there yet"
     )
-    served = action("serve", "show the page to browsers, and keep what they answer, until stopped", serve)
+    served = action(
+        "serve", "show the page to browsers, and keep what they answer, until stopped", serve_perceptual_study
+    )
     _study(served)
     served.add_argument("--port", type=int, default=0, help="(default: any that is free)")
     served.add_argument(
         "--address", default="127.0.0.1", help="of the interface to listen on (default: this machine alone)"
     )
-    brought = action("collect", "keep answers that the page has saved as files", collect)
+    brought = action("collect", "keep answers that the page has saved as files", print_perceptual_answers)
     _study(brought)
     brought.add_argument("answers", type=Path, nargs="+", help="the files, or folders of them")
-    told = action("report", "write what the answers show: a page and tables as CSV", report)
+    told = action("report", "write what the answers show: a page and tables as CSV", report_perceptual_study)
     _study(told)
     told.add_argument("--out", type=Path, help="where to write it (default: report, in the study's folder)")
     planning_arguments(action)
-    gone = action("withdraw", "leave somebody's answers out of all reports from now on", withdraw)
+    gone = action("withdraw", "leave somebody's answers out of all reports from now on", withdraw_person)
     _study(gone)
     gone.add_argument("participant", help="their code")
     gone.add_argument("--why", default="", help="in words, kept in the log")
-    deleted = action("delete", "delete all answers of somebody, and note that it was done", delete)
+    deleted = action("delete", "delete all answers of somebody, and note that it was done", delete_person)
     _study(deleted)
     deleted.add_argument("participant", help="their code")
     deleted.add_argument("--yes", action="store_true", help="do not ask")
@@ -56,22 +60,22 @@ def _study(parser: ArgumentParser) -> None:
     parser.add_argument("folder", type=Path, help="the folder that 'make' or 'simulate' wrote")
 
 
-def make(options: Namespace) -> int:
+def make_perceptual_study(options: Namespace) -> int:
     import hashlib
 
     from app.cli.command_output import say
     from app.cli.perceive_stimuli import Stimuli
     from metagraph.formats.outputs import claim
-    from metagraph.research.study.perceive.design import design, sequences
+    from metagraph.research.study.perceive.design import count_sequences, design
     from metagraph.research.study.perceive.folder import KEY, level_times, write_folder
-    from metagraph.research.study.perceive.perceive_plan import FILE, read_plan
+    from metagraph.research.study.perceive.perceive_plan import FILE, read_perceive_plan
     from metagraph.research.study.plan.allocation import make_secret
     from metagraph.speech.soundtrack import RATE
     from preview.video import write_video
 
     path = options.plan / FILE if options.plan.is_dir() else options.plan
-    plan = read_plan(path)
-    empty(options.into)
+    plan = read_perceive_plan(path)
+    require_empty(options.into)
     claim(*(options.into / name for name in ("show/index.html", FILE, KEY)))
     stimuli = Stimuli(path.resolve(), plan)
     sounds = stimuli.sounds()  # what is missing is told before anything is drawn
@@ -102,7 +106,7 @@ def make(options: Namespace) -> int:
     level_times(options.into)
     study = write_folder(options.into, plan, path.read_bytes(), made)
     each = [len(s.trials) for s in made.key.sessions.values()]
-    rounds = sequences(plan)
+    rounds = count_sequences(plan)
     lines = [
         f"{study.show / 'index.html'}: {len(made.key.stimuli)} videos, {len(each)} participants of "
         f"{max(each)} trials",
@@ -137,13 +141,13 @@ def _digested(frames: Iterable[Any], content: Any) -> Iterator[Any]:
         yield picture
 
 
-def serve(options: Namespace) -> int:
+def serve_perceptual_study(options: Namespace) -> int:
     import time
 
-    from app.cli.command_output import until_told_to_stop
+    from app.cli.command_output import run_until_stopped
     from metagraph.research.study.perceive.folder import read_folder
     from metagraph.research.study.perceive.serving import page_of
-    from metagraph.research.study.perceive.serving import serve as begin
+    from metagraph.research.study.perceive.serving import serve_page as begin
 
     study = read_folder(options.folder)
     page_of(study)
@@ -152,7 +156,7 @@ def serve(options: Namespace) -> int:
     except (OSError, OverflowError) as error:
         raise ValueError(f"{options.address}:{options.port} cannot be listened on ({error})") from None
     try:
-        with until_told_to_stop():
+        with run_until_stopped():
             print(f"the page is at {served.url}#CODE (Ctrl+C stops)", file=sys.stderr, flush=True)
             while True:
                 time.sleep(3600)
@@ -162,10 +166,10 @@ def serve(options: Namespace) -> int:
     return 0
 
 
-def collect(options: Namespace) -> int:
+def print_perceptual_answers(options: Namespace) -> int:
     from app.cli.command_output import say
     from metagraph.errors import FileError
-    from metagraph.research.study.perceive.answers import SheetError, keep, read_answers
+    from metagraph.research.study.perceive.answers import SheetError, keep_sheet, read_answers
     from metagraph.research.study.perceive.folder import read_folder
 
     study = read_folder(options.folder)
@@ -175,7 +179,7 @@ def collect(options: Namespace) -> int:
     for path in paths:
         try:
             sheet = read_answers(path)
-            found = keep(study, sheet)
+            found = keep_sheet(study, sheet)
         except FileError as error:
             failed.append(str(error))
         except SheetError as error:
@@ -189,22 +193,27 @@ def collect(options: Namespace) -> int:
     return 0 if done and not failed else NOTHING
 
 
-def report(options: Namespace) -> int:
+def report_perceptual_study(options: Namespace) -> int:
     from app.cli.command_output import say
     from metagraph.formats.outputs import claim
     from metagraph.research.study.perceive.folder import read_folder
-    from metagraph.research.study.perceive.perceive_analysis import analyse
-    from metagraph.research.study.perceive.perceive_data import collect as read_answers
-    from metagraph.research.study.perceive.perceive_report import NAME, summary, tables, write_report
+    from metagraph.research.study.perceive.perceive_analysis import analyse_answers
+    from metagraph.research.study.perceive.perceive_data import collect_answers as read_answers
+    from metagraph.research.study.perceive.perceive_report import (
+        NAME,
+        perceive_tables,
+        summarise_perceive,
+        write_perceive_report,
+    )
 
     study = read_folder(options.folder)
     place = options.out or study.folder / "report"
     claim(place / NAME)
-    results = analyse(read_answers(study))
-    written = write_report(results, place)
+    results = analyse_answers(read_answers(study))
+    written = write_perceive_report(results, place)
     for words in results.answers.odd:
         print(f"note: {words}", file=sys.stderr)
-    columns, rows = tables(results)["pairs.csv"]
+    columns, rows = perceive_tables(results)["pairs.csv"]
     data = {
         "people": len(results.answers.people),
         "count": len(results.answers.counting),
@@ -219,14 +228,14 @@ def report(options: Namespace) -> int:
         "written": [str(p) for p in written],
     }
     fake = ["Nobody took part: these answers were simulated."] if results.answers.simulated else []
-    said = [*fake, *summary(results), *(f"- {w}" for w in results.cautions), str(written[0])]
+    said = [*fake, *summarise_perceive(results), *(f"- {w}" for w in results.cautions), str(written[0])]
     say(options, "\n".join(said), data)
     return 0 if results.answers.counting else NOTHING
 
 
-def withdraw(options: Namespace) -> int:
+def withdraw_person(options: Namespace) -> int:
     from app.cli.command_output import say
-    from metagraph.research.study.logs.withdrawal import withdraw as note
+    from metagraph.research.study.logs.withdrawal import note_withdrawal as note
     from metagraph.research.study.perceive.folder import read_folder
 
     study = read_folder(options.folder)
@@ -240,9 +249,9 @@ def withdraw(options: Namespace) -> int:
     return 0
 
 
-def delete(options: Namespace) -> int:
+def delete_person(options: Namespace) -> int:
     from app.cli.command_output import may_delete, say
-    from metagraph.research.study.logs.withdrawal import delete as remove
+    from metagraph.research.study.logs.withdrawal import delete_data as remove
     from metagraph.research.study.perceive.folder import read_folder
 
     study = read_folder(options.folder)

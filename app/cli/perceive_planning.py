@@ -15,9 +15,11 @@ if TYPE_CHECKING:  # reading a command line must not wait for arrays
 Action = Callable[[str, str, Callable[[Namespace], int]], ArgumentParser]
 
 
-def arguments(action: Action) -> None:
+def add_arguments(action: Action) -> None:
     """Add the actions."""
-    planned = action("plan", "say how many answers, and how many people, a forced choice needs", plan)
+    planned = action(
+        "plan", "say how many answers, and how many people, a forced choice needs", write_perceptual_plan
+    )
     planned.add_argument("--share", type=float, required=True, help="of choices that is expected, 0.5 to 1")
     planned.add_argument("--smallest", type=float, help="the smallest share that would matter")
     planned.add_argument("--items", type=int, default=10, help="stretches of motion in all (10)")
@@ -31,7 +33,11 @@ def arguments(action: Action) -> None:
     planned.add_argument("--participants", type=int, help="tell the chance with so many instead")
     planned.add_argument("--studies", type=int, default=200, help="that are simulated (200)")
     planned.add_argument("--seed", type=int, default=1)
-    faked = action("simulate", "write a study without videos, answered by people who do not exist", simulate)
+    faked = action(
+        "simulate",
+        "write a study without videos, answered by people who do not exist",
+        simulate_perceptual_study,
+    )
     faked.add_argument("out", type=Path, help="a folder that is not there yet")
     faked.add_argument("--like", type=Path, metavar="PLAN", help="a perceive.yaml of yours")
     faked.add_argument("--participants", type=int, help="how many (default: the plan's)")
@@ -49,7 +55,7 @@ def arguments(action: Action) -> None:
     faked.add_argument("--seed", type=int, default=1, help="other people (1)")
 
 
-def empty(folder: Path) -> None:
+def require_empty(folder: Path) -> None:
     """Raise ValueError for a folder with a study in it: its answers must not get another key."""
     from metagraph.research.study.perceive.folder import KEY
 
@@ -59,10 +65,15 @@ def empty(folder: Path) -> None:
         raise ValueError(f"{folder} is a file: name a folder")
 
 
-def plan(options: Namespace) -> int:
+def write_perceptual_plan(options: Namespace) -> int:
     from app.cli.command_output import say
     from metagraph.research.study.perceive import binomial
-    from metagraph.research.study.perceive.perceive_power import Expected, design_effect, people_needed, shown
+    from metagraph.research.study.perceive.perceive_power import (
+        Expected,
+        count_raters_needed,
+        design_effect,
+        simulate_power,
+    )
 
     if options.tests < 1 or options.items < 1:
         raise ValueError("tests and items are at least 1")
@@ -74,7 +85,7 @@ def plan(options: Namespace) -> int:
         raise ValueError(f"--smallest is more than 0.5 and less than 1, not {options.smallest:g}")
     alpha, each = 0.05 / options.tests, options.each or options.items
     expected = Expected(options.share, options.people_differ, options.items_differ)
-    answers = binomial.needed(options.share, options.chance, alpha)
+    answers = binomial.count_needed_answers(options.share, options.chance, alpha)
     data: dict[str, Any] = {
         "answers": answers,
         "alpha": alpha,
@@ -87,7 +98,7 @@ def plan(options: Namespace) -> int:
         f"  independent answers to show a share of {options.share:.0%}: {_count(answers)} (exact binomial)",
     ]
     if options.smallest is not None:
-        data["smallest"] = binomial.needed(options.smallest, options.chance, alpha)
+        data["smallest"] = binomial.count_needed_answers(options.smallest, options.chance, alpha)
         data["equivalent"] = binomial.equivalence_needed(options.smallest - 0.5, options.chance, alpha)
         lines += [
             f"  to show the smallest that matters, {options.smallest:.0%}: {_count(data['smallest'])}",
@@ -99,7 +110,7 @@ def plan(options: Namespace) -> int:
     )
     rest = (options.items, each)
     if options.participants is not None:
-        found = shown(expected, options.participants, *rest, alpha, options.studies, options.seed)
+        found = simulate_power(expected, options.participants, *rest, alpha, options.studies, options.seed)
         data["power"] = {
             "people": options.participants,
             "chance": found.value,
@@ -108,7 +119,9 @@ def plan(options: Namespace) -> int:
         }
         lines.append(f"{options.participants} people: {_chance(found)}")
     else:
-        people, best = people_needed(expected, *rest, options.chance, alpha, options.studies, options.seed)
+        people, best = count_raters_needed(
+            expected, *rest, options.chance, alpha, options.studies, options.seed
+        )
         data["people"] = people
         if best is not None:
             data["power"] = {"chance": best.value, "low": best.low, "high": best.high}
@@ -153,22 +166,22 @@ choice: {question: Which of the two seems more natural?}
 """
 
 
-def simulate(options: Namespace) -> int:
+def simulate_perceptual_study(options: Namespace) -> int:
     from dataclasses import replace
 
     from msgspec.structs import replace as changed
 
     from app.cli.command_output import say
-    from metagraph.research.study.perceive.perceive_plan import FILE, from_text, read_plan
+    from metagraph.research.study.perceive.perceive_plan import FILE, parse_perceive_plan, read_perceive_plan
     from metagraph.research.study.perceive.simulated import write_simulated
 
-    empty(options.out)
+    require_empty(options.out)
     text = EXAMPLE.encode()
-    mine = from_text(EXAMPLE)
+    mine = parse_perceive_plan(EXAMPLE)
     raters = _raters(options)
     if options.like is not None:
         path = options.like / FILE if options.like.is_dir() else options.like
-        mine, text = read_plan(path), path.read_bytes()
+        mine, text = read_perceive_plan(path), path.read_bytes()
     elif not raters.liked:
         raters = replace(raters, liked={"deaf": -0.8})
     if options.participants is not None:

@@ -12,16 +12,16 @@ from typing import Any
 
 import numpy as np
 
-from app.cli.command_output import opened, staged
-from app.cli.render_command import bounds_of, figure_of, pictures, sound_of
+from app.cli.command_output import open_for_command, stage_performance
+from app.cli.render_command import load_figure, measure_bounds, mix_sound, render_pictures
 from app.stage.conversation_plans import ConversationPlans
-from app.stage.playback_source import ASIDE, Shown, alone
+from app.stage.playback_source import ASIDE, ShownPlayback, play_clip_alone
 from metagraph.errors import FileError
 from metagraph.formats.gltf.reader import has_skinned_mesh
 from metagraph.graph.model import ClipEntry, Project
 from metagraph.motion.clip import Clip
 from metagraph.research.study.perceive.perceive_plan import Condition, PerceivePlan, Stretch
-from metagraph.speech.loudness import levelled
+from metagraph.speech.loudness import level_sounds
 from metagraph.speech.soundtrack import RATE
 
 NEW = "perceived.{}"  # ids of clips that are put into a project for its pictures alone
@@ -30,7 +30,7 @@ Sounds = dict[tuple[str, str], np.ndarray | None]
 
 
 @dataclass(frozen=True)
-class Source:
+class StimulusSource:
     """What a condition shows of an item. seen: figures and what they play, or the video there is. start:
     seconds into it. sound: of a moment on, so long, mono at RATE; None where nothing is heard.
     """
@@ -38,7 +38,7 @@ class Source:
     start: float
     length: float
     sound: Callable[[float, float], np.ndarray | None]
-    seen: tuple[tuple[Any, Shown], ...] = ()
+    seen: tuple[tuple[Any, ShownPlayback], ...] = ()
     video: Path | None = None
 
 
@@ -51,10 +51,10 @@ class Stimuli:
         self.path, self.plan = path, plan
         self._projects: dict[Path, Project] = {}
         self._figures: dict[tuple[Any, ...], Any] = {}
-        self._whole: dict[str, Source] = {}
+        self._whole: dict[str, StimulusSource] = {}
         self._plans = ConversationPlans()
 
-    def source(self, name: str, item: Stretch) -> Source:
+    def source(self, name: str, item: Stretch) -> StimulusSource:
         """Return what a condition shows of an item."""
         made = self.plan.conditions[name]
         # Of what is not made for each item one whole is kept.
@@ -81,24 +81,24 @@ class Stimuli:
                 samples = found.sound(found.start, item.seconds) if made.sound != "none" else None
                 if samples is not None:
                     out[name, item.id] = samples
-        levels = levelled({"\n".join(k): v for k, v in out.items()}, RATE, self.plan.video.loudness)
+        levels = level_sounds({"\n".join(k): v for k, v in out.items()}, RATE, self.plan.video.loudness)
         return {(c, i.id): levels.get(f"{c}\n{i.id}") for c in self.plan.conditions for i in items}
 
     def camera(self, item: Stretch) -> Any:
         """Return the camera that sees an item in all conditions; None where nothing is drawn."""
-        from preview.camera import whole_figure
+        from preview.camera import frame_whole_figure
 
         boxes, several = [], False
         for name in self.plan.conditions:
             found = self.source(name, item)
             if found.seen:
-                boxes.append(bounds_of(found.seen, found.start + np.arange(0, item.seconds, 1 / 15)))
+                boxes.append(measure_bounds(found.seen, found.start + np.arange(0, item.seconds, 1 / 15)))
                 several |= len(found.seen) > 1
         if not boxes:
             return None
         box = np.min([b[0] for b in boxes], 0), np.max([b[1] for b in boxes], 0)
         look = self.plan.video
-        return whole_figure(box, look.width / look.height, ASIDE if several else 0.0)
+        return frame_whole_figure(box, look.width / look.height, ASIDE if several else 0.0)
 
     def pictures(self, name: str, item: Stretch, camera: Any) -> Iterator[np.ndarray]:
         """Yield what a condition shows of an item."""
@@ -110,7 +110,7 @@ class Stimuli:
         if found.video is not None:
             yield from read_pictures(found.video, times, size)
         else:
-            yield from pictures(found.seen, times, size, look.theme, camera)
+            yield from render_pictures(found.seen, times, size, look.theme, camera)
 
     # --- what is read
 
@@ -128,16 +128,16 @@ class Stimuli:
     def _project(self, made: Condition) -> tuple[Project, Path]:
         path = (self.path.parent / (made.project or self.plan.project or "")).resolve()
         if path not in self._projects:
-            self._projects[path] = opened(path)
+            self._projects[path] = open_for_command(path)
         return self._projects[path], path.parent
 
     def _figure(self, project: Project, folder: Path) -> Any:
         key = str(folder), project.character, project.hidden, project.skeleton
         if key not in self._figures:
-            self._figures[key] = figure_of(project, folder)
+            self._figures[key] = load_figure(project, folder)
         return self._figures[key]
 
-    def _read(self, name: str, made: Condition, item: Stretch, apart: bool) -> Source:
+    def _read(self, name: str, made: Condition, item: Stretch, apart: bool) -> StimulusSource:
         if made.video is not None:
             return self._video(name, made, item, apart)
         if made.conversation is not None:
@@ -151,14 +151,14 @@ class Stimuli:
         start = item.start if made.conversation is not None or not apart else 0.0
 
         def spoken(begin: float, seconds: float) -> np.ndarray | None:
-            found = sound_of(shown, folder, seconds, begin)
+            found = mix_sound(shown, folder, seconds, begin)
             return found[0] if found is not None else None
 
         sound = spoken if made.audio is None else self._audio(made.audio, item)
         seen = tuple((self._figure(one.project, one.folder or folder), one) for one in shown.everyone)
-        return Source(start, shown.length, sound, seen)
+        return StimulusSource(start, shown.length, sound, seen)
 
-    def _conversation(self, name: str, made: Condition, item: Stretch) -> tuple[Shown, Path]:
+    def _conversation(self, name: str, made: Condition, item: Stretch) -> tuple[ShownPlayback, Path]:
         project, folder = self._project(made)
         ident = _named(project.conversations, made.conversation)
         if ident is None:
@@ -186,7 +186,7 @@ class Stimuli:
                 path = made.motion[n]
                 clip = self._clip(name, self._file(path, item), project)
                 if "{item}" in path:
-                    clip = delayed(clip, item.start)
+                    clip = delay_clip(clip, item.start)
                 motion = NEW.format(n)
                 project = with_clip(project, motion, clip)
             sides.append(replace_struct(side, motion=motion, rates=replace_struct(side.rates, **rates)))
@@ -197,13 +197,13 @@ class Stimuli:
             raise self._failure(name, shown.notes[0], "Mend it in the project: a study shows all or nothing.")
         return shown, folder
 
-    def _performance(self, made: Condition) -> tuple[Shown, Path]:
+    def _performance(self, made: Condition) -> tuple[ShownPlayback, Path]:
         project, folder = self._project(made)
         wanted = Namespace(performance=made.performance, seconds=None, seed=made.seed, usual_seconds=10.0)
-        plan = staged(project, wanted)
-        return Shown(project, plan, wanted.seconds), folder
+        plan = stage_performance(project, wanted)
+        return ShownPlayback(project, plan, wanted.seconds), folder
 
-    def _motion(self, name: str, made: Condition, item: Stretch) -> tuple[Shown, Path]:
+    def _motion(self, name: str, made: Condition, item: Stretch) -> tuple[ShownPlayback, Path]:
         """Return a clip of a project, or a file's motion on its character, or as a stick figure."""
         if made.clip is not None:
             project, folder = self._project(made)
@@ -211,7 +211,7 @@ class Stimuli:
             ident = next((e.id for e in project.clips.values() if wanted in (e.name, e.id)), None)
             if ident is None or project.clips[ident].motion is None:
                 raise self._failure(name, f"there is no clip '{wanted}' in the project")
-            return alone(project, ident), folder
+            return play_clip_alone(project, ident), folder
         assert isinstance(made.motion, str)
         path = self._file(made.motion, item)
         if made.project or self.plan.project:
@@ -222,14 +222,14 @@ class Stimuli:
             own = path if path.is_file() else Path(str(path).partition("#")[0])
             drawn = own.suffix.lower() in (".glb", ".gltf", ".vrm") and has_skinned_mesh(own)
             project = Project(skeleton=clip.skeleton, character=own.name if drawn else None)
-        return alone(with_clip(project, NEW.format(0), clip), NEW.format(0)), folder
+        return play_clip_alone(with_clip(project, NEW.format(0), clip), NEW.format(0)), folder
 
     def _clip(self, name: str, path: Path, project: Project | None) -> Clip:
-        from metagraph.formats.clips import read_clips
+        from metagraph.formats.clips import read_clip_file
 
         named, _, take = str(path).partition("#")
         path = path if path.is_file() else Path(named)
-        found = read_clips(path)
+        found = read_clip_file(path)
         clips = [c for c in found if not take or c.name == take]
         if len(clips) != 1:
             kept = ", ".join(f"'{c.name}'" for c in found[:8])
@@ -251,13 +251,13 @@ class Stimuli:
 
     def _audio(self, audio: str, item: Stretch) -> Callable[[float, float], np.ndarray | None]:
         from metagraph.speech.sound import read_sound
-        from metagraph.speech.soundtrack import resampled
+        from metagraph.speech.soundtrack import resample_sound
 
         samples, rate = read_sound(self._file(audio, item), None)
-        whole = resampled(samples, rate, RATE)
+        whole = resample_sound(samples, rate, RATE)
         return lambda begin, seconds: _cut(whole, begin, seconds)
 
-    def _video(self, name: str, made: Condition, item: Stretch, apart: bool) -> Source:
+    def _video(self, name: str, made: Condition, item: Stretch, apart: bool) -> StimulusSource:
         from preview.video_reading import read_video_sound, video_seconds
 
         assert made.video is not None
@@ -267,7 +267,7 @@ class Stimuli:
         def sound(begin: float, seconds: float) -> np.ndarray | None:
             return None if whole is None else _cut(whole, begin, seconds)
 
-        return Source(0.0 if apart else item.start, video_seconds(path), sound, video=path)
+        return StimulusSource(0.0 if apart else item.start, video_seconds(path), sound, video=path)
 
 
 def _paths(made: Condition) -> tuple[str, ...]:
@@ -291,7 +291,7 @@ def with_clip(project: Project, ident: str, clip: Clip) -> Project:
     return replace(project, clips={**project.clips, ident: entry})
 
 
-def delayed(clip: Clip, seconds: float) -> Clip:
+def delay_clip(clip: Clip, seconds: float) -> Clip:
     """Return a clip whose first frame stands for a while before it."""
     count = round(seconds * clip.fps)
     if count <= 0:

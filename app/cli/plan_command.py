@@ -6,18 +6,18 @@ import json
 import sys
 from argparse import ArgumentParser, Namespace
 
-from app.cli.command_output import opened, performance_arguments, staged
+from app.cli.command_output import add_performance_arguments, open_for_command, stage_performance
 from metagraph.graph.model import LAYERS
 
 
-def arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
-    performance_arguments(parser, 20.0)
+    add_performance_arguments(parser, 20.0)
 
 
 def run(options: Namespace) -> int:
-    project = opened(options.project)
-    made = staged(project, options)
+    project = open_for_command(options.project)
+    made = stage_performance(project, options)
     rows = [
         {
             "layer": layer,

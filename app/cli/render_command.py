@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from app.cli.command_output import opened, performance_arguments, say, staged
+from app.cli.command_output import add_performance_arguments, open_for_command, say, stage_performance
 from app.look.names import node_names
-from app.stage.playback_source import ASIDE, Shown, alone
-from metagraph.formats.outputs import claim, reads
+from app.stage.playback_source import ASIDE, ShownPlayback, play_clip_alone
+from metagraph.formats.outputs import claim, declare_inputs
 from metagraph.formats.store import files_of
 from metagraph.graph.model import Layer, Project
 from metagraph.motion.clip import Clip
@@ -23,16 +23,16 @@ from metagraph.playback.bake import bake
 if TYPE_CHECKING:
     from metagraph.graph.timeline import Cut
     from metagraph.speech.captions import Caption
-    from preview.scene import Theme
+    from preview.scene import SceneTheme
 
-Seen = tuple[Any, Shown]  # a figure, and what it plays
+Seen = tuple[Any, ShownPlayback]  # a figure, and what it plays
 MOTION = (".glb", ".usda", ".bvh")  # what `bake_to` writes
 TOGETHER = 32  # poses of a video made at once
 
 
-def arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
-    performance_arguments(parser, 10.0)
+    add_performance_arguments(parser, 10.0)
     parser.add_argument(
         "-o", "--out", type=Path, required=True, help="a .png, .mp4, .glb, .usda or .bvh file"
     )
@@ -66,11 +66,11 @@ def arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--background", choices=tuple(BACKDROPS), default=STAGE, help="what is behind it")
 
 
-def figure_of(project: Project, folder: Path) -> Any:
+def load_figure(project: Project, folder: Path) -> Any:
     """Return the figure that draws a project, and say where it is not its character's mesh. Raises
     FileError.
     """
-    from preview.character_file import figure_of as drawn
+    from preview.character_file import figure_from_file as drawn
 
     assert project.skeleton is not None
     path = folder / project.character if project.character is not None else None
@@ -80,7 +80,7 @@ def figure_of(project: Project, folder: Path) -> Any:
     return figure
 
 
-def size_of(text: str) -> tuple[int, int]:
+def read_size(text: str) -> tuple[int, int]:
     try:
         width, height = (int(x) for x in text.lower().split("x"))
     except ValueError:
@@ -90,7 +90,7 @@ def size_of(text: str) -> tuple[int, int]:
     return width, height
 
 
-def bounds_of(seen: Sequence[Seen], times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def measure_bounds(seen: Sequence[Seen], times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the lowest and highest corner, `[3]`, of a box round all that is seen at times."""
     from preview.scene import Scene
 
@@ -98,11 +98,11 @@ def bounds_of(seen: Sequence[Seen], times: np.ndarray) -> tuple[np.ndarray, np.n
     return Scene(tuple(_actor(figure, shown, some) for figure, shown in seen)).bounds()
 
 
-def pictures(
+def render_pictures(
     seen: Sequence[Seen],
     times: np.ndarray,
     size: tuple[int, int],
-    look: Theme | str,
+    look: SceneTheme | str,
     camera: Any = None,
     into: np.ndarray | None = None,
 ) -> Iterator[np.ndarray]:
@@ -110,16 +110,16 @@ def pictures(
     default it sees all. into: an array that all come in, for who is done with one before asking for the next.
     """
     from app.stage.stools import stools
-    from preview.camera import whole_figure
-    from preview.drawing_apart import drawn
+    from preview.camera import frame_whole_figure
+    from preview.drawing_apart import draw_scenes
     from preview.scene import THEMES, Scene
 
     theme = THEMES[look] if isinstance(look, str) else look
 
     seats = tuple(seat for _, shown in seen for seat in stools(shown))
     if camera is None:
-        box = bounds_of(seen, times)
-        camera = whole_figure(box, size[0] / size[1], ASIDE if len(seen) > 1 else 0.0)
+        box = measure_bounds(seen, times)
+        camera = frame_whole_figure(box, size[0] / size[1], ASIDE if len(seen) > 1 else 0.0)
 
     def scenes() -> Iterator[tuple[Scene, Any]]:
         for first in range(0, len(times), TOGETHER):
@@ -128,14 +128,14 @@ def pictures(
             for at, actors in zip(some, acted, strict=True):
                 yield Scene((*actors, *seats)), camera(float(at)) if callable(camera) else camera
 
-    return drawn(scenes(), len(times), size, theme, into)
+    return draw_scenes(scenes(), len(times), size, theme, into)
 
 
-def directed(
+def render_directed(
     seen: Sequence[Seen],
     times: np.ndarray,
     size: tuple[int, int],
-    look: Theme | str,
+    look: SceneTheme | str,
     direction: Direction = ((), ()),
     into: np.ndarray | None = None,
 ) -> Iterator[np.ndarray]:
@@ -144,37 +144,37 @@ def directed(
     camera: Callable[[float], Any] | None = None
     if cuts:
         from app.stage.cutting import Cutting
-        from preview.camera import whole_figure
+        from preview.camera import frame_whole_figure
 
         aspect, cutting = size[0] / size[1], Cutting()
-        whole = whole_figure(bounds_of(seen, times), aspect, ASIDE)
+        whole = frame_whole_figure(measure_bounds(seen, times), aspect, ASIDE)
         camera = lambda at: cutting.camera(seen, cuts, at, aspect) or whole  # noqa: E731
     if not captions:
-        yield from pictures(seen, times, size, look, camera, into)
+        yield from render_pictures(seen, times, size, look, camera, into)
         return
-    from app.cli.screenless import screenless_application
-    from app.stage.caption_paint import captioned
+    from app.cli.screenless import make_screenless_application
+    from app.stage.caption_paint import add_captions
     from metagraph.speech.captions import captions_at
 
     # Text needs the fonts of an application, which a program without a window has not.
-    application = screenless_application()
-    for at, picture in zip(times, pictures(seen, times, size, look, camera, into), strict=True):
-        yield captioned(picture, captions_at(captions, float(at)))
+    application = make_screenless_application()
+    for at, picture in zip(times, render_pictures(seen, times, size, look, camera, into), strict=True):
+        yield add_captions(picture, captions_at(captions, float(at)))
     del application
 
 
-def _actors(figure: Any, shown: Shown, times: np.ndarray) -> list[Any]:
+def _actors(figure: Any, shown: ShownPlayback, times: np.ndarray) -> list[Any]:
     """Return a figure as it is shown at each of some times."""
-    from preview.scene import Actor
+    from preview.scene import SceneActor
 
     rotations, positions = _placed(shown, times)
     faces: list[Any] = [None] * len(times)
     if figure.morphs:
         faces = [figure.morph_weights(face) for face in shown.faces(times)]
-    return [Actor(figure, *at) for at in zip(rotations, positions, faces, strict=True)]
+    return [SceneActor(figure, *at) for at in zip(rotations, positions, faces, strict=True)]
 
 
-def _placed(shown: Shown, times: Any) -> tuple[np.ndarray, np.ndarray]:
+def _placed(shown: ShownPlayback, times: Any) -> tuple[np.ndarray, np.ndarray]:
     """Return global rotations `[..., J, 4]` and positions `[..., J, 3]` at one time, or at many."""
     pose, skeleton = shown.pose(times), shown.skeleton
     assert pose is not None and skeleton is not None
@@ -182,18 +182,18 @@ def _placed(shown: Shown, times: Any) -> tuple[np.ndarray, np.ndarray]:
     return (rotations, positions) if shown.stand is None else shown.stand.placed(rotations, positions)
 
 
-def _actor(figure: Any, shown: Shown, times: Any) -> Any:
+def _actor(figure: Any, shown: ShownPlayback, times: Any) -> Any:
     """Return a figure as it is shown at one time, or at many."""
-    from preview.scene import Actor
+    from preview.scene import SceneActor
 
     morphs = (
         figure.morph_weights(shown.morphs(float(times))) if figure.morphs and np.ndim(times) == 0 else None
     )
-    return Actor(figure, *_placed(shown, times), morphs)
+    return SceneActor(figure, *_placed(shown, times), morphs)
 
 
 def run(options: Namespace) -> int:
-    project = opened(options.project)
+    project = open_for_command(options.project)
     if project.skeleton is None:
         raise ValueError("the project has no clips; there is nothing to draw")
     if not 1 <= options.fps <= 240:
@@ -207,7 +207,7 @@ def run(options: Namespace) -> int:
         raise ValueError(
             f"pictures are written as .png, videos as .mp4, motion as .glb, .usda or .bvh, not as '{name}'"
         )
-    size, folder = size_of(options.size), options.project.resolve().parent
+    size, folder = read_size(options.size), options.project.resolve().parent
     clip = None
     if options.clip is not None:
         clip = next((e.id for e in project.clips.values() if options.clip in (e.name, e.id)), None)
@@ -218,12 +218,12 @@ def run(options: Namespace) -> int:
         shown = _talking(project, options, folder)
     else:
         shown = (
-            alone(project, clip)
+            play_clip_alone(project, clip)
             if clip is not None
-            else Shown(project, staged(project, options), options.start + options.seconds)
+            else ShownPlayback(project, stage_performance(project, options), options.start + options.seconds)
         )
     for one in shown.everyone:
-        reads(*files_of(one.project, one.folder or folder))
+        declare_inputs(*files_of(one.project, one.folder or folder))
     if options.out.suffix in MOTION:
         claim(*_outs(options.out, shown))
         for one, out in zip(shown.everyone, _outs(options.out, shown), strict=True):
@@ -231,9 +231,9 @@ def run(options: Namespace) -> int:
     else:
         from preview.looks import look_of
 
-        seen = [(figure_of(one.project, one.folder or folder), one) for one in shown.everyone]
+        seen = [(load_figure(one.project, one.folder or folder), one) for one in shown.everyone]
         heard = options.out.suffix == ".mp4"
-        sound = sound_of(shown, folder, options.seconds, options.start) if heard else None
+        sound = mix_sound(shown, folder, options.seconds, options.start) if heard else None
         look = look_of(options.theme, options.light, options.background)
         direction = _direction(project, options, shown, folder, seen)
         shot = Shot(options.seconds, size, options.fps, options.frames, look, options.start, direction)
@@ -256,16 +256,16 @@ class Shot:
     size: tuple[int, int]
     fps: float
     frames: int
-    look: Theme | str
+    look: SceneTheme | str
     start: float = 0.0
     direction: Direction = ((), ())
 
 
 def _direction(
-    project: Project, options: Namespace, shown: Shown, folder: Path, seen: Sequence[Seen]
+    project: Project, options: Namespace, shown: ShownPlayback, folder: Path, seen: Sequence[Seen]
 ) -> Direction:
     """Return the cuts and captions of what is written, as the options or else the timeline's notes say."""
-    from app.stage.cutting import captions_shown
+    from app.stage.cutting import list_captions
     from metagraph.graph.timeline_edits import timeline_of
 
     some = project.performances if options.conversation is None else project.conversations
@@ -279,10 +279,10 @@ def _direction(
 
         cuts = automatic_cuts(project.conversations[key])
     talk = project.conversations.get(key) if options.conversation is not None else None
-    return cuts, captions_shown(shown, talk, folder) if captions else ()
+    return cuts, list_captions(shown, talk, folder) if captions else ()
 
 
-def _talking(project: Project, options: Namespace, folder: Path) -> Shown:
+def _talking(project: Project, options: Namespace, folder: Path) -> ShownPlayback:
     """Return all sides of a conversation of the project, named by id or name."""
     from app.stage.conversation_plans import ConversationPlans
 
@@ -300,7 +300,7 @@ def _talking(project: Project, options: Namespace, folder: Path) -> Shown:
     return shown
 
 
-def _outs(out: Path, shown: Shown) -> list[Path]:
+def _outs(out: Path, shown: ShownPlayback) -> list[Path]:
     """Return a file for each who is shown: all of a conversation have one each, in the character's own
     space.
     """
@@ -308,7 +308,9 @@ def _outs(out: Path, shown: Shown) -> list[Path]:
     return [out] if count == 1 else [out.with_stem(f"{out.stem}-{n + 1}") for n in range(count)]
 
 
-def sound_of(shown: Shown, folder: Path, seconds: float, start: float = 0.0) -> tuple[np.ndarray, int] | None:
+def mix_sound(
+    shown: ShownPlayback, folder: Path, seconds: float, start: float = 0.0
+) -> tuple[np.ndarray, int] | None:
     """Return the sound of what is said from a start on, None where nothing is said at all."""
     lines = {
         s.line: line
@@ -318,13 +320,13 @@ def sound_of(shown: Shown, folder: Path, seconds: float, start: float = 0.0) -> 
     }
     if not lines:
         return None
-    from metagraph.speech.soundtrack import RATE, line_sounds, mixed, placed
+    from metagraph.speech.soundtrack import RATE, line_sounds, mix_track, place_lines
 
     sounds, notes = line_sounds(lines, folder)
     for note in notes:
         print(f"note: {note}", file=sys.stderr)
-    return mixed(
-        [part for one in shown.everyone for part in placed(one.plan, sounds)],
+    return mix_track(
+        [part for one in shown.everyone for part in place_lines(one.plan, sounds)],
         round(start * RATE),
         round(seconds * RATE),
     ), RATE
@@ -350,14 +352,14 @@ def draw_to(
                 print(f"{count}/{len(times)}", file=sys.stderr, flush=True)
 
         into = np.empty((height, width, 4), np.uint8)
-        drawn = directed(seen, times, shot.size, shot.look, shot.direction, into)
+        drawn = render_directed(seen, times, shot.size, shot.look, shot.direction, into)
         write_video(out, drawn, shot.fps, shot.size, told, sound=sound)
     elif out.suffix == ".png":
         from preview.sheet import contact_sheet, write_png
 
         times = shot.start + np.linspace(0, shot.seconds, max(2, shot.frames))
         small = (max(16, width * 2 * min(len(seen), 2) // 9), max(16, height * 5 // 9))
-        images = list(directed(seen, times, small, shot.look, shot.direction))
+        images = list(render_directed(seen, times, small, shot.look, shot.direction))
         labels = [
             f"{t:.2f} s  {', '.join(filter(None, (_doing(shown, t) for _, shown in seen)))}".rstrip()
             for t in times
@@ -367,7 +369,9 @@ def draw_to(
         raise ValueError(f"pictures are written as .png, videos as .mp4, not '{out.suffix}'")
 
 
-def bake_to(out: Path, shown: Shown, seconds: float, fps: float, folder: Path, start: float = 0.0) -> None:
+def bake_to(
+    out: Path, shown: ShownPlayback, seconds: float, fps: float, folder: Path, start: float = 0.0
+) -> None:
     """Write a performance, or a clip, as plain motion: what an engine or an animation program plays without a
     planner.
 
@@ -402,7 +406,7 @@ def bake_to(out: Path, shown: Shown, seconds: float, fps: float, folder: Path, s
             write_glb(out, [motion], body)
 
 
-def _doing(shown: Shown, seconds: float) -> str:
+def _doing(shown: ShownPlayback, seconds: float) -> str:
     """Return what is played, as its node calls it; of who moves with a clip instead of the plan what the plan
     has left to say.
     """

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
-    from metagraph.research.exhibits.exhibit import Exhibit, Shown
-    from metagraph.research.exhibits.material import Material
+    from metagraph.research.exhibits.exhibit import Exhibit, MadeExhibit
+    from metagraph.research.exhibits.material import ExhibitMaterial
 
 
-def arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument(
         "exhibits",
@@ -52,10 +52,10 @@ def run(options: Namespace) -> int:
     from metagraph import __version__
     from metagraph.formats.atomic import write_together
     from metagraph.formats.outputs import claim
-    from metagraph.research.exhibits.exhibit import chosen
-    from metagraph.research.exhibits.page import data_of, page, text_of
+    from metagraph.research.exhibits.exhibit import choose_exhibits
+    from metagraph.research.exhibits.page import exhibit_as_text, exhibits_as_data, format_exhibits
 
-    exhibits = chosen(options.exhibits)
+    exhibits = choose_exhibits(options.exhibits)
     if options.list:
         return _list(options, exhibits)
     if options.into is None:
@@ -71,16 +71,22 @@ def run(options: Namespace) -> int:
     told = {"Metagraph": __version__, "project": material.project.name}
     told["conversations"] = material.told or "made up"
     content = {
-        "report.html": page(made, told),
-        "report.json": json.dumps({**told, "exhibits": data_of(made), "notes": material.notes}, indent=1)
+        "report.html": format_exhibits(made, told),
+        "report.json": json.dumps(
+            {**told, "exhibits": exhibits_as_data(made), "notes": material.notes}, indent=1
+        )
         + "\n",
     }
     write_together(options.into, {name: text.encode() for name, text in content.items()})
     for note in dict.fromkeys(material.notes):
         print(f"note: {note}", file=sys.stderr)
-    words = [text_of(e, s) for e, s, _ in made]
+    words = [exhibit_as_text(e, s) for e, s, _ in made]
     written = [str(options.into / name) for name in content]
-    say(options, "\n\n".join([*words, "\n".join(written)]), {"exhibits": data_of(made), "written": written})
+    say(
+        options,
+        "\n\n".join([*words, "\n".join(written)]),
+        {"exhibits": exhibits_as_data(made), "written": written},
+    )
     return 3 if any(s.missing for _, s, _ in made) else 0
 
 
@@ -103,12 +109,12 @@ def _list(options: Namespace, exhibits: Sequence[Exhibit]) -> int:
     return 0
 
 
-def _made(exhibit: Exhibit, material: Material) -> tuple[Shown, float]:
+def _made(exhibit: Exhibit, material: ExhibitMaterial) -> tuple[MadeExhibit, float]:
     """Return an exhibit and how long it took; one that cannot be made says why, and spoils no other."""
     from time import perf_counter
 
     from metagraph.errors import FileError
-    from metagraph.research.exhibits.exhibit import Shown
+    from metagraph.research.exhibits.exhibit import MadeExhibit
 
     began = perf_counter()
     try:
@@ -121,17 +127,17 @@ def _made(exhibit: Exhibit, material: Material) -> tuple[Shown, float]:
             if known
             else f"it failed ({type(error).__name__}: {error}); report it with the project"
         )
-        shown = Shown(about, missing=told)
+        shown = MadeExhibit(about, missing=told)
     return shown, perf_counter() - began
 
 
-def _material(options: Namespace) -> Material:
-    from app.cli.command_output import opened
+def _material(options: Namespace) -> ExhibitMaterial:
+    from app.cli.command_output import open_for_command
     from app.cli.demo_command import SAMPLE
     from metagraph.errors import FileError
     from metagraph.formats.corpora import Recorded, read_corpus
     from metagraph.generation.offered import SHIPPED
-    from metagraph.research.exhibits.material import Material
+    from metagraph.research.exhibits.material import ExhibitMaterial
 
     if options.model is not None and not options.model.is_file():
         raise FileError(options.model, "there is no such model", remedy="Check where the .mgmodel file is.")
@@ -149,5 +155,5 @@ def _material(options: Namespace) -> Material:
         corpus = read_corpus(options.takes, progress=progress)
         notes += [*corpus.failures, *corpus.notes]
         given, told = corpus.recorded, f"{options.takes.name} ({corpus.layout})"
-    project = opened(SAMPLE if options.project is None else options.project)
-    return Material(project, given, told, model, options.full, notes)
+    project = open_for_command(SAMPLE if options.project is None else options.project)
+    return ExhibitMaterial(project, given, told, model, options.full, notes)

@@ -6,7 +6,7 @@ from PySide6.QtCore import QCoreApplication
 from PySide6.QtGui import QGuiApplication
 
 
-def screenless_application() -> QCoreApplication:
+def make_screenless_application() -> QCoreApplication:
     """Return the application there is, else one that needs no screen, to be kept as long as it is used. What
     this process starts is not touched: the choice is not put into the environment.
     """

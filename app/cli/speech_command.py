@@ -22,9 +22,9 @@ if TYPE_CHECKING:  # reading a command line must not wait for arrays
 OUT = (".eaf", ".TextGrid", ".json")
 
 
-def arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Add the command's options."""
-    from app.cli.language_options import language_arguments
+    from app.cli.language_options import add_language_arguments
 
     parser.add_argument(
         "audio",
@@ -43,7 +43,7 @@ def arguments(parser: ArgumentParser) -> None:
         "(default: loudness tells)",
     )
     parser.add_argument("-o", "--out", type=Path, help=f"write words, segments and peaks ({', '.join(OUT)})")
-    language_arguments(parser, "as the project is set to, else auto")
+    add_language_arguments(parser, "as the project is set to, else auto")
     parser.add_argument(
         "--speakers",
         metavar="NAMES",
@@ -65,14 +65,14 @@ def run(options: Namespace) -> int:
 
 def _read(options: Namespace, words: list[Path], out: Path | None, output: ProjectOutput | None) -> int:
     """output: where the conversation is kept, if it is."""
-    from app.cli.command_output import opened, say
-    from app.cli.language_options import speaking_of
+    from app.cli.command_output import open_for_command, say
+    from app.cli.language_options import read_speaking
     from metagraph.formats.conversations.files import read_conversation
-    from metagraph.speech.gaze_shares import together
+    from metagraph.speech.gaze_shares import join_shares
 
     folder = options.project.resolve().parent if options.project is not None else None
-    project = opened(options.project) if options.project is not None else None
-    speaking = speaking_of(options, project.language) if project is not None else speaking_of(options)
+    project = open_for_command(options.project) if options.project is not None else None
+    speaking = read_speaking(options, project.language) if project is not None else read_speaking(options)
     read = read_conversation(options.audio, words, folder, options.name, speaking=speaking)
     if options.speakers is not None:
         read = replace(read, conversation=_with_speakers(read.conversation, options.speakers))
@@ -103,7 +103,7 @@ def _read(options: Namespace, words: list[Path], out: Path | None, output: Proje
         for row, part in zip(rows, parts, strict=True):
             lines += [f"  {row['name']}: {t.words()}" for t in part.told if t.count]
             lines += [f"  {row['name']}, {share.words()}" for share in part.looks]
-        shares = together([share for part in parts for share in part.looks])
+        shares = join_shares([share for part in parts for share in part.looks])
         lines += [f"  whoever is {share.words()}" for share in shares]
         lines.append(f"kept in {options.project} as {ident}")
     if out is not None:
@@ -175,10 +175,10 @@ def _with_speakers(conversation: Conversation, chosen: str) -> Conversation:
 
 def _performed(path: Path, ident: str) -> tuple[DuetPart, ...]:
     """Return what all sides do, where the project's graph moves all of them."""
-    from app.cli.command_output import opened
+    from app.cli.command_output import open_for_command
     from metagraph.speech.duet import duet
 
-    project = opened(path)
+    project = open_for_command(path)
     conversation = project.conversations[ident]
     count = len(conversation.sides)
     return duet(conversation, ident, (project,) * count, (None,) * count).parts

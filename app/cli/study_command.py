@@ -10,21 +10,21 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from app.cli.perceive_command import arguments as perceive_arguments
-from app.cli.study_people import arguments as people_arguments
-from app.cli.study_planning import arguments as plan_arguments
-from app.cli.study_replaying import arguments as replay_arguments
-from app.cli.study_run import check as check_study
+from app.cli.perceive_command import add_arguments as perceive_arguments
+from app.cli.study_people import add_arguments as people_arguments
+from app.cli.study_planning import add_arguments as plan_arguments
+from app.cli.study_replaying import add_arguments as replay_arguments
 from app.cli.study_run import check_arguments, run_arguments
+from app.cli.study_run import check_study as check_study
 from app.cli.study_run import run as run_study
-from app.cli.study_watching import arguments as watch_arguments
+from app.cli.study_watching import add_arguments as watch_arguments
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.research.study.analysis.results import Results
     from metagraph.research.study.statistics.small_samples import Estimate
 
 
-def arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Add the actions of `study`, each with its options."""
     actions = parser.add_subparsers(dest="action", metavar="action", required=True)
 
@@ -47,14 +47,14 @@ def arguments(parser: ArgumentParser) -> None:
         action("check", "print who does what in which order, and what would hamper the study", check_study)
     )
     reported = action(
-        "report", "write what a study found: a page (report/report.html) and tables as CSV", report
+        "report", "write what a study found: a page (report/report.html) and tables as CSV", report_study
     )
     folder(reported)
     reported.add_argument("others", type=Path, nargs="*", help="the same study at other sites")
     reported.add_argument(
         "--out", type=Path, help="where to write it (default: report, in the study's folder)"
     )
-    exported = action("export", "write a study's data for other tools", export)
+    exported = action("export", "write a study's data for other tools", export_study)
     folder(exported)
     exported.add_argument("--bids", type=Path, metavar="OUT", help="a folder for the data in BIDS form")
     exported.add_argument("--xes", type=Path, metavar="OUT", help="a file for process mining (XES)")
@@ -64,8 +64,8 @@ def arguments(parser: ArgumentParser) -> None:
     watch_arguments(action)
     words = "which of two videos people prefer, and how they rate one: stimuli, page, answers, report"
     perceive_arguments(actions.add_parser("perceive", help=words, description=f"W{words[1:]}."))
-    action("example", "recompute the comparison that was published with the meta-graph", example)
-    made = action("simulate", "write a study of simulated participants with known effects", simulate)
+    action("example", "recompute the comparison that was published with the meta-graph", print_example)
+    made = action("simulate", "write a study of simulated participants with known effects", simulate_study)
     made.add_argument("out", type=Path, help="a folder that is not there yet")
     made.add_argument(
         "--like", type=Path, metavar="STUDY", help="a study of yours: its tasks, orders and questions"
@@ -100,25 +100,25 @@ def run(options: Namespace) -> int:
     return int(options.run(options))
 
 
-def report(options: Namespace) -> int:
+def report_study(options: Namespace) -> int:
     from app.cli.command_output import say
-    from app.cli.study_papers import papers_maker
+    from app.cli.study_papers import find_pdf_maker
     from metagraph.formats.outputs import claim
-    from metagraph.research.study.report import NAME, summary, write_report
+    from metagraph.research.study.report import NAME, summarise_study, write_study_report
     from metagraph.research.study.study_plan import read_study
 
     place = options.out or read_study(options.folder).folder / "report"
     claim(place / NAME)
     results = _results(options)
-    written = write_report(results, place, papers_maker())
+    written = write_study_report(results, place, find_pdf_maker())
     _tell_missing(results)
     data = {**_facts(results), "written": [str(p) for p in written]}
     cautions = [f"- {w}" for w in (*data["cautions"], *data["odd"])]
-    say(options, "\n".join([*summary(results), *cautions, str(written[0])]), data)
+    say(options, "\n".join([*summarise_study(results), *cautions, str(written[0])]), data)
     return 0 if results.time is not None else 3
 
 
-def export(options: Namespace) -> int:
+def export_study(options: Namespace) -> int:
     from app.cli.command_output import say
     from metagraph.common.xml_text import INSTEAD
     from metagraph.formats.outputs import claim
@@ -147,10 +147,10 @@ def export(options: Namespace) -> int:
     return 0
 
 
-def example(options: Namespace) -> int:
+def print_example(options: Namespace) -> int:
     from app.cli.command_output import say
-    from metagraph.research.study.analysis.example import example as recomputed
-    from metagraph.research.study.analysis.example import told
+    from metagraph.research.study.analysis.example import compute_example as recomputed
+    from metagraph.research.study.analysis.example import describe_example
 
     found = recomputed()
     data = {
@@ -160,11 +160,11 @@ def example(options: Namespace) -> int:
         "ratio_with_tutorial": found.with_tutorial,
         "people_needed": {str(k): v for k, v in found.needed.items()},
     }
-    say(options, told(found), data)
+    say(options, describe_example(found), data)
     return 0
 
 
-def simulate(options: Namespace) -> int:
+def simulate_study(options: Namespace) -> int:
     from app.cli.command_output import say
     from metagraph.research.study.simulation.files import write_study
     from metagraph.research.study.simulation.people import Truth
@@ -193,16 +193,16 @@ def simulate(options: Namespace) -> int:
 
 
 def _tell_missing(results: Results) -> None:
-    from metagraph.research.study.reports.cells import gathered
+    from metagraph.research.study.reports.cells import gather_missing
 
-    for words in gathered(results.data.missing):
+    for words in gather_missing(results.data.missing):
         print(f"note: {words}", file=sys.stderr)
 
 
 def _results(options: Namespace) -> Results:
-    from metagraph.research.study.analysis.reading import collect
-    from metagraph.research.study.analysis.results import analyse
-    from metagraph.research.study.plan.sites import merge
+    from metagraph.research.study.analysis.reading import collect_study
+    from metagraph.research.study.analysis.results import analyse_study
+    from metagraph.research.study.plan.sites import merge_site_data
 
     show = sys.stderr.isatty() and not options.json
 
@@ -214,8 +214,8 @@ def _results(options: Namespace) -> Results:
 
     others = getattr(options, "others", ())
     if others:
-        return analyse(merge([options.folder, *others], not options.no_jumps, progress))
-    return analyse(collect(options.folder, not options.no_jumps, progress))
+        return analyse_study(merge_site_data([options.folder, *others], not options.no_jumps, progress))
+    return analyse_study(collect_study(options.folder, not options.no_jumps, progress))
 
 
 def _facts(results: Results) -> dict[str, Any]:

@@ -7,7 +7,7 @@ import re
 EPOCH = b"19700101000000"
 
 
-def papers_maker():
+def find_pdf_maker():
     """Return what makes a PDF, a page as large as the drawing, of an SVG file's text; the same text gives the
     same bytes.
     """
@@ -15,9 +15,9 @@ def papers_maker():
     from PySide6.QtGui import QPageSize, QPainter, QPdfWriter
     from PySide6.QtSvg import QSvgRenderer
 
-    from app.cli.screenless import screenless_application
+    from app.cli.screenless import make_screenless_application
 
-    app = screenless_application()
+    app = make_screenless_application()
 
     def paper(drawing: str) -> bytes:
         assert app is not None
@@ -33,12 +33,12 @@ def papers_maker():
         painter = QPainter(writer)
         renderer.render(painter, QRectF(0, 0, writer.width(), writer.height()))
         painter.end()
-        return timeless(bytes(buffer.data().data()))
+        return strip_pdf_dates(bytes(buffer.data().data()))
 
     return paper
 
 
-def timeless(content: bytes) -> bytes:
+def strip_pdf_dates(content: bytes) -> bytes:
     """Return a PDF without when it was made and the numbers drawn by chance, as long as before."""
     content = re.sub(rb"D:\d{14}", b"D:" + EPOCH, content)
     content = re.sub(rb"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d", b"1970-01-01T00:00:00", content)

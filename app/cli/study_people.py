@@ -12,26 +12,32 @@ from pathlib import Path
 Action = Callable[[str, str, Callable[[Namespace], int]], ArgumentParser]
 
 
-def arguments(action: Action) -> None:
+def add_arguments(action: Action) -> None:
     """Add the actions."""
     frozen = action(
-        "freeze", "write down by digest what the study is made of, or see whether it still is", freeze
+        "freeze", "write down by digest what the study is made of, or see whether it still is", freeze_study
     )
     frozen.add_argument("study", type=Path, help="the study's folder, or its study.yaml")
     frozen.add_argument("--force", action="store_true", help="freeze anew what has changed since")
     gone = action(
-        "withdraw", "leave a participant's data out of all reports and exports from now on", withdraw
+        "withdraw",
+        "leave a participant's data out of all reports and exports from now on",
+        withdraw_participant,
     )
     _who(gone)
     gone.add_argument("--why", default="", help="in words, kept in the log")
-    deleted = action("delete", "delete all data of a participant, and note that it was done", delete)
+    deleted = action(
+        "delete", "delete all data of a participant, and note that it was done", delete_participant
+    )
     _who(deleted)
     deleted.add_argument("--yes", action="store_true", help="do not ask")
 
-    brought = action("import", "add a participant's log of tasks done in Unreal, Unity or Godot", bring)
+    brought = action("import", "add a participant's log of tasks done in Unreal, Unity or Godot", merge_sites)
     _who(brought)
     brought.add_argument("log", type=Path, help="as the script for the engine wrote it")
-    looked = action("gaze", "say which panels and nodes somebody looked at, from a recording of eyes", gaze)
+    looked = action(
+        "gaze", "say which panels and nodes somebody looked at, from a recording of eyes", import_gaze
+    )
     _who(looked)
     looked.add_argument(
         "recording", type=Path, help="an export of Tobii Pro Lab, Pupil Player or Pupil Cloud"
@@ -47,9 +53,9 @@ def _who(parser: ArgumentParser) -> None:
     parser.add_argument("participant", help="the pseudonym")
 
 
-def freeze(options: Namespace) -> int:
+def freeze_study(options: Namespace) -> int:
     from app.cli.command_output import say
-    from metagraph.research.study.plan.freeze import freeze as write
+    from metagraph.research.study.plan.freeze import freeze_files as write
     from metagraph.research.study.plan.freeze import frozen, seal
     from metagraph.research.study.study_plan import read_study
 
@@ -64,10 +70,10 @@ def freeze(options: Namespace) -> int:
     return 0
 
 
-def withdraw(options: Namespace) -> int:
+def withdraw_participant(options: Namespace) -> int:
     from app.cli.command_output import say
     from metagraph.research.study.logs.withdrawal import mentions
-    from metagraph.research.study.logs.withdrawal import withdraw as note
+    from metagraph.research.study.logs.withdrawal import note_withdrawal as note
     from metagraph.research.study.study_plan import read_study
 
     study = read_study(options.study)
@@ -81,9 +87,9 @@ def withdraw(options: Namespace) -> int:
     return 0
 
 
-def delete(options: Namespace) -> int:
+def delete_participant(options: Namespace) -> int:
     from app.cli.command_output import may_delete, say
-    from metagraph.research.study.logs.withdrawal import delete as remove
+    from metagraph.research.study.logs.withdrawal import delete_data as remove
     from metagraph.research.study.logs.withdrawal import mentions
     from metagraph.research.study.study_plan import read_study
 
@@ -106,27 +112,27 @@ def _told(paths: list[Path]) -> None:
         print(f"note: and {len(paths) - 10} more files", file=sys.stderr)
 
 
-def gaze(options: Namespace) -> int:
+def import_gaze(options: Namespace) -> int:
     from app.cli.command_output import say
     from metagraph.formats.atomic import write_atomically
     from metagraph.formats.outputs import claim
     from metagraph.research.study.logs.gaze import dwelt, read_gaze
-    from metagraph.research.study.logs.log import read
-    from metagraph.research.study.reports.tables import table
+    from metagraph.research.study.logs.log import read_log
+    from metagraph.research.study.reports.tables import format_rows
     from metagraph.research.study.study_plan import read_study
 
     study = read_study(options.study)
     study.plan.known(options.participant)
     out = options.out or study.data(options.participant) / "gaze.csv"
     claim(out)
-    found = dwelt(read(study.log(options.participant)), read_gaze(options.recording), options.clap)
-    write_atomically(out, table(*found).encode())
+    found = dwelt(read_log(study.log(options.participant)), read_gaze(options.recording), options.clap)
+    write_atomically(out, format_rows(*found).encode())
     lines = [f"{row[2]} ({row[1]}): {row[3]} {row[4]:.1f} s, {row[5]:.0%}" for row in found[1]]
     say(options, "\n".join([*lines, str(out)]), {"written": str(out), "rows": len(found[1])})
     return 0
 
 
-def bring(options: Namespace) -> int:
+def merge_sites(options: Namespace) -> int:
     from app.cli.command_output import say
     from metagraph.research.study.logs.engine_import import import_engine
     from metagraph.research.study.study_plan import read_study

@@ -13,9 +13,9 @@ Action = Callable[[str, str, Callable[[Namespace], int]], ArgumentParser]
 SMALLEST = 1.25
 
 
-def arguments(action: Action) -> None:
+def add_arguments(action: Action) -> None:
     """Add the action."""
-    made = action("plan", "say how many people a study needs; write its preregistration", plan)
+    made = action("plan", "say how many people a study needs; write its preregistration", print_study_plan)
     made.add_argument("study", type=Path, nargs="?", help="the study's folder, or its study.yaml")
     made.add_argument(
         "--pilot", type=Path, metavar="FOLDER", help="a study of yours whose people's ratios are taken"
@@ -44,12 +44,12 @@ def arguments(action: Action) -> None:
     made.add_argument("--force", action="store_true", help="write them anew")
 
 
-def plan(options: Namespace) -> int:
+def print_study_plan(options: Namespace) -> int:
     from math import ceil
 
     from app.cli.command_output import say
-    from metagraph.research.study.plan.allocation import prepare
-    from metagraph.research.study.plan.planning import assumed, sample_size
+    from metagraph.research.study.plan.allocation import prepare_allocation
+    from metagraph.research.study.plan.planning import assume_without_pilot, sample_size
     from metagraph.research.study.plan.preregistration import Aims, preregister
     from metagraph.research.study.study_plan import read_study
 
@@ -60,7 +60,11 @@ def plan(options: Namespace) -> int:
         raise ValueError("give a --pilot, or assume both --ratio and --spread")
     if not 0 <= options.dropouts < 1:
         raise ValueError(f"dropouts are a share from 0 to less than 1, not {options.dropouts:g}")
-    found = _pilot(options.pilot) if options.pilot is not None else assumed(options.ratio, options.spread)
+    found = (
+        _pilot(options.pilot)
+        if options.pilot is not None
+        else assume_without_pilot(options.ratio, options.spread)
+    )
     smallest = options.smallest or (study.plan.smallest if study is not None else None) or SMALLEST
     tests = options.tests or (2 + len(study.plan.questions()) if study is not None else 1)
     needed = sample_size(found, smallest, options.within, options.chance, families=tests)
@@ -84,12 +88,12 @@ def plan(options: Namespace) -> int:
         "Two conditions are balanced for every even number, and each order should have as many people."
     )
     if study is not None and options.allocate:
-        data["commitment"] = prepare(study)
+        data["commitment"] = prepare_allocation(study)
         lines.append(f"SHA-256 of the allocation's secret: {data['commitment']}")
         if study.plan.order != "concealed":
             lines.append("The study file does not say 'order: concealed' yet.")
     if study is not None and options.preregister:
-        secret = prepare(study) if study.plan.order == "concealed" else None
+        secret = prepare_allocation(study) if study.plan.order == "concealed" else None
         written = preregister(study, aims, secret, options.force)
         data["written"] = [str(p) for p in written]
         lines += [str(p) for p in written]
@@ -98,10 +102,10 @@ def plan(options: Namespace) -> int:
 
 
 def _pilot(folder: Path):
-    from metagraph.research.study.analysis.reading import collect
-    from metagraph.research.study.analysis.results import analyse
+    from metagraph.research.study.analysis.reading import collect_study
+    from metagraph.research.study.analysis.results import analyse_study
     from metagraph.research.study.plan.planning import from_pilot
 
-    time = analyse(collect(folder, jumps=False)).time
+    time = analyse_study(collect_study(folder, jumps=False)).time
     people = time.people if time is not None else ()
     return from_pilot([p.ratio for p in people], f"the pilot '{folder.name}'")

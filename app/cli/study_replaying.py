@@ -10,7 +10,7 @@ Action = Callable[[str, str, Callable[[Namespace], int]], ArgumentParser]
 PATIENCE = 120.0  # seconds for a part's clips to be loaded, before a video is given up
 
 
-def arguments(action: Action) -> None:
+def add_arguments(action: Action) -> None:
     """Add the action."""
     made = action("replay", "play a sitting again in the window, or as a video, from its log", replay)
     made.add_argument("study", type=Path, help="the study's folder, or its study.yaml")
@@ -34,9 +34,9 @@ def replay(options: Namespace) -> int:
     study.plan.known(options.participant)
     if not options.speed > 0 or not 0 < options.fps <= 60:
         raise ValueError("a speed is greater than 0, and a video has at most 60 pictures a second")
-    from app.main import make_window, prepare
+    from app.main import make_window, prepare_application
 
-    app = prepare()
+    app = prepare_application()
     from app.features.study.study_replay import Replayer
 
     window = make_window()

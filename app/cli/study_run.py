@@ -27,9 +27,9 @@ def run(options: Namespace) -> int:
         study.plan.known(options.participant)  # a stranger is told before a window is opened
     from PySide6.QtCore import QTimer
 
-    from app.main import make_window, prepare
+    from app.main import make_window, prepare_application
 
-    app = prepare()
+    app = prepare_application()
     from app.features.study.study_chooser import run_study
 
     window = make_window()
@@ -45,14 +45,14 @@ def check_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("study", type=Path, help="a study file, or the folder it is in")
 
 
-def check(options: Namespace) -> int:
+def check_study(options: Namespace) -> int:
     """Print who does what in which order, and what would hamper the study. Raises FileError."""
-    from metagraph.research.study.sitting import standing
+    from metagraph.research.study.sitting import describe_standing
     from metagraph.research.study.study_plan import read_study
 
     study = read_study(options.study)
     problems = study.problems() + _promised(study)
-    rows = [(who, _order(study, who), standing(study, who)) for who in study.plan.ids]
+    rows = [(who, _order(study, who), describe_standing(study, who)) for who in study.plan.ids]
     if options.json:
         orders = {
             who: [{"condition": c, "tasks": list(tasks)} for c, tasks in blocks] for who, blocks, _ in rows
@@ -89,10 +89,14 @@ def _order(study, participant):
 def _promised(study):
     """Return in words where the study is not what was frozen, preregistered or drawn."""
     from metagraph.research.study.plan import allocation
-    from metagraph.research.study.plan.freeze import changed, frozen, manifest
+    from metagraph.research.study.plan.freeze import find_changed_names, frozen, study_manifest
     from metagraph.research.study.plan.preregistration import unlike
 
     before = frozen(study)
-    out = [f"{name} is not as it was frozen" for name in changed(before, manifest(study))] if before else []
+    out = (
+        [f"{name} is not as it was frozen" for name in find_changed_names(before, study_manifest(study))]
+        if before
+        else []
+    )
     drawn = allocation.problems(study) if study.plan.order == "concealed" else []
     return [*out, *unlike(study), *drawn]

@@ -11,30 +11,33 @@ from pathlib import Path
 Action = Callable[[str, str, Callable[[Namespace], int]], ArgumentParser]
 
 
-def arguments(action: Action) -> None:
+def add_arguments(action: Action) -> None:
     """Add the action."""
-    made = action("watch", "show who of a study is where just now, on this machine", watch)
+    made = action("watch", "show who of a study is where just now, on this machine", watch_study)
     made.add_argument("study", type=Path, help="the study's folder, or its study.yaml")
     made.add_argument("--once", action="store_true", help="show it once, and end")
     made.add_argument("--every", type=float, default=2.0, help="seconds between two looks (2)")
 
 
-def watch(options: Namespace) -> int:
+def watch_study(options: Namespace) -> int:
     from dataclasses import asdict
 
-    from app.cli.command_output import say, until_told_to_stop
-    from metagraph.research.study.logs.watching import table
-    from metagraph.research.study.logs.watching import watch as look
+    from app.cli.command_output import run_until_stopped, say
+    from metagraph.research.study.logs.watching import tabulate_participants
+    from metagraph.research.study.logs.watching import watch_participants as look
     from metagraph.research.study.study_plan import read_study
 
     study = read_study(options.study)
     if options.once or options.json:
         found = look(study)
-        say(options, "\n".join(table(found)), {"participants": [asdict(s) for s in found]})
+        say(options, "\n".join(tabulate_participants(found)), {"participants": [asdict(s) for s in found]})
         return 0
-    with until_told_to_stop():
+    with run_until_stopped():
         while True:
-            lines = [f"{study.plan.title}   {time.strftime('%H:%M:%S')}   Ctrl+C ends", *table(look(study))]
+            lines = [
+                f"{study.plan.title}   {time.strftime('%H:%M:%S')}   Ctrl+C ends",
+                *tabulate_participants(look(study)),
+            ]
             clear = "\x1b[H\x1b[2J" if sys.stdout.isatty() else ""
             print(clear + "\n".join(lines), flush=True)
             time.sleep(max(0.2, options.every))

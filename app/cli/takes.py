@@ -17,7 +17,7 @@ LONGEST = 7200.0  # seconds of a sound
 KEPT = 16000  # samples a second that are kept of one
 
 
-def speech_arguments(parser: ArgumentParser, required: bool) -> None:
+def add_speech_arguments(parser: ArgumentParser, required: bool) -> None:
     """Add the options that tell what was said during takes, and by whom."""
     parser.add_argument(
         "--speech",
@@ -35,13 +35,13 @@ def speech_arguments(parser: ArgumentParser, required: bool) -> None:
     )
 
 
-def read_takes(paths: Sequence[Path]) -> list[tuple[str, Clip]]:
+def read_take_files(paths: Sequence[Path]) -> list[tuple[str, Clip]]:
     """Return takes under the names of their files; of files with several takes, or projects, under the takes'
     own.
     """
-    from app.cli.command_output import opened
+    from app.cli.command_output import open_for_command
     from metagraph.errors import FileError
-    from metagraph.formats.clips import read_clips
+    from metagraph.formats.clips import read_clip_file
     from metagraph.formats.imports import gather
 
     out: list[tuple[str, Clip]] = []
@@ -55,11 +55,13 @@ def read_takes(paths: Sequence[Path]) -> list[tuple[str, Clip]]:
             )
         if path.suffix in (".yaml", ".yml"):
             out += [
-                (Path(c.name).stem, c.motion) for c in opened(path).clips.values() if c.motion is not None
+                (Path(c.name).stem, c.motion)
+                for c in open_for_command(path).clips.values()
+                if c.motion is not None
             ]
             continue
         for file in gather([path]):
-            clips = read_clips(file)
+            clips = read_clip_file(file)
             out += [(file.stem if len(clips) == 1 else c.name, c) for c in clips]
     if not out:
         raise FileError(
@@ -119,20 +121,20 @@ def read_side(path: Path, side: str) -> tuple[Conversation, int]:
     return made, names.index(side) if side in names else int(side) - 1
 
 
-def read_spoken(
+def read_side_speech(
     path: Path, side: str, sound: Path | None = None, transcript: Path | None = None
 ) -> SpokenTake:
     """Return what one of those in a file moves with, `heard_by`, with its words; and how it is said. sound:
     of the recording, None where there is none; where it has a channel for each of them, of its own.
     transcript: where its words are, None where they are in the file itself. Raises FileError.
     """
-    from metagraph.graph.conversation.model import heard_by
+    from metagraph.graph.conversation.model import segments_heard_by
     from metagraph.speech.prosody import prosody
     from metagraph.speech.sound import read_head, read_sound
     from metagraph.synthesis.prosody_costs import SpokenTake
 
     made, number = read_side(path, side)
-    of, segments = made.sides[number], heard_by(made, number)
+    of, segments = made.sides[number], segments_heard_by(made, number)
     words = of.words if transcript is None else _words_of(transcript, of.name, number)
     samples, rate = None, 0
     if sound is not None:
@@ -156,9 +158,9 @@ def _words_of(path: Path, name: str, number: int) -> tuple[Word, ...]:
     raise FileError(path, "it holds no words", "", "Give a transcript with words and their times.")
 
 
-def paired(options: Namespace) -> tuple[list[Clip], list[SpokenTake], list[str]]:
+def pair_takes(options: Namespace) -> tuple[list[Clip], list[SpokenTake], list[str]]:
     """Return takes, the speech of each, and their names. Raises ValueError where files do not go together."""
-    takes = read_takes(options.takes)
+    takes = read_take_files(options.takes)
     files = {path.stem: path for path in options.speech}
     if len(files) < len(options.speech):
         raise ValueError("two speech files have one name, so takes cannot be told apart: rename one")
@@ -170,7 +172,7 @@ def paired(options: Namespace) -> tuple[list[Clip], list[SpokenTake], list[str]]
         raise ValueError(
             f"{' and '.join(words)}: a speech file is called as its take is, take1.bvh and take1.eaf"
         )
-    sounds, transcripts = beside(options, "sounds"), beside(options, "transcripts")
+    sounds, transcripts = read_given_files(options, "sounds"), read_given_files(options, "transcripts")
     for some, what, ending in ((sounds, "sound", "wav"), (transcripts, "transcript", "srt")):
         if some and (without := [n for n, _ in takes if n not in some]):
             raise ValueError(
@@ -179,12 +181,12 @@ def paired(options: Namespace) -> tuple[list[Clip], list[SpokenTake], list[str]]
             )
     return (
         [c for _, c in takes],
-        [read_spoken(files[n], options.side, sounds.get(n), transcripts.get(n)) for n, _ in takes],
+        [read_side_speech(files[n], options.side, sounds.get(n), transcripts.get(n)) for n, _ in takes],
         [n for n, _ in takes],
     )
 
 
-def beside(options: Namespace, what: str) -> dict[str, Path]:
+def read_given_files(options: Namespace, what: str) -> dict[str, Path]:
     """Return the sounds or transcripts that were given, under the names of their files; none where there is
     no such option. Raises ValueError where two have one name.
     """
@@ -195,7 +197,7 @@ def beside(options: Namespace, what: str) -> dict[str, Path]:
     return out
 
 
-def paired_speech(options: Namespace) -> tuple[list[Clip], list[tuple[Segment, ...]]]:
+def pair_speech(options: Namespace) -> tuple[list[Clip], list[tuple[Segment, ...]]]:
     """Return takes, and what was heard during each. Raises ValueError where files do not go together."""
-    clips, spoken, _ = paired(options)
+    clips, spoken, _ = pair_takes(options)
     return clips, [one.segments for one in spoken]

@@ -8,12 +8,12 @@ from pathlib import Path
 
 from app.cli.command_output import say
 from metagraph.engines.verifying_exports import verify
-from metagraph.formats.project.verified import Verified, counted
+from metagraph.formats.project.verified import Verified, count_in_words
 
 INDENT = 2
 
 
-def arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument(
         "path", type=Path, help="a project, an export's JSON or GLB, or a folder of projects and exports"
@@ -44,11 +44,11 @@ def run(options: Namespace) -> int:
             for one in found
         ],
     }
-    say(options, "\n".join([*page(found), last_line(len(faults))]), data)
+    say(options, "\n".join([*format_verification(found), format_verdict(len(faults))]), data)
     return 3 if faults else 0
 
 
-def page(found: Sequence[Verified]) -> list[str]:
+def format_verification(found: Sequence[Verified]) -> list[str]:
     """Return what is said of each project and export: a heading, and a line for each part."""
     lines = []
     for one in found:
@@ -62,6 +62,8 @@ def page(found: Sequence[Verified]) -> list[str]:
     return lines
 
 
-def last_line(count: int) -> str:
+def format_verdict(count: int) -> str:
     """Return what is said of all of it."""
-    return f"{counted(count, 'thing is', 'things are')} not whole." if count else "Everything is whole."
+    return (
+        f"{count_in_words(count, 'thing is', 'things are')} not whole." if count else "Everything is whole."
+    )

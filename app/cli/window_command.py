@@ -12,7 +12,7 @@ from pathlib import Path
 from metagraph.errors import FileError
 
 
-def arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument("project", type=Path, nargs="?", help="a project file")
     parser.add_argument("--sample", action="store_true", help="open the sample project")

@@ -88,7 +88,7 @@ def new_catalogue(code: str) -> Catalog:
     )
 
 
-def catalogues() -> Iterator[Path]:
+def list_catalogues() -> Iterator[Path]:
     """Yield the catalogue of each language."""
     yield from sorted(HERE.glob("*/LC_MESSAGES/metagraph.po"))
 
@@ -138,6 +138,6 @@ def main(arguments: list[str]) -> int:
         print(__doc__)
         return 2
     texts = collect_texts()
-    for path in catalogues():
+    for path in list_catalogues():
         update(path, texts)
     return 0

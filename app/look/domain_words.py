@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from app.translation import tr, tr_noop, translated
+from app.translation import lazy_texts, tr, tr_noop
 
-KIND_TITLES = translated(
+KIND_TITLES = lazy_texts(
     lambda: {
         "stance": tr("Stance"),
         "gesture": tr("Gesture"),
@@ -12,7 +12,7 @@ KIND_TITLES = translated(
         "transition": tr("Transition"),
     }
 )
-MANY_OF_KIND = translated(
+MANY_OF_KIND = lazy_texts(
     lambda: {
         "stance": tr("Stances"),
         "gesture": tr("Gestures"),
@@ -20,11 +20,11 @@ MANY_OF_KIND = translated(
         "transition": tr("Transitions"),
     }
 )
-LAYER_TITLES = translated(lambda: {"body": tr("Body"), "arms": tr("Arms"), "head": tr("Head")})
-LAYER_LONG_TITLES = translated(
+LAYER_TITLES = lazy_texts(lambda: {"body": tr("Body"), "arms": tr("Arms"), "head": tr("Head")})
+LAYER_LONG_TITLES = lazy_texts(
     lambda: {"body": tr("Body layer"), "arms": tr("Arms layer"), "head": tr("Head layer")}
 )
-COLOR_TITLES = translated(
+COLOR_TITLES = lazy_texts(
     lambda: {
         "": "",
         "red": tr("Red"),
@@ -35,7 +35,7 @@ COLOR_TITLES = translated(
         "purple": tr("Purple"),
     }
 )
-COLOR_LABELS = translated(
+COLOR_LABELS = lazy_texts(
     lambda: {
         "red": tr("Red label"),
         "orange": tr("Orange label"),

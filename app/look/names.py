@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-from app.look.plural import parts, short, words_of
+from app.look.plural import split_name, split_name_at, strip_stance
 from metagraph.graph.model import KINDS, Action, Kind, Layer, Limb, MetaGraph, Project
 
 MANY = 1 << 14  # names that are remembered, with what is made of them: after each edit all are asked for
@@ -21,11 +21,11 @@ _SIDES: Mapping[str, tuple[Limb, str]] = {
 }
 
 
-def plain(name: str, stance: str = "", limb: Limb | None = None) -> str:
+def plain_action_name(name: str, stance: str = "", limb: Limb | None = None) -> str:
     """Return a name as it is read: without its stance's in front, blanks for underscores. limb: the arm that
     moves; a word for that very arm becomes L or R, and one for both is left out.
     """
-    words = short(name, stance).replace("_", " ").split() if stance else name.replace("_", " ").split()
+    words = strip_stance(name, stance).replace("_", " ").split() if stance else name.replace("_", " ").split()
     if limb is not None and len(words) > 1:
         sides = ((w, _SIDES.get(w.lower())) for w in words)
         words = [w if side is None or side[0] != limb else side[1] for w, side in sides]
@@ -37,7 +37,7 @@ def _without_take(name: str) -> str:
     return _TAKE.sub("", name).strip() or name
 
 
-def apart(names: Sequence[str]) -> list[str]:
+def tell_apart(names: Sequence[str]) -> list[str]:
     """Return names that stand together without the numbers of their takes, where they differ without."""
     bare = [_without_take(name) for name in names]
     count = Counter(bare)
@@ -51,7 +51,7 @@ def _shared(project: Project, action: Action) -> int:
     graph = project.graphs[action.layer]
     if not graph.of(action.stance, "stance"):
         return 0
-    names = [words_of(a.name) for kind in KINDS for a in graph.of(action.stance, kind)]
+    names = [split_name(a.name) for kind in KINDS for a in graph.of(action.stance, kind)]
     alike = 0
     for words in zip(*names, strict=False):
         if len(set(words)) > 1:
@@ -64,13 +64,13 @@ def _row_name(name: str, stance: str, shared: int, limb: Limb | None) -> str:
     """Return a name as it is read without its stance's in front, or else without the words that all on the
     stance share.
     """
-    out = short(name, stance)
-    return _read(name[parts(name)[shared][1] :] if out == name and shared > 0 else out, limb)
+    out = strip_stance(name, stance)
+    return _read(name[split_name_at(name)[shared][1] :] if out == name and shared > 0 else out, limb)
 
 
 @lru_cache(maxsize=MANY)
 def _read(name: str, limb: Limb | None) -> str:
-    return plain(name, "", limb)
+    return plain_action_name(name, "", limb)
 
 
 def row_names(project: Project, actions: Iterable[Action]) -> dict[str, str]:
@@ -82,7 +82,9 @@ def row_names(project: Project, actions: Iterable[Action]) -> dict[str, str]:
     for action in some:
         limb, stance = action.limb if action.layer == "arms" else None, called.get(action.stance)
         name = (
-            plain(action.name, "", limb) if stance is None else _row_name(action.name, stance, shared, limb)
+            plain_action_name(action.name, "", limb)
+            if stance is None
+            else _row_name(action.name, stance, shared, limb)
         )
         if action.kind == "transition":
             end = project.stance(action.end_stance)
@@ -91,18 +93,18 @@ def row_names(project: Project, actions: Iterable[Action]) -> dict[str, str]:
     if any(a.kind == "transition" for a in some):  # several ways to one stance go by their own names
         ways = Counter(told)
         told = [
-            name if ways[name] == 1 else f"{name}: {plain(a.name)}"
+            name if ways[name] == 1 else f"{name}: {plain_action_name(a.name)}"
             for name, a in zip(told, some, strict=True)
         ]
     # The number of a stance is no take's.
     bare = [
         whole if a.kind == "transition" else name
-        for a, whole, name in zip(some, told, apart(told), strict=True)
+        for a, whole, name in zip(some, told, tell_apart(told), strict=True)
     ]
     return {a.id: name for a, name in zip(some, bare, strict=True)}
 
 
-def told_names(words: str, name: str) -> str:
+def names_in_tooltip(words: str, name: str) -> str:
     """Return what a tooltip says of something called `words` in its place: that, and its name where that is
     another.
     """

@@ -12,19 +12,19 @@ FRONT = "@|:"  # what studios put between a character's name and an action's
 _RUN = re.compile(r"[^\W\d_]+|\d+")  # of letters, or of digits
 
 
-def listed(words: Sequence[str]) -> str:
+def list_in_words(words: Sequence[str]) -> str:
     """Return "Ann", "Ann and Ben", "Ann, Ben and Cleo"."""
     return tr(" and ").join(filter(None, (", ".join(words[:-1]), *words[-1:])))
 
 
-def short(name: str, stance: str) -> str:
+def strip_stance(name: str, stance: str) -> str:
     """Return an action's name without its stance's name in front, nor what is before that up to one of FRONT:
     what is the same in every row tells nothing. Numbers count as such: "Idle01" is "idle 1".
     """
-    words, told = words_of(stance), words_of(name)
+    words, told = split_name(stance), split_name(name)
     if not words or words[0] not in told:
         return name
-    found = parts(name)
+    found = split_name_at(name)
     for first in range(len(found) - len(words)):
         if first and name[found[first][1] - 1] not in FRONT:
             continue
@@ -34,13 +34,13 @@ def short(name: str, stance: str) -> str:
 
 
 @lru_cache(maxsize=16384)
-def words_of(name: str) -> tuple[str, ...]:
+def split_name(name: str) -> tuple[str, ...]:
     """Return a name's words and numbers."""
-    return tuple(word for word, *_ in parts(name))
+    return tuple(word for word, *_ in split_name_at(name))
 
 
 @lru_cache(maxsize=16384)  # each name is looked at beside each stance, whenever cards are painted
-def parts(name: str) -> tuple[tuple[str, int, int], ...]:
+def split_name_at(name: str) -> tuple[tuple[str, int, int], ...]:
     """Return a name's words and numbers, each with where it begins and ends."""
     out = []
     for run in _RUN.finditer(name):
@@ -61,6 +61,6 @@ def _begins_word(name: str, i: int) -> bool:
     return letter.isupper() and (not before.isupper() or after.islower())
 
 
-def clips_words(count: int) -> str:
+def count_clips(count: int) -> str:
     """Return "1 clip", "152 clips"."""
     return tr_plural("{count:,} clip", "{count:,} clips", count)

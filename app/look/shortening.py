@@ -9,13 +9,13 @@ from functools import lru_cache
 
 from PySide6.QtGui import QFont, QFontMetricsF
 
-from app.look.plural import parts
+from app.look.plural import split_name_at
 
 GAP = "…"
 LEAST = 3  # letters that still say something; 2 of scripts in which a letter says more
 
 
-def fitting(
+def shorten_middle(
     text: str, width: float, measure: Callable[[str], float], others: Iterable[str] = (), sure: bool = False
 ) -> str:
     """Return as much of a text as a width has room for, its middle left out, or both ends. others: what
@@ -81,7 +81,7 @@ def _end(text: str, letters: int) -> str:
     return text[len(text) - letters :].lstrip() if letters else ""
 
 
-def whole_words(
+def break_at_words(
     text: str, width: float, lines: int, measure: Callable[[str], float], others: Iterable[str] = ()
 ) -> tuple[str, ...]:
     """Return the lines that stand in a space, at most so many of a width: all of a text, else the longest run
@@ -89,7 +89,7 @@ def whole_words(
     """
     if (whole := _broken(text, width, lines, measure)) is not None:
         return whole
-    words, rivals = parts(text), _rivals(text, others)
+    words, rivals = split_name_at(text), _rivals(text, others)
     best: tuple[int, int, tuple[str, ...]] = (0, 0, ())
     for first, (_, begin, _) in enumerate(words):
         for last, (_, _, end) in enumerate(words[first:], first):
@@ -106,19 +106,19 @@ def whole_words(
     return best[2]
 
 
-def chip(
+def shorten_to_lines(
     text: str, width: float, lines: int, measure: Callable[[str], float], others: Iterable[str] = ()
 ) -> tuple[str, ...]:
     """Return `whole_words`, else the beginning of a word that begins no word of the others; () where nothing
     of a text tells it apart.
     """
-    return whole_words(text, width, lines, measure, others) or _beginning(
+    return break_at_words(text, width, lines, measure, others) or _beginning(
         text, width, measure, _rivals(text, others)
     )
 
 
 def _rivals(text: str, others: Iterable[str]) -> list[list[str]]:
-    return [[word for word, *_ in parts(o)] for o in {*others} - {text}]
+    return [[word for word, *_ in split_name_at(o)] for o in {*others} - {text}]
 
 
 def _beginning(
@@ -126,7 +126,7 @@ def _beginning(
 ) -> tuple[str, ...]:
     """Return as much of a word as there is room for, where that begins no other's."""
     theirs, best = {word for rival in rivals for word in rival}, ""
-    for _, begin, end in parts(text):
+    for _, begin, end in split_name_at(text):
         last = end
         while last > begin and measure(f"{GAP if begin else ''}{text[begin:last]}{GAP}") > width:
             last -= 1
@@ -153,7 +153,7 @@ def _broken(text: str, width: float, lines: int, measure: Callable[[str], float]
         return (text,)
     if lines < 2:
         return None
-    for _, begin, _ in reversed(parts(text)):
+    for _, begin, _ in reversed(split_name_at(text)):
         head = text[:begin].rstrip()
         if head.strip(GAP) and measure(head) <= width:
             rest = _broken(text[begin:], width, lines - 1, measure)
@@ -162,23 +162,27 @@ def _broken(text: str, width: float, lines: int, measure: Callable[[str], float]
 
 
 @lru_cache(maxsize=8192)
-def fitted(text: str, width: int, font: str, others: tuple[str, ...] = (), sure: bool = False) -> str:
+def shorten_to_font(
+    text: str, width: int, font: str, others: tuple[str, ...] = (), sure: bool = False
+) -> str:
     """Return as much of a text as there is room for in a font, given as `QFont.toString` does: whole words
     that none of the others has, where it has such, else `fitting`; made once.
     """
-    measure = measured(font).horizontalAdvance
-    whole = whole_words(text, width, 1, measure, others) if others else ()
-    return whole[0] if whole else fitting(text, width, measure, others, sure)
+    measure = measure_font(font).horizontalAdvance
+    whole = break_at_words(text, width, 1, measure, others) if others else ()
+    return whole[0] if whole else shorten_middle(text, width, measure, others, sure)
 
 
 @lru_cache(maxsize=8192)
-def chipped(text: str, width: int, lines: int, font: str, others: tuple[str, ...] = ()) -> tuple[str, ...]:
+def shorten_to_lines_in_font(
+    text: str, width: int, lines: int, font: str, others: tuple[str, ...] = ()
+) -> tuple[str, ...]:
     """Return `chip` in a font, given as `QFont.toString` does; made once."""
-    return chip(text, width, lines, measured(font).horizontalAdvance, others)
+    return shorten_to_lines(text, width, lines, measure_font(font).horizontalAdvance, others)
 
 
 @lru_cache(maxsize=8)
-def measured(font: str) -> QFontMetricsF:
+def measure_font(font: str) -> QFontMetricsF:
     """Return the measures of a font, given as `QFont.toString` does."""
     made = QFont()
     made.fromString(font)

@@ -16,7 +16,7 @@ from metagraph.graph.model import Kind
 
 
 @dataclass(frozen=True)
-class Theme:
+class WindowTheme:
     """Colours as #rrggbb. ground: behind panels; panel, card, field: ever closer to the eye; line:
     borders.
     """
@@ -49,7 +49,7 @@ class Theme:
 
 _SOUNDS = {"clause": "#e05a7f", "response": "#d9e57f", "hesitation": "#aab1bc"}
 _KINDS = {"stance": "#3fb8a6", "gesture": "#f0a63c", "fidget": "#a98bf0", "transition": "#5aa3f0"}
-DARK = Theme(
+DARK = WindowTheme(
     "dark",
     ground="#17181b",
     panel="#1e2024",
@@ -67,7 +67,7 @@ DARK = Theme(
     fills=_KINDS,
     sounds=_SOUNDS,
 )
-LIGHT = Theme(
+LIGHT = WindowTheme(
     "light",
     ground="#e9ebee",
     panel="#f6f7f8",
@@ -90,11 +90,11 @@ KIND_MARKS = {"stance": "●", "gesture": "▲", "fidget": "◆", "transition": 
 SOUND_MARKS = {"clause": "■", "response": "✓", "hesitation": "…"}
 
 
-def theme(name: str) -> Theme:
+def theme(name: str) -> WindowTheme:
     return THEMES.get(name, DARK)
 
 
-def palette(look: Theme) -> QPalette:
+def palette(look: WindowTheme) -> QPalette:
     out = QPalette()
     role = QPalette.ColorRole
     for key, color in (
@@ -129,7 +129,7 @@ def palette(look: Theme) -> QPalette:
 MARKS = (Path(__file__).parent / "marks").as_posix()  # pictures a style sheet names by their files
 
 
-def style_sheet(look: Theme) -> str:
+def style_sheet(look: WindowTheme) -> str:
     """Return the style of the whole window; 8 px grid, 6 px radius, no gradients.
 
     Labels, message boxes and tooltips show text as it is: a name from a stranger's file may look like HTML,
@@ -224,7 +224,7 @@ def style_sheet(look: Theme) -> str:
     """
 
 
-def apply(app: QApplication, look: Theme) -> None:
+def apply_theme(app: QApplication, look: WindowTheme) -> None:
     """Give the application a theme's style."""
     if not app.property("styled"):  # once: each of these polishes every widget anew
         app.setProperty("styled", True)

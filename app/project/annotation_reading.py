@@ -13,16 +13,16 @@ from metagraph.graph import edits
 from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.playback.learning.annotation import SPEECH, Annotation, Label, guess_roles, labels
-from metagraph.playback.learning.learn import Act, learn, performance, sequences
+from metagraph.playback.learning.learn import Act, act_sequences, as_performance, learn_model
 from metagraph.playback.planning.markov import DEFAULTS
 from metagraph.playback.planning.mode_shares import with_modes
-from metagraph.playback.planning.running_plan import asks_of, perform
+from metagraph.playback.planning.running_plan import list_kept_asks, plan_performance
 
 FEW = 30  # acts below which a model is a rough one
 
 
 @dataclass(frozen=True)
-class Reading:
+class AnnotationReading:
     """How an annotation is read. roles: tier -> role. said: label, or `layer: label` -> meaning, before what
     is remembered and guessed.
     """
@@ -39,7 +39,7 @@ class Reading:
     @cached_property
     def observed(self) -> dict[Layer, tuple[Act, ...]]:
         """Layer -> what it was seen to do; layers that no tier is read as are not in it."""
-        found = sequences(self.annotation, self.roles, self.labels)
+        found = act_sequences(self.annotation, self.roles, self.labels)
         return {layer: found[layer] for layer in LAYERS if layer in found}
 
     @cached_property
@@ -59,22 +59,22 @@ class Reading:
         )
         return own, partner
 
-    def with_role(self, tier: str, role: str) -> Reading:
+    def with_role(self, tier: str, role: str) -> AnnotationReading:
         return replace(self, roles={**self.roles, tier: role})
 
-    def with_meaning(self, label: Label, meaning: str) -> Reading:
+    def with_meaning(self, label: Label, meaning: str) -> AnnotationReading:
         return replace(self, said={**self.said, label.key: meaning})
 
 
-def begin(
+def begin_reading(
     annotation: Annotation, *tiers: Mapping[str, str], labels: tuple[Mapping[str, str], ...] = ()
-) -> Reading:
+) -> AnnotationReading:
     """Return a reading as remembered, the earlier memories first, and otherwise as guessed."""
-    return Reading(annotation, guess_roles(annotation, *tiers), {}, labels)
+    return AnnotationReading(annotation, guess_roles(annotation, *tiers), {}, labels)
 
 
 @dataclass(frozen=True)
-class Made:
+class ReadingResult:
     """What became of a reading. learned: the layers that have a model of their own now. performance: id of
     what was kept.
     """
@@ -84,26 +84,26 @@ class Made:
     performance: str | None = None
 
 
-def into(
+def work_into_project(
     project: Project,
-    reading: Reading,
+    reading: AnnotationReading,
     learned: Collection[Layer],
     tagged: bool,
     name: str | None,
     smoothing: float = 0.0,
-) -> Made:
+) -> ReadingResult:
     """Work a reading into a project: remember how it was read, learn models, keep it as a performance.
 
     learned: layers to learn, as far as they were seen to do something. tagged: positive and negative become
     states of their own, otherwise shares of gestures. name: of the performance, None to keep none.
     """
-    project = remember(project, reading)
+    project = remember_reading(project, reading)
     done = []
     for layer in LAYERS:
         if layer in learned and reading.observed.get(layer):
             acts = reading.observed[layer]
             model = with_modes(
-                learn(layer, [acts], tagged, smoothing), acts, *reading.spoken, reading.annotation.end
+                learn_model(layer, [acts], tagged, smoothing), acts, *reading.spoken, reading.annotation.end
             )
             model = model if model.modes else replace(model, modes=DEFAULTS[layer].modes)
             project = edits.set_markov(project, model)
@@ -111,17 +111,19 @@ def into(
     kept = None
     if name is not None and any(reading.observed.values()):
         project, kept = performance_edits.add_performance(
-            project, performance(name, reading.observed, reading.annotation.end)
+            project, as_performance(name, reading.observed, reading.annotation.end)
         )
-    return Made(project, tuple(done), kept)
+    return ReadingResult(project, tuple(done), kept)
 
 
-def replayed(project: Project, ident: str) -> dict[Layer, dict[str, int]]:
+def count_replayed(project: Project, ident: str) -> dict[Layer, dict[str, int]]:
     """Return layer -> how many acts a kept performance asks for, how many of them play, and how many of those
     with another limb than was seen.
     """
     kept = project.performances[ident]
-    plan = perform(project, asks_of(kept), kept.length, kept.seed, dict(kept.stances), kept.idle)
+    plan = plan_performance(
+        project, list_kept_asks(kept), kept.length, kept.seed, dict(kept.stances), kept.idle
+    )
     out: dict[Layer, dict[str, int]] = {}
     for layer in LAYERS:
         asked = {ask.id for ask in kept.asks if getattr(ask, "layer", None) == layer}
@@ -136,7 +138,7 @@ def replayed(project: Project, ident: str) -> dict[Layer, dict[str, int]]:
     return out
 
 
-def remember(project: Project, reading: Reading) -> Project:
+def remember_reading(project: Project, reading: AnnotationReading) -> Project:
     """Note in a project what tiers are read as, and labels where that is not what would be guessed."""
     guessed = {label.key: label.meaning for label in labels(reading.annotation, reading.roles)}
     noted = {key: meaning for key, meaning in project.labels.items() if key not in guessed}
@@ -144,7 +146,7 @@ def remember(project: Project, reading: Reading) -> Project:
     return replace(project, tiers={**project.tiers, **reading.roles}, labels=noted)
 
 
-def told(reading: Reading) -> list[str]:
+def describe_doubts(reading: AnnotationReading) -> list[str]:
     """Return in words what is doubtful about a reading."""
     out = list(reading.annotation.notes)
     if not reading.observed:

@@ -18,7 +18,7 @@ from metagraph.formats.project.journal_register import JournalRegister
 from metagraph.graph.model import Project
 
 
-class Kept(Protocol):
+class JournalledDocument(Protocol):
     """What the journal has to know of its document; see `app.project.document.Document`."""
 
     project: Project
@@ -36,7 +36,7 @@ class Kept(Protocol):
 class Autosave:
     """Writes what a document's edits are. Whatever the user has to know of it, the document says."""
 
-    def __init__(self, document: Kept) -> None:
+    def __init__(self, document: JournalledDocument) -> None:
         self.document = document
         self.journal: Journal | None = None
         self._abandoned: list[Journal] = []  # whose place was gone; once all is saved they go, where they can
@@ -50,7 +50,7 @@ class Autosave:
 
     @property
     def register(self) -> JournalRegister:
-        return JournalRegister(shelter(self.folder))
+        return JournalRegister(journal_shelter(self.folder))
 
     @property
     def place(self) -> Path:
@@ -126,7 +126,7 @@ class Autosave:
         be none.
         """
         document = self.document
-        folder = shelter(self.folder)
+        folder = journal_shelter(self.folder)
         if document.path is None or (self.journal is not None and self.journal.path.parent == folder):
             return None
         place = journal_path(folder / document.path.name, document.owner.sitting)
@@ -187,7 +187,7 @@ class Autosave:
         self._abandoned.clear()
 
 
-def shelter(folder: Path) -> Path:
+def journal_shelter(folder: Path) -> Path:
     """Return where journals are listed, and lie that can lie nowhere else."""
     return folder / "journals"
 

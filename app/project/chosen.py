@@ -39,6 +39,6 @@ def keep_chosen(paths: Iterable[Path]) -> None:
             write_atomically(_place(), json.dumps(rows).encode())
 
 
-def was_chosen(path: Path) -> bool:
+def is_chosen(path: Path) -> bool:
     """Return whether the user has chosen this file by hand."""
     return str(path.resolve()) in _kept()

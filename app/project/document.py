@@ -18,18 +18,18 @@ from app.project.autosave import Autosave
 from app.project.autosave import state_folder as state_folder  # where others look for it
 from app.project.opening import with_motion_of
 from app.project.version_count import version_count
-from app.project.writing import Writing, project_name
+from app.project.writing import Writing, name_after_file
 from app.translation import in_english, tr
 from metagraph.errors import FileError
 from metagraph.formats.locking import Lock, new_owner
 from metagraph.formats.new_file import Access, access_of
 from metagraph.formats.project.appended_file import Identity, folder_now, identity_of
-from metagraph.formats.project.history import Step
+from metagraph.formats.project.history import UndoStep
 from metagraph.formats.project.journal import Done, How
-from metagraph.formats.project.limits import refusal
-from metagraph.formats.store import file_digest, moved
+from metagraph.formats.project.limits import find_unwritable
+from metagraph.formats.store import file_digest, move_project
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.editing.listing import listed_otherwise
+from metagraph.graph.editing.listing import is_listed_differently
 from metagraph.graph.model import Project
 
 Edit = Callable[[Project], Project]
@@ -127,8 +127,10 @@ class Document(QObject):
         is then as it was.
         """
         after = function(self.project)
-        if after is not self.project and (after != self.project or listed_otherwise(self.project, after)):
-            why = refusal(self.project, after)
+        if after is not self.project and (
+            after != self.project or is_listed_differently(self.project, after)
+        ):
+            why = find_unwritable(self.project, after)
             if why is not None:
                 raise EditError(why)
             self.undo_stack.push(_Change(self, text, self.project, after, merge))
@@ -198,7 +200,7 @@ class Document(QObject):
         path: Path | None,
         recovered: int = 0,
         *,
-        steps: Sequence[Step] = (),
+        steps: Sequence[UndoStep] = (),
         common: Project | None = None,
         digest: str | None = None,
         lock: Lock | None = None,
@@ -228,7 +230,7 @@ class Document(QObject):
         self.changed.emit(before, project)
         self.state_changed.emit()
 
-    def _restore(self, steps: Sequence[Step]) -> None:
+    def _restore(self, steps: Sequence[UndoStep]) -> None:
         """Put steps on the stack that were made before a crash."""
         self.undo_stack.blockSignals(True)  # the views follow once, in the end
         self._restoring = True
@@ -250,7 +252,7 @@ class Document(QObject):
         theirs, stack = other.undo_stack, self.undo_stack
         made = [c for c in map(theirs.command, range(theirs.count())) if isinstance(c, _Change)]
         stack.clear()
-        self._restore([Step(c.text(), c.before, c.after) for c in made])
+        self._restore([UndoStep(c.text(), c.before, c.after) for c in made])
         for step, theirs_step in zip(map(stack.command, range(stack.count())), made, strict=True):
             assert isinstance(step, _Change)
             step.english = theirs_step.english
@@ -319,7 +321,9 @@ class Document(QObject):
             before = self.project
             after = writing.after
             if edited:
-                after = replace(moved(before, self.path, writing.target), name=project_name(writing.target))
+                after = replace(
+                    move_project(before, self.path, writing.target), name=name_after_file(writing.target)
+                )
             # Steps back would bring paths relative to the old place; a new place begins a new history.
             self.undo_stack.clear()
             self._move_lock(writing.target)

@@ -16,14 +16,14 @@ from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 from app.faults import is_foreseen
 from app.project.autosave import state_folder
 from app.project.document import Document
-from app.project.jobs import WORDS, Job, Jobs
+from app.project.jobs import WORDS, Jobs, WindowJob
 from app.project.keeper import Keeper
-from app.project.leftovers import FoundJournal, forget, keep_as_copy, look_beside
+from app.project.leftovers import FoundJournal, keep_as_copy, look_beside, remove_journal
 from app.project.network_files import NetworkFiles
 from app.project.opening import load_recovered, open_whole
 from app.project.outside import Outside
 from app.project.saver import Saver
-from app.project.unsaved import Unsaved, not_steps
+from app.project.unsaved import Unsaved, count_lost_steps
 from app.project.writing import FolderGoneError
 from app.translation import tr, tr_error
 from metagraph.common.files import is_file
@@ -32,7 +32,7 @@ from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.locking import Lock
 from metagraph.formats.new_file import PRIVATE
-from metagraph.formats.project.history import Step
+from metagraph.formats.project.history import UndoStep
 from metagraph.formats.project.versions import is_version
 from metagraph.formats.recovery import Left
 from metagraph.formats.store import SUFFIX, Opened, absolute, read_project
@@ -185,7 +185,7 @@ class Files(QObject):
         if not template:  # a copy of one that was asked about names the same
             allow(False)
 
-        def work(job: Job) -> tuple[Opened, Project | None, list[Path], tuple[Step, ...]]:
+        def work(job: WindowJob) -> tuple[Opened, Project | None, list[Path], tuple[UndoStep, ...]]:
             kept = [keep_as_copy(other, path) for other in copies]
             if chosen is None:
                 return open_whole(path, job.tell), None, kept, ()
@@ -193,7 +193,7 @@ class Files(QObject):
             opened, steps = load_recovered(chosen, path.parent, job.tell)
             return replace(opened, digest=chosen.digest), common, kept, steps
 
-        def done(result: tuple[Opened, Project | None, list[Path], tuple[Step, ...]]) -> None:
+        def done(result: tuple[Opened, Project | None, list[Path], tuple[UndoStep, ...]]) -> None:
             opened, common, kept, steps = result
             if self.document.project is not before and not self.may_leave():
                 _release(lock, self.document)
@@ -205,7 +205,7 @@ class Files(QObject):
                 self.document.load(
                     opened.project,
                     path,
-                    not_steps(chosen, steps) if chosen is not None else 0,
+                    count_lost_steps(chosen, steps) if chosen is not None else 0,
                     steps=steps,
                     common=common,
                     digest=opened.digest,
@@ -215,9 +215,9 @@ class Files(QObject):
                 self._remember(path)
             over = chosen is not None and self.document.secured()  # else it stays, and is offered again
             for other in [*copies, *([chosen] if chosen is not None and over else [])]:
-                forget(other.path)
+                remove_journal(other.path)
             for other in dropped:
-                forget(other.path, discard=True)
+                remove_journal(other.path, discard=True)
             self.opened.emit()
             if chosen is not None:
                 self.tell_lost(chosen)
@@ -238,11 +238,11 @@ class Files(QObject):
 
     def tell_lost(self, left: Left) -> None:
         """Say which edits of a damaged journal are lost."""
-        from app.project.recovering import lost_words
+        from app.project.recovering import describe_lost
 
         if left.is_damaged:
             kept = tr("The damaged file is kept: {place}", place=left.path.parent)
-            self.report.emit(tr("The kept edits were damaged"), [*lost_words(left), kept])
+            self.report.emit(tr("The kept edits were damaged"), [*describe_lost(left), kept])
 
     def recover(self) -> None:
         """Offer all work that is in no file, wherever it lies."""
@@ -283,7 +283,7 @@ class Files(QObject):
         lock = Lock(path, self.document.owner, self.document.access)
         holder = lock.acquire()
         if holder is not None:
-            from app.project.questions import holder_words
+            from app.project.questions import describe_holder
 
             QMessageBox.warning(
                 self.window,
@@ -291,7 +291,7 @@ class Files(QObject):
                 tr(
                     "{name} is open in another window, by {holder}. Choose another name.",
                     name=path.name,
-                    holder=holder_words(holder),
+                    holder=describe_holder(holder),
                 ),
             )
             return False

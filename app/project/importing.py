@@ -11,16 +11,16 @@ from pathlib import Path
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog, QWidget
 
-from app.look.plural import clips_words
+from app.look.plural import count_clips
 from app.project.document import Document
 from app.project.files import Files
-from app.project.jobs import Job, Jobs
-from app.project.kept_maps import kept_maps
+from app.project.jobs import Jobs, WindowJob
+from app.project.kept_maps import read_joint_maps
 from app.project.load import Load
 from app.project.opening import take_over
 from app.translation import tr, tr_phrase
 from metagraph.formats.clip_readers import clip_suffixes
-from metagraph.formats.import_words import Remedy, counted, head, said
+from metagraph.formats.import_words import Remedy, count_alike, describe_import, describe_imported
 from metagraph.formats.imports import Imported, Strangers, import_files
 from metagraph.formats.repairs import repairs_of
 from metagraph.formats.store import Opened, load_returned
@@ -117,9 +117,9 @@ class Importing(QObject):
             else:
                 self.told.emit(tr("The import was dropped, since another project was opened."))
 
-        maps = kept_maps()
+        maps = read_joint_maps()
 
-        def work(job: Job) -> Imported:
+        def work(job: WindowJob) -> Imported:
             tell = lambda n, total, path: job.tell(n, total, path.name)  # noqa: E731
             remembered = lambda source, target: maps.get((source, target))  # noqa: E731
             return import_files(project, folder, paths, tell, lambda: job.cancelled, "ask", remembered)
@@ -130,7 +130,7 @@ class Importing(QObject):
     def _imported(self, result: Imported, drop: object) -> None:
         count = len(result.loaded)
         if count:
-            self.document.edit(tr("Import {clips}", clips=clips_words(count)), result.into)
+            self.document.edit(tr("Import {clips}", clips=count_clips(count)), result.into)
         self.imported.emit(result, drop)
         if not result.strangers or self.retarget is None:
             self._tell_imported(result)
@@ -146,7 +146,7 @@ class Importing(QObject):
         def then(brought: Imported) -> None:
             if brought.loaded:
                 self.document.edit(
-                    tr("Retarget {clips}", clips=clips_words(len(brought.loaded))), brought.into
+                    tr("Retarget {clips}", clips=count_clips(len(brought.loaded))), brought.into
                 )
                 self.imported.emit(brought, drop)
             parts.append(brought)
@@ -177,7 +177,7 @@ class Importing(QObject):
             )
             return
         before = [note for note in result.notes if note.endswith("retargeted as before")]
-        self.told.emit(". ".join([tr_phrase(said(result)), *before]))
+        self.told.emit(". ".join([tr_phrase(describe_import(result)), *before]))
         clips = self.load_for(result).clips
         repairs = repairs_of(self.document.project, clips)
         if any(
@@ -185,8 +185,8 @@ class Importing(QObject):
         ):  # a name is plain to see, and no reason to interrupt
             told = {found.repair.words for found in repairs}
             notes = [note for note in result.notes if note.split(": ", 1)[-1] not in told]
-            lines = [tr_phrase(line) for line in counted([*result.failures, *notes])]
-            self.noticed.emit(tr_phrase(head(result)), clips, lines)
+            lines = [tr_phrase(line) for line in count_alike([*result.failures, *notes])]
+            self.noticed.emit(tr_phrase(describe_imported(result)), clips, lines)
         self.ended.emit(result)
 
     def load_for(self, result: Imported) -> Load:
@@ -235,7 +235,7 @@ class Importing(QObject):
             return
         folder = Path(name)
 
-        def work(job: Job) -> Project:
+        def work(job: WindowJob) -> Project:
             from metagraph.formats.store import relocate
 
             return relocate(project, self.document.folder, folder, job.tell)

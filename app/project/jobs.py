@@ -16,7 +16,7 @@ from app import faults
 WORDS = (OSError, MemoryError, ValueError, RuntimeError)  # what work says in words, beside errors of ours
 
 
-class Job(QObject):
+class WindowJob(QObject):
     """A running job. `done` carries its result, `failed` the exception, `progress` (done, total, words).
 
     Exactly one of done and failed is emitted, then `ended`; after `cancel` neither done nor failed is. Then
@@ -30,7 +30,7 @@ class Job(QObject):
     ended = Signal()
     _over = Signal(object, object)  # result, error; from the thread
 
-    def __init__(self, title: str, work: Callable[[Job], Any]) -> None:
+    def __init__(self, title: str, work: Callable[[WindowJob], Any]) -> None:
         super().__init__()
         self.title = title
         self._work = work
@@ -54,7 +54,7 @@ class Job(QObject):
     def _failed(self, error: Exception) -> None:
         """Tell whoever waits for it, and whoever takes what nobody foresaw or waits for."""
         if not self.heard or not (faults.is_foreseen(error) or isinstance(error, WORDS)):
-            faults.tell(error, f"job: {self.title.split()[0] if self.title else ''}")
+            faults.report_error(error, f"job: {self.title.split()[0] if self.title else ''}")
         self.failed.emit(error)
 
     def forget(self) -> None:
@@ -67,12 +67,12 @@ class Job(QObject):
         self.progress.emit(done, total, words)
 
 
-def _nothing(job: Job) -> None:
+def _nothing(job: WindowJob) -> None:
     """The work of a job that is over."""
 
 
 class _Runner(QRunnable):
-    def __init__(self, job: Job) -> None:
+    def __init__(self, job: WindowJob) -> None:
         super().__init__()
         self.job = job
         self.setAutoDelete(True)
@@ -119,8 +119,8 @@ class Jobs(QObject):
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self.running: list[Job] = []
-        self._alive: set[Job] = set()  # quick jobs, kept from being collected while they run
+        self.running: list[WindowJob] = []
+        self._alive: set[WindowJob] = set()  # quick jobs, kept from being collected while they run
         self._pool = QThreadPool(self)
         self._pool.setMaxThreadCount(2)  # long jobs must not starve the short ones the preview needs
         self._quick = QThreadPool(self)
@@ -128,23 +128,23 @@ class Jobs(QObject):
         self._stopped = False
 
     @property
-    def at_work(self) -> list[Job]:
+    def at_work(self) -> list[WindowJob]:
         """All jobs that have not ended, quick ones included."""
         return [*self.running, *self._alive]
 
     def start(
         self,
         title: str,
-        work: Callable[[Job], Any],
+        work: Callable[[WindowJob], Any],
         done: Callable[[Any], None] | None = None,
         failed: Callable[[Exception], None] | None = None,
         quick: bool = False,
         stands: bool = False,
-    ) -> Job:
+    ) -> WindowJob:
         """Run `work(job)` on a thread. quick: a short background job, not shown to the user. stands: what it
         makes is there without whoever it is delivered to, such as a file.
         """
-        job = Job(title, work)
+        job = WindowJob(title, work)
         if done is not None:
             job.done.connect(self._to_who_is_left(done, "" if quick else title, stands))
         if failed is not None:
@@ -176,7 +176,7 @@ class Jobs(QObject):
 
         return deliver
 
-    def _ended(self, job: Job) -> None:
+    def _ended(self, job: WindowJob) -> None:
         if job in self.running:
             self.running.remove(job)
             if not self._stopped:  # else nobody is there any more to be told

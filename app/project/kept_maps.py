@@ -16,7 +16,7 @@ def _place() -> Path:
     return state_folder() / "joint_maps.json"
 
 
-def kept_maps() -> dict[tuple[str, str], JointMap]:
+def read_joint_maps() -> dict[tuple[str, str], JointMap]:
     """Return the maps by the fingerprints of source and target, the latest last; what is damaged is passed
     over.
     """
@@ -36,7 +36,7 @@ def kept_maps() -> dict[tuple[str, str], JointMap]:
 
 def keep_map(joint_map: JointMap) -> None:
     """Remember a map. Raises FileError."""
-    maps = kept_maps()
+    maps = read_joint_maps()
     maps.pop((joint_map.source, joint_map.target), None)
     rows = [found.to_json() for found in [*maps.values(), joint_map][-MOST:]]
     write_atomically(_place(), json.dumps(rows).encode())

@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QFileDialog, QWidget
 from app.project.document import Document
 from app.project.files import Files
 from app.project.importing import FileDrop, Importing
-from app.project.jobs import Job, Jobs
+from app.project.jobs import Jobs, WindowJob
 from app.translation import tr, tr_plural
 from metagraph.formats.clip_readers import clip_suffixes
 from metagraph.formats.imports import Imported
@@ -41,13 +41,13 @@ class ReadLabels:
         """Return a project with both, how many rows were met, and why others were not."""
         project = self.clips.into(project)
         at = {(entry.path, entry.take): entry.id for entry in project.clips.values()}
-        from metagraph.formats.action_labels import labelled
+        from metagraph.formats.action_labels import apply_labels
 
         fresh = {clip.name: at[file, take] for file, take, _, clip in self.clips.loaded}
-        return labelled(project, self.rows, fresh)
+        return apply_labels(project, self.rows, fresh)
 
 
-def clips_beside(path: Path) -> list[Path]:
+def find_clips_beside(path: Path) -> list[Path]:
     """Return the files of clips that are called as a file of labels is: `talk.glb` for `talk.labels.json`."""
     stem = path.name.removesuffix(ENDING)
     return [
@@ -92,11 +92,11 @@ class LabelFiles:
 
         project, folder = self._document.project, self._document.folder
 
-        def work(job: Job) -> ReadLabels:
+        def work(job: WindowJob) -> ReadLabels:
             tell = lambda n, total, file: job.tell(n, total, file.name)  # noqa: E731
             rows = read_labels(path)
             return ReadLabels(
-                rows, import_files(project, folder, clips_beside(path), tell, lambda: job.cancelled)
+                rows, import_files(project, folder, find_clips_beside(path), tell, lambda: job.cancelled)
             )
 
         def done(read: ReadLabels) -> None:

@@ -25,7 +25,7 @@ from metagraph.formats.atomic import write_atomically
 if TYPE_CHECKING:  # arrays and word lists are read when something is first learned or asked
     from app.project.jobs import Jobs
     from metagraph.graph.model import Project
-    from metagraph.suggest.alike import Example
+    from metagraph.suggest.alike import LabelledExample
     from metagraph.suggest.memory import Memory
     from metagraph.suggest.words.patterns import Patterns
 
@@ -68,20 +68,20 @@ class Learned(QObject):
     @property
     def patterns(self) -> Patterns:
         """What words in names mean; without what was learned from corrections while learning is off."""
-        from metagraph.suggest.words.patterns import forget
+        from metagraph.suggest.words.patterns import forget_learned
 
-        return self.every_pattern if self.on else forget(self.every_pattern)
+        return self.every_pattern if self.on else forget_learned(self.every_pattern)
 
     @property
     def every_pattern(self) -> Patterns:
         """All that is known of words, whether it is used or not."""
         return self._memory(WORDS).patterns
 
-    def examples_for(self, document: Document) -> list[Example]:
+    def examples_for(self, document: Document) -> list[LabelledExample]:
         """Return labelled clips of the user's other projects; may read a file of some MB, so ask on a job."""
         return self.examples_beside(document.path)
 
-    def examples_beside(self, path: Path | None) -> list[Example]:
+    def examples_beside(self, path: Path | None) -> list[LabelledExample]:
         """Return labelled clips of all projects but the one that is saved there."""
         return self._memory(CLIPS).others(_key(path)) if self.on else []
 
@@ -106,7 +106,7 @@ class Learned(QObject):
         """
         if not self.on or document.path is None or document.dirty:
             return
-        project, key = document.project, key_of(document)
+        project, key = document.project, memory_key(document)
         if jobs is not None:
             self._due += 1
             jobs.start(
@@ -120,9 +120,9 @@ class Learned(QObject):
 
     def _keep(self, project: Project, key: str, wait: bool = True) -> None:
         from metagraph.suggest.propose import examples_of
-        from metagraph.suggest.traits import traits_known, traits_of
+        from metagraph.suggest.traits import list_known_traits, traits_of
 
-        examples = examples_of(project, traits_of(project) if wait else traits_known(project))
+        examples = examples_of(project, traits_of(project) if wait else list_known_traits(project))
         self._change(CLIPS, lambda m: m.with_project(key, examples))
 
     def edit(self, change: Callable[[Patterns], Patterns]) -> None:
@@ -204,7 +204,7 @@ class Learned(QObject):
         self.changed.emit()
 
 
-def key_of(document: Document) -> str:
+def memory_key(document: Document) -> str:
     """Return what a project is remembered by: its file, "" for one without."""
     return _key(document.path)
 

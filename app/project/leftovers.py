@@ -10,15 +10,15 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from app.project.autosave import shelter, state_folder
+from app.project.autosave import journal_shelter, state_folder
 from metagraph.common.files import is_file
 from metagraph.errors import FileError
 from metagraph.formats.atomic import sweep
 from metagraph.formats.locking import Holder, Lock, Owner
 from metagraph.formats.new_file import access_of
 from metagraph.formats.project.journal_register import JournalRegister
-from metagraph.formats.project.journal_search import every_journal, journals_for, project_of
-from metagraph.formats.recovery import DAMAGED, Left, in_order, journals_in, read_journal, retire
+from metagraph.formats.project.journal_search import find_all_journals, journals_for, project_of
+from metagraph.formats.recovery import DAMAGED, Left, find_journals_in, order_journals, read_journal, retire
 from metagraph.formats.store import SUFFIX, load_returned, save_project
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
@@ -43,7 +43,7 @@ class FoundJournal:
 
 def register() -> JournalRegister:
     """Return the list of all journals of this user."""
-    return JournalRegister(shelter(state_folder()))
+    return JournalRegister(journal_shelter(state_folder()))
 
 
 def look_beside(path: Path, owner: Owner) -> FoundJournal:
@@ -59,29 +59,31 @@ def look_beside(path: Path, owner: Owner) -> FoundJournal:
     return FoundJournal(lock, holder, *_read([(journal, path) for journal in journals]))
 
 
-def untitled_journals() -> list[Path]:
+def list_untitled_journals() -> list[Path]:
     """Return the journals that opening no project would offer, the latest last: of projects never saved whose
     windows are gone, and of those whose file is not there any more.
     """
     folder = state_folder()
     homeless = []
-    for journal in every_journal(register(), ()):
+    for journal in find_all_journals(register(), ()):
         project = project_of(journal)
         if project is not None and not journal.name.endswith(DAMAGED) and not is_file(project):
             homeless.append(journal)
-    return in_order([*journals_in(folder, UNTITLED), *homeless])
+    return order_journals([*find_journals_in(folder, UNTITLED), *homeless])
 
 
-def known_journals(recent: Sequence[Path]) -> list[Path]:
+def list_known_journals(recent: Sequence[Path]) -> list[Path]:
     """Return every journal there is whose window is gone, the latest last. recent: projects in whose folders
     they are looked for, too.
     """
-    found = [*journals_in(state_folder(), UNTITLED), *untitled_damaged()]
-    return in_order([*found, *every_journal(register(), dict.fromkeys(path.parent for path in recent))])
+    found = [*find_journals_in(state_folder(), UNTITLED), *list_damaged_untitled()]
+    return order_journals(
+        [*found, *find_all_journals(register(), dict.fromkeys(path.parent for path in recent))]
+    )
 
 
-def untitled_damaged() -> list[Path]:
-    return journals_in(state_folder(), rf"({UNTITLED}){re.escape(DAMAGED)}")
+def list_damaged_untitled() -> list[Path]:
+    return find_journals_in(state_folder(), rf"({UNTITLED}){re.escape(DAMAGED)}")
 
 
 def read_untitled(journals: Sequence[Path]) -> FoundJournal:
@@ -103,15 +105,15 @@ def _read(
             notes.append(f"{error} ({journal})")
             continue
         if found is None:
-            forget(journal)  # all of it was saved, or nothing edited
+            remove_journal(journal)  # all of it was saved, or nothing edited
             continue
         folders[journal] = saved.parent if saved is not None else None
         left.insert(0, found)
-    poses = {found.path: pose_of(found.project, folders[found.path]) for found in left[:PICTURES]}
+    poses = {found.path: find_telling_pose(found.project, folders[found.path]) for found in left[:PICTURES]}
     return tuple(left), tuple(notes), {path: clip for path, clip in poses.items() if clip is not None}
 
 
-def pose_of(project: Project, folder: Path | None) -> Clip | None:
+def find_telling_pose(project: Project, folder: Path | None) -> Clip | None:
     """Return a clip that shows what a project is about: of its base pose, else its first stance, else its
     first.
     """
@@ -126,7 +128,7 @@ def pose_of(project: Project, folder: Path | None) -> Clip | None:
     return None
 
 
-def forget(journal: Path, discard: bool = False) -> None:
+def remove_journal(journal: Path, discard: bool = False) -> None:
     """Remove a journal that was taken over or declined; where that is not allowed it is offered again. A
     damaged one is kept under another name, until somebody discards it.
     """

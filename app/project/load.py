@@ -26,7 +26,7 @@ class Load:
         return len(self.clips) or len(self.actions) or len(self.files)
 
 
-def readable() -> str:
+def describe_readable_formats() -> str:
     """Return the formats of clips that can be read here, in words."""
     if find_spec("ufbx") is None:
         return tr("BVH, GLB, glTF, VRM animation\n(FBX needs the extra 'fbx')")

@@ -6,11 +6,11 @@ from PySide6.QtCore import QObject, QSettings, Qt
 from PySide6.QtWidgets import QMessageBox
 
 from app.project.files_host import FilesHost
-from app.project.jobs import Job
+from app.project.jobs import WindowJob
 from app.project.opening import load_whole, take_over
 from app.translation import tr
 from metagraph.common.network_paths import allow
-from metagraph.formats.store import closed_paths, closed_words, reopened
+from metagraph.formats.store import describe_closed_paths, list_closed_paths, reopen_paths
 from metagraph.graph.model import Project
 
 SHOWN = 5  # names in the question
@@ -33,12 +33,12 @@ class NetworkFiles(QObject):
 
     def tells(self, note: str) -> bool:
         """Return whether a note says what is going to be asked here."""
-        names = closed_paths(self.document.project)
-        return bool(names) and note == closed_words(names)
+        names = list_closed_paths(self.document.project)
+        return bool(names) and note == describe_closed_paths(names)
 
     def look(self) -> None:
         """Ask about the project that was just opened, unless its user has answered before."""
-        if not closed_paths(self.document.project):
+        if not list_closed_paths(self.document.project):
             return
         answer = QSettings().value(self._key()) if self.document.path is not None else None
         if answer is None:
@@ -48,7 +48,7 @@ class NetworkFiles(QObject):
 
     def ask(self) -> None:
         """Ask whether to open them, whatever was answered before; the answer is kept for this project."""
-        names = closed_paths(self.document.project)
+        names = list_closed_paths(self.document.project)
         if not names:
             self.files.told.emit(tr("This project names no files on other computers that are not open."))
             return
@@ -83,14 +83,14 @@ class NetworkFiles(QObject):
     def _open(self) -> None:
         allow(True)
         document, era = self.document, self._era
-        project, folder = reopened(document.project), document.folder
+        project, folder = reopen_paths(document.project), document.folder
 
-        def work(job: Job) -> Project:
+        def work(job: WindowJob) -> Project:
             return load_whole(project, folder, job.tell).project if folder is not None else project
 
         def done(found: Project) -> None:
             def edit(now: Project) -> Project:
-                now = reopened(now)
+                now = reopen_paths(now)
                 return found if now == project else take_over(now, found)
 
             if era == self._era:

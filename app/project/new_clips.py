@@ -10,13 +10,13 @@ from collections.abc import Collection, Sequence
 from pathlib import Path
 
 from metagraph.common.file_names import file_stem
-from metagraph.graph.edits import free_name
+from metagraph.graph.edits import find_free_name
 from metagraph.motion.clip import Clip
 
 Loaded = tuple[str, int, str, Clip]  # what `add_clips` takes
 
 
-def pieces(clip: Clip, spans: Sequence[tuple[float, float]]) -> list[Clip]:
+def cut_into_pieces(clip: Clip, spans: Sequence[tuple[float, float]]) -> list[Clip]:
     """Return a clip cut into stretches from start to end, seconds, numbered."""
     out = []
     for n, (start, end) in enumerate(spans, 1):
@@ -39,10 +39,10 @@ def save(clips: Sequence[Clip], folder: Path, inside: str, taken: Collection[str
     place = folder / inside
     place.mkdir(parents=True, exist_ok=True)
     for clip in clips:
-        name = free_name(clip.name, names)
+        name = find_free_name(clip.name, names)
         while (place / f"{_file(name)}.glb").exists():
             names.add(name)
-            name = free_name(clip.name, names)
+            name = find_free_name(clip.name, names)
         names.add(name)
         path = place / f"{_file(name)}.glb"
         write_glb(path, [clip.renamed(name)])

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from metagraph.errors import FileError
-from metagraph.formats.project.history import Step, history, with_motion
+from metagraph.formats.project.history import UndoStep, history, with_motion
 from metagraph.formats.recovery import Left
 from metagraph.formats.store import Opened, load_motions, open_project
 from metagraph.graph.face.rig import with_morphs
@@ -30,7 +30,7 @@ def load_whole(project: Project, folder: Path, progress: Progress | None = None)
 
 def load_recovered(
     left: Left, folder: Path, progress: Progress | None = None
-) -> tuple[Opened, tuple[Step, ...]]:
+) -> tuple[Opened, tuple[UndoStep, ...]]:
     """Read the clips and voices of a journal's project, and the steps that lead to it."""
     opened = load_whole(left.project, folder, progress)
     steps = history(left)
@@ -55,7 +55,7 @@ def with_motion_of(project: Project, other: Project) -> Project:
     return replace(project, clips={**project.clips, **found}) if found else project
 
 
-def faced(project: Project, folder: Path) -> Project:
+def with_face(project: Project, folder: Path) -> Project:
     """Return the project knowing its character's morph targets; what is wrong with the file, whoever draws it
     says.
     """
@@ -70,7 +70,7 @@ def faced(project: Project, folder: Path) -> Project:
 
 
 def _voiced(opened: Opened, folder: Path) -> Opened:
-    opened = replace(opened, project=faced(opened.project, folder))
+    opened = replace(opened, project=with_face(opened.project, folder))
     if not any(line.audio or line.phones for line in opened.project.lines.values()):
         return opened
     from metagraph.speech.lines import load_voices

@@ -11,9 +11,9 @@ from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QMessageBox
 
 from app.project.files_host import FilesHost
-from app.project.jobs import Job
+from app.project.jobs import WindowJob
 from app.project.opening import load_whole, with_motion_of
-from app.project.writing import FileChangedError, file_changed
+from app.project.writing import FileChangedError, find_file_change
 from app.translation import tr
 from metagraph.formats.store import Opened
 from metagraph.graph.model import Project
@@ -64,7 +64,7 @@ class Outside(QObject):
                 lambda: self.ask(changed),
             )
 
-        files.jobs.start("project file", lambda _: file_changed(path, digest), done, quick=True)
+        files.jobs.start("project file", lambda _: find_file_change(path, digest), done, quick=True)
 
     def ask(self, changed: FileChangedError) -> None:
         """The project file is another one than was read: ask what to do with both."""
@@ -86,7 +86,7 @@ class Outside(QObject):
             elif answer == "merge" and document.common is not None:
                 self._merge(changed, document.common, theirs, digest)
 
-    def _start(self, changed: FileChangedError, work: Callable[[Job], object], done: Callable) -> None:
+    def _start(self, changed: FileChangedError, work: Callable[[WindowJob], object], done: Callable) -> None:
         title = tr("Reading {name} again", name=changed.path.name)
         self.files.jobs.start(title, work, done, self.files.show_failure)
 
@@ -101,13 +101,13 @@ class Outside(QObject):
         self._start(changed, lambda job: load_whole(theirs, changed.path.parent, job.tell), done)
 
     def _merge(self, changed: FileChangedError, common: Project, theirs: Project, digest: str) -> None:
-        from metagraph.formats.project.merging import MergeError, merge
+        from metagraph.formats.project.merging import MergeError, merge_projects
 
         era, mine = self._era, self.document.project
 
-        def work(job: Job) -> Merging | MergeError:
+        def work(job: WindowJob) -> Merging | MergeError:
             try:
-                merged = merge(common, mine, theirs)
+                merged = merge_projects(common, mine, theirs)
             except MergeError as error:
                 return error
             project = with_motion_of(merged.project, mine)

@@ -23,7 +23,7 @@ from app.look.theme import strengthen
 from app.project.writing import FileChangedError, FolderGoneError
 from app.translation import tr, tr_error, tr_phrase
 from metagraph.formats.locking import Holder
-from metagraph.graph.editing.differences import differences
+from metagraph.graph.editing.differences import describe_differences
 from metagraph.graph.model import Project
 
 Role = QMessageBox.ButtonRole
@@ -32,13 +32,13 @@ Gone = Literal["there", "save as"]
 Changed = Literal["merge", "save as", "reload", "anyway"]
 
 
-def moment_words(seconds: float) -> str:
+def describe_moment(seconds: float) -> str:
     """Return a time since 1970 as people say it: the hour, and the day where it is another than today."""
     then, now = time.localtime(seconds), time.localtime()
     return time.strftime("%H:%M" if then[:3] == now[:3] else tr("%H:%M on %d %B %Y"), then)
 
 
-def holder_words(holder: Holder) -> str:
+def describe_holder(holder: Holder) -> str:
     """Say who has a file: user, computer, since when."""
     owner = holder.owner
     if owner is None:
@@ -47,7 +47,7 @@ def holder_words(holder: Holder) -> str:
         "{user} on {host}, since {since}",
         user=owner.user,
         host=owner.host,
-        since=moment_words(owner.since),
+        since=describe_moment(owner.since),
     )
 
 
@@ -59,7 +59,7 @@ def ask_held(window: QWidget, path: Path, holder: Holder) -> Held | None:
         tr("{name} is open in another window.", name=path.name),
         parent=window,
     )
-    words = tr("By {holder}.", holder=holder_words(holder)) + "\n\n"
+    words = tr("By {holder}.", holder=describe_holder(holder)) + "\n\n"
     if holder.gone:
         words += tr(
             "That window has not been heard of for a while: it may be gone, or its computer asleep. "
@@ -181,13 +181,15 @@ class DifferencesDialog(QDialog):
             self._column(
                 row,
                 tr("Done on disk"),
-                differences(common, theirs) or [tr("Nothing but spacing or comments")],
+                describe_differences(common, theirs) or [tr("Nothing but spacing or comments")],
             )
         if common is not None:
-            self._column(row, tr("Done here"), differences(common, mine) or [tr("Nothing")])
+            self._column(row, tr("Done here"), describe_differences(common, mine) or [tr("Nothing")])
         elif theirs is not None:
             self._column(
-                row, tr("From the file on disk to what is here"), differences(theirs, mine) or [tr("Nothing")]
+                row,
+                tr("From the file on disk to what is here"),
+                describe_differences(theirs, mine) or [tr("Nothing")],
             )
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
         strengthen(buttons.button(QDialogButtonBox.StandardButton.Close))

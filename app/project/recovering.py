@@ -19,11 +19,11 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.look.plural import clips_words
+from app.look.plural import count_clips
 from app.look.theme import strengthen, theme
 from app.project.leftovers import FoundJournal
-from app.project.questions import moment_words
-from app.translation import tr, tr_plural, translated
+from app.project.questions import describe_moment
+from app.translation import lazy_texts, tr, tr_plural
 from metagraph.common.files import is_file
 from metagraph.errors import FileError
 from metagraph.formats.project.journal_records import LostEdit
@@ -32,10 +32,10 @@ from metagraph.formats.recovery import Left
 from metagraph.formats.store import read_project
 from metagraph.graph.model import KINDS, LAYERS, Project
 from metagraph.motion.clip import Clip
-from preview.joints import above, drawn
+from preview.joints import find_drawn_joints, nearest_above
 
 Choice = Literal["recover", "copy", "later", "discard"]
-WORDS: dict[Choice, str] = translated(
+WORDS: dict[Choice, str] = lazy_texts(
     lambda: {
         "recover": tr("Go on with it"),
         "copy": tr("Save as a copy beside it"),
@@ -48,7 +48,7 @@ LOST = 5  # damaged edits that are named
 SHOWN = 4  # sittings that are seen at once
 
 
-def left_words(left: Left, saved: Path | None) -> tuple[str, str]:
+def describe_left(left: Left, saved: Path | None) -> tuple[str, str]:
     """Return what a sitting is called, and what is to be known of it. saved: the project that is being
     opened; None where any sitting is listed.
     """
@@ -60,9 +60,9 @@ def left_words(left: Left, saved: Path | None) -> tuple[str, str]:
         tr(
             "{edits} in no file, the last of {moment}",
             edits=tr_plural("{count:,} edit", "{count:,} edits", left.edits),
-            moment=moment_words(left.written),
+            moment=describe_moment(left.written),
         ),
-        f"{clips_words(len(left.project.clips))}, {actions}",
+        f"{count_clips(len(left.project.clips))}, {actions}",
     ]
     if saved is not None and left.saved is not None and left.saved.name != saved.name:
         words.append(tr("Made when the project file was called {name}", name=left.saved.name))
@@ -76,11 +76,11 @@ def left_words(left: Left, saved: Path | None) -> tuple[str, str]:
         words.append(tr("The file has been saved by somebody else since: both can be merged."))
     if left.worked_in:
         words.append(tr("The file has changed since: the edits are worked into what it is now."))
-    words += lost_words(left)
+    words += describe_lost(left)
     return name if named is not None else tr("{name}, never saved", name=name), "\n".join(words)
 
 
-def lost_words(left: Left) -> list[str]:
+def describe_lost(left: Left) -> list[str]:
     """Return what a damaged journal cannot give back, a line each; nothing for a whole one."""
     words = []
     if left.lost:
@@ -103,7 +103,7 @@ def _lost_edit(lost: LostEdit) -> str:
     step = tr("'{step}'", step=lost.step) if lost.step else tr("one whose name is damaged, too")
     if lost.at is None:
         return step
-    return tr("{step}, at {moment}", step=step, moment=moment_words(lost.at))
+    return tr("{step}, at {moment}", step=step, moment=describe_moment(lost.at))
 
 
 def is_junk(path: Path) -> bool:
@@ -159,7 +159,7 @@ class RecoverDialog(QDialog):
         if saved is None:
             offered.remove("copy")  # there is nothing to lie beside
         for n, left in enumerate(found.left):
-            name, words = left_words(left, saved)
+            name, words = describe_left(left, saved)
             grid.addWidget(SittingPicture(left.project, found.poses.get(left.path), rows), n, 0)
             told = QLabel(f"<b>{_escaped(name)}</b><br>{_escaped(words)}", rows)
             told.setTextFormat(Qt.TextFormat.RichText)
@@ -285,8 +285,8 @@ def _figure(clip: Clip) -> np.ndarray | None:
     places = skeleton.globals(clip.poses()[:1])[1][0]
     if not np.isfinite(places).all():
         return None
-    shown = drawn(skeleton)
-    starts = above(skeleton, shown)
+    shown = find_drawn_joints(skeleton)
+    starts = nearest_above(skeleton, shown)
     ends = np.flatnonzero(shown & (starts >= 0))
     turned = np.stack([0.88 * places[:, 0] + 0.47 * places[:, 2], places[:, 1]], -1)
     return turned[np.stack([starts[ends], ends], -1)] if len(ends) else None

@@ -11,10 +11,10 @@ from pathlib import Path
 from PySide6.QtCore import QUrl
 from PySide6.QtGui import QDesktopServices
 
-from metagraph.common.programs import run, system_program
+from metagraph.common.programs import run_program, system_program
 
 
-def how(path: Path, platform: str = sys.platform) -> tuple[str, list[str]] | None:
+def reveal_command(path: Path, platform: str = sys.platform) -> tuple[str, list[str]] | None:
     """Return the name of the system's program, with its arguments, that shows a file in its folder; None
     where there is none that can be relied on.
     """
@@ -42,9 +42,9 @@ def open_folder(folder: Path) -> None:
 
 
 def _shown(path: Path) -> bool:
-    words = how(path)
+    words = reveal_command(path)
     program = system_program(words[0]) if words is not None else None
     if words is None or program is None:
         return False
-    threading.Thread(target=run, args=([program, *words[1]],), daemon=True).start()
+    threading.Thread(target=run_program, args=([program, *words[1]],), daemon=True).start()
     return True

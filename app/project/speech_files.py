@@ -17,7 +17,7 @@ UNLIKE, LONG = 0.5, 10.0
 TRANSCRIPTS = (".textgrid", ".eaf", ".vtt", ".srt", ".json", ".ctm", ".tsv")
 
 
-def kinds_of(paths: Sequence[Path]) -> tuple[tuple[Path, ...], tuple[Path, ...]]:
+def sort_speech_files(paths: Sequence[Path]) -> tuple[tuple[Path, ...], tuple[Path, ...]]:
     """Return the sounds and the transcripts among files, in order of their names."""
     ordered = sorted(paths, key=lambda p: p.name.casefold())
     return tuple(p for p in ordered if p.suffix.lower() in SOUNDS), tuple(
@@ -25,16 +25,16 @@ def kinds_of(paths: Sequence[Path]) -> tuple[tuple[Path, ...], tuple[Path, ...]]
     )
 
 
-def converses(paths: Sequence[Path]) -> bool:
+def is_conversation(paths: Sequence[Path]) -> bool:
     """Whether files dropped on the window are a conversation: two sounds, or more that last long and as
     long as each other, a sound and its words, or a sound with a channel for each. A single sound with one
     channel is a line of dialogue, and so is each of many.
     """
-    sounds, transcripts = kinds_of(paths)
+    sounds, transcripts = sort_speech_files(paths)
     if not sounds or len(sounds) > MOST_SPEAKERS or len(sounds) + len(transcripts) < len(paths):
         return False
     if len(sounds) > 2:
-        lasts = [seconds_of(p) for p in sounds]
+        lasts = [read_sound_seconds(p) for p in sounds]
         return max(lasts) - min(lasts) <= UNLIKE and min(lasts) >= LONG
     return len(sounds) == 2 or bool(transcripts) or 2 <= channels_of(sounds[0]) <= MOST_SPEAKERS
 
@@ -49,7 +49,7 @@ def channels_of(path: Path) -> int:
         return 0
 
 
-def seconds_of(path: Path) -> float:
+def read_sound_seconds(path: Path) -> float:
     """Return how long a sound file is, by its head; 0 where that cannot be read."""
     import soundfile
 
@@ -74,7 +74,7 @@ def facts_of(path: Path) -> str:
     return f"{path.name} ({channels}, {minutes}:{seconds:02d})"
 
 
-def beside(sounds: Sequence[Path]) -> tuple[Path, ...]:
+def find_transcripts_beside(sounds: Sequence[Path]) -> tuple[Path, ...]:
     """Return the transcripts that lie beside sounds and are called like them, one a sound."""
     out = []
     for sound in sounds:

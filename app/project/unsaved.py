@@ -12,14 +12,14 @@ from PySide6.QtCore import QObject
 from app.project.files_host import FilesHost
 from app.project.leftovers import (
     FoundJournal,
-    forget,
-    known_journals,
+    list_known_journals,
+    list_untitled_journals,
     read_untitled,
-    untitled_journals,
+    remove_journal,
 )
 from app.project.opening import load_recovered
 from app.translation import tr
-from metagraph.formats.project.history import Step
+from metagraph.formats.project.history import UndoStep
 from metagraph.formats.project.journal_search import project_of
 from metagraph.formats.recovery import Left
 from metagraph.formats.store import Opened, absolute
@@ -36,7 +36,7 @@ class Unsaved(QObject):
         """Offer what opening no project would offer; where nothing is, or is gone on with, do `otherwise`, or
         say so.
         """
-        journals = untitled_journals()
+        journals = list_untitled_journals()
         if not journals:
             self._nothing(otherwise)
             return
@@ -46,7 +46,7 @@ class Unsaved(QObject):
         """Offer every journal there is, wherever it lies."""
         recent = self.files.recent()
         path = self.files.document.path
-        self._read(lambda: known_journals([*recent, path] if path is not None else recent), None)
+        self._read(lambda: list_known_journals([*recent, path] if path is not None else recent), None)
 
     def _read(self, journals: Callable[[], Sequence[Path]], otherwise: Callable[[], object] | None) -> None:
         files = self.files
@@ -59,7 +59,7 @@ class Unsaved(QObject):
 
     def tell(self) -> None:
         """Say in the status bar that there are some, when a project is opened by its name."""
-        count = len(untitled_journals())
+        count = len(list_untitled_journals())
         if count:
             words = (
                 tr("1 unsaved project can be recovered: look…")
@@ -90,7 +90,7 @@ class Unsaved(QObject):
             if choice == "recover":
                 chosen = left
             elif choice == "discard":
-                forget(left.path, discard=True)
+                remove_journal(left.path, discard=True)
         kept = sum(choice == "later" for choice in choices)
         if kept:
             files.told.emit(tr("{kept} kept: File > Recover offers what is kept again.", kept=kept))
@@ -110,16 +110,16 @@ class Unsaved(QObject):
             return
         folder = saved.parent if saved is not None else Path("/")
 
-        def done(result: tuple[Opened, tuple[Step, ...]]) -> None:
+        def done(result: tuple[Opened, tuple[UndoStep, ...]]) -> None:
             if document.project is not before and not files.may_leave():
                 return  # it is offered again another time
             opened, steps = result
             if saved is not None:  # its folder is gone: it is a project that was never saved
                 steps = ()
             project = opened.project if saved is None else absolute(opened.project, folder)
-            document.load(project, None, not_steps(left, steps), steps=steps)
+            document.load(project, None, count_lost_steps(left, steps), steps=steps)
             if document.secured():
-                forget(left.path)
+                remove_journal(left.path)
             files.opened.emit()
             files.tell_lost(left)
             if opened.notes:
@@ -130,6 +130,6 @@ class Unsaved(QObject):
         )
 
 
-def not_steps(left: Left, steps: Sequence[Step]) -> int:
+def count_lost_steps(left: Left, steps: Sequence[UndoStep]) -> int:
     """Return how many of a journal's edits are in no file and can no longer be undone one by one."""
     return left.unsaved if steps else left.edits

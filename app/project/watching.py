@@ -14,9 +14,9 @@ from dataclasses import replace
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from app.look.plural import clips_words
+from app.look.plural import count_clips
 from app.project.document import Document
-from app.project.jobs import Job, Jobs
+from app.project.jobs import Jobs, WindowJob
 from app.project.opening import take_over
 from app.translation import tr, tr_error
 from metagraph.formats.imports import Imported, import_files
@@ -72,7 +72,7 @@ class Watcher(QObject):
         self._gather()
         file, paths, missing, known = self.document.path, self._paths, self._missing, self._known
 
-        def work(_: Job) -> tuple[dict[str, State], State, float]:
+        def work(_: WindowJob) -> tuple[dict[str, State], State, float]:
             begun = time.perf_counter()
             return (
                 _changed(paths, missing, known),
@@ -130,7 +130,7 @@ class Watcher(QObject):
         again = [path for path in paths if path not in self._missing]
         back = len(again) < len(paths)
 
-        def work(job: Job) -> tuple[Imported, Opened | None]:
+        def work(job: WindowJob) -> tuple[Imported, Opened | None]:
             tell = lambda n, total, path: job.tell(n, total, path.name)  # noqa: E731
             returned = load_returned(project, folder, job.tell) if back else None
             return import_files(project, folder, again, tell, lambda: job.cancelled), returned
@@ -150,7 +150,7 @@ class Watcher(QObject):
         again = tuple(x for x in result.loaded if known.get((x[0], x[1]), x[2]) != x[2])
         if again:
             self.document.edit(
-                tr("Refresh {clips}", clips=clips_words(len(again))),
+                tr("Refresh {clips}", clips=count_clips(len(again))),
                 replace(result, loaded=again, character=None).into,
             )
             self.told.emit(

@@ -13,7 +13,14 @@ from metagraph.formats.new_file import Access
 from metagraph.formats.project.appended_file import Identity, folder_now, identity_of
 from metagraph.formats.project.journal import Journal
 from metagraph.formats.project.versions import write_project
-from metagraph.formats.store import SUFFIX, content_digest, encoded, file_digest, moved, read_with_digest
+from metagraph.formats.store import (
+    SUFFIX,
+    content_digest,
+    encode_project,
+    file_digest,
+    move_project,
+    read_with_digest,
+)
 from metagraph.graph.model import Project
 
 
@@ -75,11 +82,13 @@ class Writing:
             self.anew = not is_file(self.target)
         self.after = self.project
         if self.target != self.was:
-            self.after = replace(moved(self.project, self.was, self.target), name=project_name(self.target))
-        content = encoded(self.after, self.target)
+            self.after = replace(
+                move_project(self.project, self.was, self.target), name=name_after_file(self.target)
+            )
+        content = encode_project(self.after, self.target)
         self.digest = content_digest(content)
         if expected is not None:
-            changed = file_changed(self.target, expected)
+            changed = find_file_change(self.target, expected)
             if changed is not None and changed.digest != self.digest:
                 raise changed
         if self.journal is not None and self.mark is not None:
@@ -100,7 +109,7 @@ class Writing:
                 raise FolderGoneError(self.target, place)
 
 
-def file_changed(path: Path, expected: str) -> FileChangedError | None:
+def find_file_change(path: Path, expected: str) -> FileChangedError | None:
     """Return how a project file has changed; None when it has not, or is not there."""
     try:
         now = file_digest(path)
@@ -114,7 +123,7 @@ def file_changed(path: Path, expected: str) -> FileChangedError | None:
         return FileChangedError(path, None, now, str(error))
 
 
-def project_name(path: Path) -> str:
+def name_after_file(path: Path) -> str:
     """Return what a project saved as `path` is called: the file's name without `.metagraph.yaml`."""
     name = path.name
     for suffix in (SUFFIX, ".yaml", ".yml"):

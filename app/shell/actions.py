@@ -14,7 +14,7 @@ from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QMenu, QMenuBar, QWidget
 
 from app import faults
-from app.shell.mnemonics import distinct
+from app.shell.mnemonics import with_distinct_keys
 from app.translation import tr, tr_noop
 from app.widgets.soon import Soon
 
@@ -140,7 +140,7 @@ class Actions:
         menus: dict[str, QMenu] = {}
         group = ""
         names = list(dict.fromkeys(command.menu for command in self.commands))
-        titles = dict(zip(names, distinct(tuple(tr(name) for name in names)), strict=True))
+        titles = dict(zip(names, with_distinct_keys(tuple(tr(name) for name in names)), strict=True))
         for command in self.commands:
             if command.menu not in menus:
                 menus[command.menu] = bar.addMenu(titles[command.menu])
@@ -173,7 +173,9 @@ class Actions:
             if command.visible is not None:
                 action.setVisible(command.visible())
         for commands in self._by_menu:
-            for command, text in zip(commands, distinct(tuple(c.words for c in commands)), strict=True):
+            for command, text in zip(
+                commands, with_distinct_keys(tuple(c.words for c in commands)), strict=True
+            ):
                 self._made[command.id].setText(text)
 
 

@@ -13,7 +13,7 @@ from app.shell.workspaces import Split, Workspace
 Filled = Mapping[str, Sequence[QDockWidget]]  # the docks of each area, the one in front first
 
 
-def arrange(
+def arrange_docks(
     window: QMainWindow, docks: Sequence[QDockWidget], workspace: Workspace, filled: Filled, shown: set[str]
 ) -> None:
     """Put all docks where a workspace has them. docks: all. filled: where each belongs. shown: the object
@@ -38,7 +38,7 @@ def arrange(
             front.raise_()
 
 
-def shares(workspace: Workspace, filled: Filled) -> dict[str, tuple[float, float]]:
+def share_window(workspace: Workspace, filled: Filled) -> dict[str, tuple[float, float]]:
     """Return by name which part of the window's width and height each dock has that is not hidden; what an
     empty area would have goes to those beside it.
     """

@@ -27,7 +27,7 @@ class Feature:
         self.session, self.performance = shell.stage.session, shell.stage.performance
 
 
-def bound(table: Iterable[Command], feature: Feature) -> tuple[Command, ...]:
+def bind_commands(table: Iterable[Command], feature: Feature) -> tuple[Command, ...]:
     """Return a table's commands in the window's language, each done by the feature."""
     return tuple(_bound(command, feature) for command in table)
 
@@ -42,30 +42,30 @@ def _bound(command: Command, feature: Feature) -> Command:
     return replace(command, text=text, tip=tr(command.tip) if command.tip else "", **of_feature)
 
 
-def all_of(*conditions: Condition) -> Condition:
+def all_met(*conditions: Condition) -> Condition:
     """Return the condition that all of them are met."""
     return lambda feature: all(met(feature) for met in conditions)
 
 
-def any_of(*conditions: Condition) -> Condition:
+def any_met(*conditions: Condition) -> Condition:
     """Return the condition that one of them is met."""
     return lambda feature: any(met(feature) for met in conditions)
 
 
-def not_(condition: Condition) -> Condition:
+def not_met(condition: Condition) -> Condition:
     """Return the condition that it is not met."""
     return lambda feature: not condition(feature)
 
 
-def clips_selected(feature: Feature) -> bool:
+def has_clips_selected(feature: Feature) -> bool:
     return bool(feature.session.selection.clips)
 
 
-def actions_selected(feature: Feature) -> bool:
+def has_actions_selected(feature: Feature) -> bool:
     return bool(feature.session.selection.actions)
 
 
-def meta_graph_shown(feature: Feature) -> bool:
+def is_meta_graph_shown(feature: Feature) -> bool:
     return feature.session.onstage.mode == "meta"
 
 
@@ -77,5 +77,5 @@ def has_character(feature: Feature) -> bool:
     return feature.document.project.character is not None
 
 
-def conversation_staged(feature: Feature) -> bool:
+def is_conversation_staged(feature: Feature) -> bool:
     return feature.session.onstage.conversation is not None

@@ -28,7 +28,7 @@ from metagraph.formats.atomic import write_atomically
 CHILDREN = 5000  # ms between two looks for what processes have written down
 
 
-def folder() -> Path:
+def fault_folder() -> Path:
     """Return where what ended the program is written."""
     return state_folder() / "faults"
 
@@ -48,7 +48,7 @@ class FaultTeller(QObject):
         document.saved.connect(lambda: faults.note("saved"))
         document.undo_stack.indexChanged.connect(self._note_step)
         self._timer = QTimer(self, interval=CHILDREN)
-        self._timer.timeout.connect(lambda: faults.of_children(folder()))
+        self._timer.timeout.connect(lambda: faults.read_child_faults(fault_folder()))
         self._timer.start()
 
     def _note_step(self, index: int) -> None:
@@ -62,7 +62,7 @@ class FaultTeller(QObject):
         if self._listener in faults.listeners:
             faults.listeners.remove(self._listener)
 
-    def _show(self, told: faults.Fault | Exception) -> None:
+    def _show(self, told: faults.UncaughtError | Exception) -> None:
         if isinstance(told, Exception):  # it says itself what can be done
             self.words(str(told))
             return
@@ -70,12 +70,12 @@ class FaultTeller(QObject):
         dialog = self.window.findChild(FaultDialog)
         if dialog is None:
             dialog = FaultDialog(self.window)
-        dialog.say(tr("Something went wrong"), _sentence(safe), faults.report())
+        dialog.say(tr("Something went wrong"), _sentence(safe), faults.format_fault_report())
         dialog.show()
 
     def offer_left(self) -> None:
         """Offer what ended the program the last time."""
-        left = faults.left_behind(folder())
+        left = faults.read_crash_reports(fault_folder())
         if left:
             faults.note("started after it had ended by itself")
             dialog = FaultDialog(self.window)
@@ -83,7 +83,7 @@ class FaultTeller(QObject):
                 "Metagraph ended by itself the last time. Edits that were finished are offered for recovery. "
                 "A report of where it ended helps to mend it; it holds nothing of your projects."
             )
-            dialog.say(tr("Metagraph ended by itself"), words, f"{faults.report()}\n{left}")
+            dialog.say(tr("Metagraph ended by itself"), words, f"{faults.format_fault_report()}\n{left}")
             dialog.show()
 
 

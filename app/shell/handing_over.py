@@ -5,11 +5,11 @@ from __future__ import annotations
 from PySide6.QtCore import Qt
 
 from app.shell.window import Window
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr
 
 
-def what_runs(window: Window) -> str:
+def describe_running(window: Window) -> str:
     """Return what would end if a window were replaced now, as a message; "" where nothing would."""
     if window.shell.jobs.running:
         title = window.shell.jobs.running[0].title
@@ -33,7 +33,7 @@ def hand_over(old: Window, new: Window) -> None:
     old.deleteLater()
 
 
-def _copy_session(old: Session, new: Session) -> None:
+def _copy_session(old: StageSession, new: StageSession) -> None:
     new.set_mode(old.onstage.mode)
     new.place.stances.update(old.place.stances)
     new.place.others.update(old.place.others)

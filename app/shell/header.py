@@ -15,7 +15,7 @@ from app.look.theme import theme
 from app.project.document import Document
 from app.shell.actions import Actions
 from app.shell.context import HeaderItem
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr
 
 NARROW, WIDE = 100, 1600  # pixels of the project's name, and of a window that has room for three times that
@@ -29,7 +29,7 @@ class Header(QToolBar):
     def __init__(
         self,
         document: Document,
-        session: Session,
+        session: StageSession,
         actions: Actions,
         items: Iterable[HeaderItem],
         parent: QWidget,

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 
 @lru_cache(maxsize=256)
-def distinct(texts: tuple[str, ...]) -> tuple[str, ...]:
+def with_distinct_keys(texts: tuple[str, ...]) -> tuple[str, ...]:
     """Return the texts of one menu with a key for one entry at most: the first that marks a key keeps it, and
     one that marks it again has another of its letters, beginnings of words first, or none where all are
     taken.
@@ -16,12 +16,12 @@ def distinct(texts: tuple[str, ...]) -> tuple[str, ...]:
     """
     taken: dict[str, int] = {}  # key -> which has it
     for place, text in enumerate(texts):
-        key = key_of(text)
+        key = mnemonic_key(text)
         if key:
             taken.setdefault(key, place)
     out = []
     for place, text in enumerate(texts):
-        key = key_of(text)
+        key = mnemonic_key(text)
         if not key or taken[key] == place:
             out.append(text)
             continue
@@ -35,7 +35,7 @@ def distinct(texts: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(out)
 
 
-def key_of(text: str) -> str:
+def mnemonic_key(text: str) -> str:
     """Return the key that a text marks, in lower case; "" where it marks none."""
     place = _marked(text)
     return text[place + 1].lower() if place is not None else ""

@@ -21,11 +21,11 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.shell.arranging import arrange, shares
+from app.shell.arranging import arrange_docks, share_window
 from app.shell.context import Panel
 from app.shell.proportions import Proportions
 from app.shell.workspaces import ALL, Workspace
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.widgets.soon import Soon
 
 ARRANGED = (
@@ -62,7 +62,7 @@ def fetch_now(names: Iterable[str], then: Callable[[], object]) -> None:
     then()
 
 
-class Places:
+class PanelPlaces:
     """The panels' docks. A dock is empty until its panel is made: those of the first picture before it is
     painted, each other once its dock is seen in front of those it shares its place with, or somebody asks for
     it. Many never are.
@@ -72,7 +72,7 @@ class Places:
     they are seen. fetch: imports what a panel needs, and goes on then.
     """
 
-    def __init__(self, window: QMainWindow, panels: Iterable[Panel], session: Session) -> None:
+    def __init__(self, window: QMainWindow, panels: Iterable[Panel], session: StageSession) -> None:
         self.window, self.session = window, session
         self.panels = {panel.id: panel for panel in panels}
         self.workspace = ALL
@@ -366,8 +366,8 @@ class Places:
             if workspace.id == ALL.id or workspace.id in self.panels[ident].where
         }
         filled = self._filled(workspace)
-        arrange(self.window, list(self.docks.values()), workspace, filled, shown)
-        self.proportions.want(shares(workspace, filled))
+        arrange_docks(self.window, list(self.docks.values()), workspace, filled, shown)
+        self.proportions.want(share_window(workspace, filled))
 
     def _filled(self, workspace: Workspace) -> dict[str, list[QDockWidget]]:
         """Return the docks of each area; those that are shown at first come first."""

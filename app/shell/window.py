@@ -12,7 +12,7 @@ from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDragMoveEvent, QDropEve
 from PySide6.QtWidgets import QAbstractButton, QApplication, QComboBox, QMainWindow
 
 from app.look import icons
-from app.look.theme import apply, theme
+from app.look.theme import apply_theme, theme
 from app.project.document import Document
 from app.project.files import Files
 from app.project.importing import Importing
@@ -27,10 +27,10 @@ from app.shell.job_line import JobLine
 from app.shell.keyboard import Keyboard
 from app.shell.language_menu import language_command
 from app.shell.notice import Notice
-from app.shell.places import Places
+from app.shell.places import PanelPlaces
 from app.shell.verbs import Verbs
 from app.shell.workspace_keeper import Workspaces
-from app.shell.workspace_tabs import WorkspaceTabs, commands
+from app.shell.workspace_tabs import WorkspaceTabs, list_workspace_commands
 from app.stage.compatibility_state import Compatibility
 from app.stage.problem_watch import ProblemWatch
 from app.stage.stage import Stage
@@ -44,7 +44,7 @@ class WindowShell:
     contributed.
     """
 
-    places: Places
+    places: PanelPlaces
     workspaces: Workspaces
     actions: Actions
 
@@ -98,10 +98,10 @@ class Window(QMainWindow):
         kept = shell.settings.value("theme")
         if kept == "dark" or kept == "light":
             session.look.name = kept
-        apply(_application(), theme(session.look.name))
+        apply_theme(_application(), theme(session.look.name))
         self.contributions = [*(contribute(shell) for contribute in features), self._own()]
         self.places = shell.places = shell.services.add(
-            Places(self, (p for c in self.contributions for p in c.panels), session)
+            PanelPlaces(self, (p for c in self.contributions for p in c.panels), session)
         )
         self.workspaces = shell.workspaces = shell.services.add(Workspaces(self.places, self))
         shell.importing.drops = tuple(drop for c in self.contributions for drop in c.drops)
@@ -136,7 +136,7 @@ class Window(QMainWindow):
                 Command(
                     "quit", "&File", "quit", tr("&Quit"), self.close, (Standard.Quit, "Ctrl+Q"), study=True
                 ),
-                *commands(lambda: self.workspaces, self),
+                *list_workspace_commands(lambda: self.workspaces, self),
                 Command(
                     "theme",
                     "&View",
@@ -229,7 +229,7 @@ class Window(QMainWindow):
 
     def restyle(self) -> None:
         look = theme(self.shell.stage.session.look.name)
-        apply(_application(), look)
+        apply_theme(_application(), look)
         for command in self.shell.actions.commands:
             if command.icon:
                 self.shell.actions[command.id].setIcon(icons.icon(command.icon, look.text))
@@ -273,15 +273,15 @@ class Window(QMainWindow):
         return super().event(event)
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
-        if self.shell.importing.takes(dropped(event)):
+        if self.shell.importing.takes(list_dropped_files(event)):
             event.acceptProposedAction()
 
     def dragMoveEvent(self, event: QDragMoveEvent) -> None:
-        if self.shell.importing.takes(dropped(event)):
+        if self.shell.importing.takes(list_dropped_files(event)):
             event.acceptProposedAction()
 
     def dropEvent(self, event: QDropEvent) -> None:
-        paths = dropped(event)
+        paths = list_dropped_files(event)
         if self.shell.importing.takes(paths):
             event.acceptProposedAction()
             self.shell.importing.import_paths([str(p) for p in paths])
@@ -304,7 +304,7 @@ class Window(QMainWindow):
         event.accept()
 
 
-def dropped(event: QDropEvent) -> list[Path]:
+def list_dropped_files(event: QDropEvent) -> list[Path]:
     """Return the files that are dropped."""
     return [Path(u.toLocalFile()) for u in event.mimeData().urls() if u.isLocalFile()]
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from PySide6.QtCore import QByteArray, QObject, QSettings, Signal
 from PySide6.QtWidgets import QApplication, QWidget
 
-from app.shell.places import ARRANGED, Places
+from app.shell.places import ARRANGED, PanelPlaces
 from app.shell.workspaces import ALL, FIRST, WORKSPACES, Workspace
 from app.translation import tr
 
@@ -39,7 +39,7 @@ class Workspaces(QObject):
 
     changed = Signal()
 
-    def __init__(self, places: Places, parent: QObject) -> None:
+    def __init__(self, places: PanelPlaces, parent: QObject) -> None:
         super().__init__(parent)
         self.places = places
         self.tabs: list[Tab] = [Tab(w.id, tr(w.title), w) for w in WORKSPACES]

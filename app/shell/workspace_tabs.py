@@ -19,7 +19,7 @@ KEYS = 9  # workspaces with a key of their own
 WIDEST = 110  # pixels of an own workspace's name
 
 
-def commands(keeper: Callable[[], Workspaces], window: QWidget) -> tuple[Command, ...]:
+def list_workspace_commands(keeper: Callable[[], Workspaces], window: QWidget) -> tuple[Command, ...]:
     """Return what can be done with workspaces."""
 
     def choose(place: int) -> None:

@@ -46,7 +46,7 @@ def paint_captions(painter: QPainter, width: float, height: float, shown: Sequen
     painter.restore()
 
 
-def captioned(picture: np.ndarray, shown: Sequence[Caption]) -> np.ndarray:
+def add_captions(picture: np.ndarray, shown: Sequence[Caption]) -> np.ndarray:
     """Paint captions into a picture `[H, W, 4]` uint8, premultiplied; return it."""
     if not shown:
         return picture

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.project.document import Document
-from app.project.jobs import Job, Jobs
+from app.project.jobs import Jobs, WindowJob
 from app.stage.fixes import Fix
 from app.translation import tr, tr_plural
 from metagraph.graph import edits
@@ -22,7 +22,7 @@ from metagraph.graph.model import LAYERS, Action, Layer, Project
 from metagraph.graph.problem import Problem
 
 if TYPE_CHECKING:  # their imports wait for the first job
-    from metagraph.suggest.jumps.compatibility import Matrix, Times
+    from metagraph.suggest.jumps.compatibility import Matrix, ProposedTimes
     from metagraph.suggest.jumps.found import Curves, Jump, Measured
 
 AFTER = 400  # milliseconds of quiet after an edit
@@ -35,7 +35,7 @@ REASONS = {"begins": "jump-start", "ends": "jump-end", "loops": "jump-loop"}
 
 
 @dataclass(frozen=True, eq=False)
-class Judged:
+class JudgedJumps:
     """What was found of a project. measured: its layers' statistics. known: what was found of each action.
     jumps: all of it.
     """
@@ -45,9 +45,9 @@ class Judged:
     jumps: tuple[Jump, ...]
 
 
-def judge(
-    project: Project, before: Judged | None = None, cancelled: Callable[[], bool] | None = None
-) -> Judged:
+def judge_jumps(
+    project: Project, before: JudgedJumps | None = None, cancelled: Callable[[], bool] | None = None
+) -> JudgedJumps:
     """Return all jumps of a project, taking what still holds from an earlier judgement."""
     from metagraph.suggest.jumps.found import Measured, jumps
 
@@ -67,10 +67,10 @@ def judge(
             }
         measured[layer], known[layer] = new, kept
         found += jumps(project, new, kept, cancelled)
-    return Judged(measured, known, tuple(found))
+    return JudgedJumps(measured, known, tuple(found))
 
 
-def told(project: Project, judged: Judged) -> dict[Problem, Fix | None]:
+def describe_jumps(project: Project, judged: JudgedJumps) -> dict[Problem, Fix | None]:
     """Return jumps as problems, each with what mends it; layers of which too little is known say so."""
     out: dict[Problem, Fix | None] = {}
     for jump in judged.jumps:
@@ -156,7 +156,7 @@ def _remedy(project: Project, action: Action, jump: Jump) -> tuple[str, Fix | No
     return tr("Trim it, blend it longer, or place it on a stance it fits."), None
 
 
-def merged(problems: Iterable[Problem], flags: Iterable[Problem]) -> tuple[Problem, ...]:
+def merge_problems(problems: Iterable[Problem], flags: Iterable[Problem]) -> tuple[Problem, ...]:
     """Return both, errors first; a place of an action is told of once, in the statistics' words."""
     flags = tuple(flags)
     told_of = {(p.action, p.code) for p in flags}
@@ -165,7 +165,7 @@ def merged(problems: Iterable[Problem], flags: Iterable[Problem]) -> tuple[Probl
     return tuple(sorted([*rest, *flags], key=lambda p: order[p.severity]))
 
 
-def proposed_fields(action: Action, times: Times, duration: float) -> dict[str, Any]:
+def compare_proposed_timing(action: Action, times: ProposedTimes, duration: float) -> dict[str, Any]:
     """Return the Timing fields that proposed times change. duration: of the clip, seconds."""
     end = None if times.end >= duration - 1e-3 else round(times.end, 3)
     out: dict[str, Any] = {"start": round(times.start, 3), "end": end, "blend_in": round(times.blend_in, 3)}
@@ -191,7 +191,7 @@ class Compatibility(QObject):
     def __init__(self, document: Document, jobs: Jobs, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.document, self.jobs = document, jobs
-        self.judged: Judged | None = None
+        self.judged: JudgedJumps | None = None
         self.flags: dict[Problem, Fix | None] = {}
         self.on = False  # until the window has come up
         self._judging = self._again = self._looking = False  # again: more changed while it was judged
@@ -233,9 +233,9 @@ class Compatibility(QObject):
         self._judging, self._again = True, False
         project, before = self.document.project, self.judged
 
-        def work(job: Job) -> tuple[Judged, dict[Problem, Fix | None]]:
-            found = judge(project, before, lambda: job.cancelled)
-            return found, told(project, found)
+        def work(job: WindowJob) -> tuple[JudgedJumps, dict[Problem, Fix | None]]:
+            found = judge_jumps(project, before, lambda: job.cancelled)
+            return found, describe_jumps(project, found)
 
         self.jobs.start("jumps", work, self._done, self._gave_up, quick=True)
 
@@ -248,7 +248,7 @@ class Compatibility(QObject):
         self._over()
         self.failed.emit(tr("Jumps could not be looked for: {error}", error=error))
 
-    def _done(self, result: tuple[Judged, dict[Problem, Fix | None]]) -> None:
+    def _done(self, result: tuple[JudgedJumps, dict[Problem, Fix | None]]) -> None:
         self._over()
         before, (self.judged, self.flags) = self.judged, result
         self._curves = {
@@ -277,10 +277,10 @@ class Compatibility(QObject):
         action, self._wanted, self._looking = self._wanted, None, True
         project, measured = self.document.project, self.judged.measured[action.layer]
 
-        def work(_: Job) -> Curves | None:
-            from metagraph.suggest.jumps.found import curves
+        def work(_: WindowJob) -> Curves | None:
+            from metagraph.suggest.jumps.found import stance_curves
 
-            return curves(project, measured, action)
+            return stance_curves(project, measured, action)
 
         def done(found: Curves | None) -> None:
             self._looking = False
@@ -300,17 +300,19 @@ class Compatibility(QObject):
         if judged is None:
             return
 
-        def work(job: Job) -> dict[str, dict[str, Any]]:
-            from metagraph.suggest.jumps.found import curves
+        def work(job: WindowJob) -> dict[str, dict[str, Any]]:
+            from metagraph.suggest.jumps.found import stance_curves
 
             out = {}
             for n, action in enumerate(chosen):
                 if job.cancelled:
                     break
                 job.tell(n, len(chosen))
-                found = curves(project, judged.measured[action.layer], action)
+                found = stance_curves(project, judged.measured[action.layer], action)
                 if found is not None:
-                    fields = proposed_fields(action, found.proposed, project.clips[action.clip].duration)
+                    fields = compare_proposed_timing(
+                        action, found.proposed, project.clips[action.clip].duration
+                    )
                     out[action.id] = {"timing": fields}
             return out
 
@@ -354,8 +356,8 @@ class Compatibility(QObject):
     def _compare(self, project: Project, layer: Layer, measured: Measured, before: Matrix | None) -> None:
         self._comparing.add(layer)
 
-        def work(job: Job) -> Matrix:
-            return extended(project, layer, before, lambda: job.cancelled, job.tell)
+        def work(job: WindowJob) -> Matrix:
+            return extend_matrix(project, layer, before, lambda: job.cancelled, job.tell)
 
         def done(found: Matrix) -> None:
             self._matrices[layer] = measured, found
@@ -370,7 +372,7 @@ class Compatibility(QObject):
         job.ended.connect(lambda: self._comparing.discard(layer))
 
 
-def extended(
+def extend_matrix(
     project: Project,
     layer: Layer,
     before: Matrix | None,
@@ -382,7 +384,7 @@ def extended(
     """
     import numpy as np
 
-    from metagraph.suggest.jumps.compatibility import Matrix, matrix
+    from metagraph.suggest.jumps.compatibility import Matrix, compatibility_matrix
 
     clips = tuple(project.clips)
     old = (
@@ -391,7 +393,7 @@ def extended(
         else {c: n for n, c in enumerate(before.clips)}
     )
     fresh = [c for c in clips if c not in old]
-    new = matrix(project, layer, clips=fresh, cancelled=cancelled, progress=progress)
+    new = compatibility_matrix(project, layer, clips=fresh, cancelled=cancelled, progress=progress)
     if before is None or not old:
         return new
     place = {c: len(before.clips) + n for n, c in enumerate(fresh)}

@@ -11,8 +11,8 @@ from typing import Any
 
 import msgspec
 
-from app.project.opening import faced, open_whole
-from app.stage.playback_source import Shown
+from app.project.opening import open_whole, with_face
+from app.stage.playback_source import ShownPlayback
 from app.translation import tr
 from metagraph.errors import FileError
 from metagraph.graph.conversation.model import Side
@@ -32,12 +32,12 @@ class ConversationPlans:
         self._projects: dict[Key, Project] = {}
         self._bodies: dict[Key, tuple[str, ...]] = {}  # morph targets of characters
 
-    def show(self, project: Project, ident: str, folder: Path, side: int = 0) -> Shown:
+    def show(self, project: Project, ident: str, folder: Path, side: int = 0) -> ShownPlayback:
         """Return what all play, a side first, the others with it. folder: what paths begin at."""
         with self._one:
             return self._show(project, ident, folder, side)
 
-    def _show(self, project: Project, ident: str, folder: Path, side: int) -> Shown:
+    def _show(self, project: Project, ident: str, folder: Path, side: int) -> ShownPlayback:
         from metagraph.speech.duet import duet, voices
 
         conversation = project.conversations[ident]
@@ -65,7 +65,7 @@ class ConversationPlans:
         made = duet(conversation, ident, projects, heard)
         moved = [_motion(p.project, s, notes) for p, s in zip(made.parts, conversation.sides, strict=True)]
         everyone = tuple(
-            Shown(
+            ShownPlayback(
                 p.project,
                 p.plan,
                 made.length,
@@ -120,7 +120,7 @@ class ConversationPlans:
         drawn = replace(project, character=str(whole), hidden=())
         key = (str(whole), _written(whole))
         if key not in self._bodies:
-            self._bodies[key] = faced(drawn, folder).face.morphs
+            self._bodies[key] = with_face(drawn, folder).face.morphs
         return replace(drawn, face=msgspec.structs.replace(project.face, morphs=self._bodies[key]))
 
 
@@ -147,7 +147,7 @@ def _written(path: Path) -> int:
         return 0
 
 
-def keep(project: Project, ident: str, shown: Shown) -> tuple[Project, tuple[str, ...]]:
+def keep_conversation(project: Project, ident: str, shown: ShownPlayback) -> tuple[Project, tuple[str, ...]]:
     """Keep what all sides of a conversation do as performances, each with the line it says; return the
     performances' ids.
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from app.stage.playback_source import Shown
+from app.stage.playback_source import ShownPlayback
 from metagraph.graph.conversation.model import Conversation, Word, side_name
 from metagraph.graph.timeline import Cut
 from metagraph.speech.automatic_cuts import cut_at
@@ -19,13 +19,13 @@ from metagraph.speech.captions import (
     captions_of,
     captions_of_text,
     conversation_captions,
-    line_words,
-    told_words,
+    describe_line,
+    list_timed_words,
 )
-from preview.camera import Camera
+from preview.camera import OrbitCamera
 from preview.shots import shot_camera
 
-Seen = tuple[Any, Shown]  # a figure, and what it plays
+Seen = tuple[Any, ShownPlayback]  # a figure, and what it plays
 SAMPLED = 2  # moments of a cut from which it is told where heads are
 HEAD, MOST = (
     0.085,
@@ -39,12 +39,12 @@ class Cutting:
 
     def __init__(self) -> None:
         self._of: tuple[object, ...] = ()
-        self._kept: dict[tuple[Cut, float, float], Camera] = {}
+        self._kept: dict[tuple[Cut, float, float], OrbitCamera] = {}
         self._heads: list[tuple[float, float]] = []
 
     def camera(
         self, seen: Sequence[Seen], cuts: tuple[Cut, ...], seconds: float, aspect: float
-    ) -> Camera | None:
+    ) -> OrbitCamera | None:
         """Return the camera at a time; None where no cut says any. seen: who talk, the first side first."""
         found = cut_at(cuts, seconds)
         if found is None or len(seen) < 2:
@@ -74,7 +74,7 @@ def _head(figure: Any) -> tuple[float, float]:
 
 def _camera(
     seen: Sequence[Seen], sizes: Sequence[tuple[float, float]], cut: Cut, end: float, aspect: float
-) -> Camera:
+) -> OrbitCamera:
     times = np.linspace(cut.at, max(cut.at, end), SAMPLED)
     heads, heights, lows, highs = [], [], [], []
     for (figure, shown), (lift, height) in zip(seen, sizes, strict=True):
@@ -93,8 +93,8 @@ def _camera(
     return shot_camera(cut.shot, cut.side, np.array(heads), heights, bounds, aspect)
 
 
-def captions_shown(
-    shown: Shown,
+def list_captions(
+    shown: ShownPlayback,
     conversation: Conversation | None,
     folder: Path,
     lines: Mapping[str, Sequence[Word]] | None = None,
@@ -117,8 +117,8 @@ def captions_shown(
         line = shown.project.lines.get(speech.line or "")
         known = dict(lines or {})
         if line is not None and lines is None:
-            known[str(speech.line)] = line_words(line, shown.folder or folder)
-        words = told_words(speech, known)
+            known[str(speech.line)] = describe_line(line, shown.folder or folder)
+        words = list_timed_words(speech, known)
         text = speech.text or (line.text if line is not None else "")
         out += captions_of(words) if words else captions_of_text(speech, text)
     return tuple(sorted(out, key=lambda c: c.start))

@@ -7,14 +7,14 @@ from pathlib import Path
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.project.document import Document
-from app.project.jobs import Job, Jobs
-from app.stage.playback_source import Shown
+from app.project.jobs import Jobs, WindowJob
+from app.stage.playback_source import ShownPlayback
 from app.translation import tr
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Skeleton
-from preview.character_file import figure_of
-from preview.figure import Figure
+from preview.character_file import figure_from_file
+from preview.figure import MeshFigure
 
 Key = tuple[str, str, tuple[str, ...]]  # the character's file, the skeleton it is bound to, what is hidden
 REST = 1500  # milliseconds after a figure has come, in which much else is made
@@ -28,12 +28,14 @@ class Figures(QObject):
     def __init__(self, document: Document, jobs: Jobs, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.document, self.jobs = document, jobs
-        self._sticks: dict[str, Figure | None] = {}  # None while it is being built
-        self._skinned: tuple[Key, Figure] | None = None
-        self._guests: dict[Key, Figure | None] = {}  # characters of other projects, who talk with this one's
+        self._sticks: dict[str, MeshFigure | None] = {}  # None while it is being built
+        self._skinned: tuple[Key, MeshFigure] | None = None
+        self._guests: dict[
+            Key, MeshFigure | None
+        ] = {}  # characters of other projects, who talk with this one's
         self._wanted: Key | None = None
         self._unreadable: Key | None = None
-        self._whole: list[Figure] = []  # whose levels of detail are to be made
+        self._whole: list[MeshFigure] = []  # whose levels of detail are to be made
         self._later = QTimer(self, singleShot=True, interval=REST)
         self._later.timeout.connect(self._make_levels)
         document.changed.connect(self._follow)
@@ -55,13 +57,13 @@ class Figures(QObject):
         skeleton = after.skeleton
         self.jobs.start(
             "character",
-            lambda _: (key, _ready(figure_of(Path(key[0]), skeleton, key[2]))),
+            lambda _: (key, _ready(figure_from_file(Path(key[0]), skeleton, key[2]))),
             self._read,
             lambda error: self._refused(key, error),
             quick=True,
         )
 
-    def _read(self, result: tuple[Key, Figure]) -> None:
+    def _read(self, result: tuple[Key, MeshFigure]) -> None:
         if result[0] == self._wanted:
             self._skinned = result
             self._simplify(result[1])
@@ -75,7 +77,7 @@ class Figures(QObject):
             self.document.failed.emit(tr("The character cannot be drawn: {error}", error=error))
             self.changed.emit()
 
-    def figure(self, skeleton: Skeleton) -> Figure | None:
+    def figure(self, skeleton: Skeleton) -> MeshFigure | None:
         """Return the figure for a skeleton: the project's character on the project's skeleton, else a stick
         figure.
 
@@ -88,10 +90,12 @@ class Figures(QObject):
             return self._skinned[1] if self._skinned is not None and self._skinned[0][:2] == key[:2] else None
         if skeleton.fingerprint not in self._sticks:
             self._sticks[skeleton.fingerprint] = None
-            self.jobs.start("figure", lambda _: _ready(figure_of(None, skeleton)), self._built, quick=True)
+            self.jobs.start(
+                "figure", lambda _: _ready(figure_from_file(None, skeleton)), self._built, quick=True
+            )
         return self._sticks[skeleton.fingerprint]
 
-    def of(self, shown: Shown) -> Figure | None:
+    def of(self, shown: ShownPlayback) -> MeshFigure | None:
         """Return the figure of who is shown: of another project's character that one's own. None while it is
         being made.
         """
@@ -106,21 +110,21 @@ class Figures(QObject):
         if key not in self._guests:
             self._guests[key] = None
 
-            def work(_: object) -> tuple[Key, Figure]:
+            def work(_: object) -> tuple[Key, MeshFigure]:
                 try:
-                    return key, _ready(figure_of(Path(key[0]), skeleton, key[2]))
+                    return key, _ready(figure_from_file(Path(key[0]), skeleton, key[2]))
                 except FileError:  # it moves all the same
-                    return key, _ready(figure_of(None, skeleton))
+                    return key, _ready(figure_from_file(None, skeleton))
 
             self.jobs.start("character", work, self._came, quick=True)
         return self._guests[key]
 
-    def _came(self, result: tuple[Key, Figure]) -> None:
+    def _came(self, result: tuple[Key, MeshFigure]) -> None:
         self._guests[result[0]] = result[1]
         self._simplify(result[1])
         self.changed.emit()
 
-    def _simplify(self, figure: Figure) -> None:
+    def _simplify(self, figure: MeshFigure) -> None:
         """Make its levels of detail while it is already drawn, once the window has come to rest."""
         self._whole.append(figure)
         self._later.start()
@@ -128,25 +132,25 @@ class Figures(QObject):
     def _make_levels(self) -> None:
         figures, self._whole = self._whole, []
 
-        def work(job: Job) -> None:
+        def work(job: WindowJob) -> None:
             for figure in figures:
                 figure.simplify(lambda: job.cancelled)
 
         self.jobs.start("levels of detail", work, quick=True)
 
-    def _built(self, figure: Figure) -> None:
+    def _built(self, figure: MeshFigure) -> None:
         self._sticks[figure.skeleton.fingerprint] = figure
         self._simplify(figure)
         self.changed.emit()
 
 
-def _ready(figure: Figure) -> Figure:
+def _ready(figure: MeshFigure) -> MeshFigure:
     """Work out on this thread what would otherwise be worked out while the first picture is drawn."""
-    from preview.gpu import decoded
+    from preview.gpu import decode_texture
 
     for batch in figure.mesh.batches:
         if batch.image is not None:
-            decoded(batch.image)
+            decode_texture(batch.image)
     _, rest = figure.skeleton.globals(figure.skeleton.rest)
     figure.bounds(rest)
     return figure

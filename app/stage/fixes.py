@@ -33,9 +33,9 @@ class Fix:
     def __call__(self, project: Project) -> Project:
         """Return the project mended; as it is where what was to be mended went meanwhile."""
         if self.stance is not None:
-            from metagraph.suggest.jumps.bridges import bridged_at
+            from metagraph.suggest.jumps.bridges import bridge_stance
 
-            return bridged_at(project, self.stance)[0]
+            return bridge_stance(project, self.stance)[0]
         if self.action is None or project.action(self.action) is None:
             return project
         if self.end is not None:
@@ -43,7 +43,7 @@ class Fix:
         return edits.update_actions(project, [self.action], **self.changes)
 
 
-def clips_for(project: Project, problems: Iterable[Problem]) -> dict[Problem, Fix]:
+def fix_clips(project: Project, problems: Iterable[Problem]) -> dict[Problem, Fix]:
     """Return what gives actions back the clips they were made of, where those are in the project; else what
     keeps the clips they have.
     """
@@ -55,7 +55,7 @@ def clips_for(project: Project, problems: Iterable[Problem]) -> dict[Problem, Fi
         keep = Fix(
             tr("Keep '{clip}'", clip=project.clips[action.clip].name), action.id, {"clip": action.clip}
         )
-        made_of = original_clip(project, action)
+        made_of = find_original_clip(project, action)
         if made_of is None:
             out[problem] = keep
             continue
@@ -64,23 +64,23 @@ def clips_for(project: Project, problems: Iterable[Problem]) -> dict[Problem, Fi
     return out
 
 
-def original_clip(project: Project, action: Action) -> str | None:
+def find_original_clip(project: Project, action: Action) -> str | None:
     """Return the id of the clip that an action says it was made of; None where that is not in the project."""
     of = [e for e in project.clips.values() if e.name == action.clip_name]
     same = [e for e in of if action.clip_sha256 and e.digest.startswith(action.clip_sha256)]
     return next((e.id for e in (*same, *of)), None)
 
 
-def bridges_for(project: Project, problems: Iterable[Problem]) -> dict[Problem, Fix]:
+def fix_unreachable(project: Project, problems: Iterable[Problem]) -> dict[Problem, Fix]:
     """Return what joins stances that cannot be reached or left to the others by blending."""
     from metagraph.suggest.jumps import bridges
 
     out: dict[Problem, Fix] = {}
     for problem in problems:
         if problem.code in ("unreachable", "dead-end") and problem.stance is not None:
-            after, made = bridges.bridged_at(project, problem.stance)
+            after, made = bridges.bridge_stance(project, problem.stance)
             if made:
-                tip = "; ".join(bridges.told(after, made))
+                tip = "; ".join(bridges.describe_bridges(after, made))
                 words = tr("{what}. One step that can be undone", what=tip[:1].upper() + tip[1:])
                 out[problem] = Fix(tr(BRIDGE), stance=problem.stance, tip=words)
     return out

@@ -29,9 +29,9 @@ from PySide6.QtOpenGLWidgets import QOpenGLWidget
 from PySide6.QtWidgets import QLabel, QLayout, QVBoxLayout, QWidget
 
 from app.translation import tr, tr_error, tr_noop
-from preview.camera import Camera
+from preview.camera import OrbitCamera
 from preview.renderer import Renderer
-from preview.scene import DARK, Scene, Theme
+from preview.scene import DARK, Scene, SceneTheme
 
 Compose = Callable[[], Scene]
 GL_RENDERER = 0x1F01
@@ -44,11 +44,11 @@ MOUSE = tr_noop("Drag to orbit, right-drag to pan, wheel to zoom, double-click t
 class CameraMouse(_Base):
     """Mouse to camera, for any widget that has `frame_wanted`."""
 
-    camera: Camera
+    camera: OrbitCamera
     failed: Any
 
     def _init_camera(self) -> None:
-        self.camera = Camera()
+        self.camera = OrbitCamera()
         self.moved_by_hand = False
         self._last: QPointF | None = None
 
@@ -108,17 +108,17 @@ class GLView(CameraMouse, QOpenGLWidget):
         self._compose = compose
         self._renderer: Renderer | None = None
         self._ctx: moderngl.Context | None = None
-        self.theme: Theme = DARK
+        self.theme: SceneTheme = DARK
         self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
 
     def initializeGL(self) -> None:
-        from preview.offscreen import no_opengl
+        from preview.offscreen import no_opengl_error
 
         try:
             self._ctx = moderngl.create_context(require=330)
             self._renderer = Renderer(self._ctx)
         except Exception as error:
-            self._cannot_draw(no_opengl(str(error)))
+            self._cannot_draw(no_opengl_error(str(error)))
             return
         self.context().aboutToBeDestroyed.connect(self._lost)
 
@@ -163,7 +163,7 @@ class ImageView(CameraMouse, QWidget):
         self._drawn: tuple[object, Scene, QImage] | None = None  # the last picture, and what it shows
         self._contexts: list[Any] = []  # nobody else gives a context back when the widget goes
         self.destroyed.connect(lambda *_, made=self._contexts: [each.release() for each in made])
-        self.theme: Theme = DARK
+        self.theme: SceneTheme = DARK
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
         self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
 

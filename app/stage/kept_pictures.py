@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QImage
 
 from app.stage.picture_process import PictureOrder
-from app.stage.picture_store import PictureStore, key_of, pictures_folder
+from app.stage.picture_store import PictureStore, picture_key, pictures_folder
 
 Work = PictureOrder | tuple[str, list[QImage]] | None
 
@@ -68,7 +68,7 @@ class KeptPictures(QObject):
                     self._search(store, work)
 
     def _search(self, store: PictureStore, order: PictureOrder) -> None:
-        key = key_of(order)
+        key = picture_key(order)
         found = store.load(key)
         if found is not None:
             self.found.emit(order.number, found)

@@ -16,8 +16,8 @@ from PySide6.QtCore import QObject, Signal
 
 from app.project.document import Document
 from app.project.jobs import Jobs
-from app.stage.performance import Performance
-from app.stage.session import Session
+from app.stage.performance import StagePerformance
+from app.stage.session import StageSession
 from app.translation import tr, tr_error
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Line
@@ -38,8 +38,8 @@ class Sound(QObject):
     def __init__(
         self,
         document: Document,
-        session: Session,
-        performance: Performance,
+        session: StageSession,
+        performance: StagePerformance,
         jobs: Jobs,
         parent: QObject | None = None,
     ) -> None:
@@ -113,9 +113,9 @@ class Sound(QObject):
         ):
             self.parts = EMPTY
             return
-        from metagraph.speech.soundtrack import placed
+        from metagraph.speech.soundtrack import place_lines
 
-        self.parts = [part for one in shown.everyone for part in placed(one.plan, self.sounds)]
+        self.parts = [part for one in shown.everyone for part in place_lines(one.plan, self.sounds)]
         self._moved()
 
     @property
@@ -174,9 +174,9 @@ class Sound(QObject):
 
     def fill(self, out: np.ndarray, frames: int, time: object, status: object) -> None:
         """Give the next samples `[frames, 1]`; called on the sound library's thread."""
-        from metagraph.speech.soundtrack import mixed
+        from metagraph.speech.soundtrack import mix_track
 
-        out[:, 0] = mixed(self.parts, self.place, frames)
+        out[:, 0] = mix_track(self.parts, self.place, frames)
         self.place += frames
 
     def set_muted(self, muted: bool) -> None:

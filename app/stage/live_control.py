@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 
 from app.project.document import Document
-from app.stage.session import Session
+from app.stage.session import StageSession
 from metagraph.graph.requests import Performance as KeptPerformance
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ class LiveControl(QObject):
     changed = Signal()
     ticked = Signal()
 
-    def __init__(self, document: Document, session: Session, parent: QObject | None = None) -> None:
+    def __init__(self, document: Document, session: StageSession, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.document, self.session = document, session
         self.stage: LiveStage | None = None

@@ -16,18 +16,18 @@ import msgspec
 from PySide6.QtCore import QElapsedTimer, QObject, Qt, QTimer, Signal
 
 from app.translation import tr, tr_error, tr_plural
-from metagraph.generation.offered import offered
+from metagraph.generation.offered import list_models
 from metagraph.graph.model import Project
 from metagraph.graph.requests import AnyRequest, Performance
 from metagraph.live import OSC_PORT, PORT
-from metagraph.live.graph_motion import LiveGraph, live_graph, recorded_takes
+from metagraph.live.graph_motion import LiveGraph, list_recorded_takes, live_graph
 from metagraph.live.live_session import LiveSession
 from metagraph.live.messages import HeardMessage, Reply
 from metagraph.live.relay import Relay
 from metagraph.live.server import LiveError, Options
 from metagraph.live.tape import Tape
 from metagraph.live.tick_work import Out
-from metagraph.playback.planning.extend_performance import Answer, answers
+from metagraph.playback.planning.extend_performance import AskAnswer, answer_asks
 
 TICK = 16  # milliseconds
 SHOWN = 300  # requests that are shown in the timeline, the latest
@@ -80,7 +80,7 @@ class LiveStage(QObject):
         folder: Path | None = None,
     ) -> None:
         super().__init__(parent)
-        self.session = _Counted(project, models=offered(folder))
+        self.session = _Counted(project, models=list_models(folder))
         self._graph: Future[LiveGraph] | None = None
         self.session.tape = self.tape = _Shown()
         self.session.join(WINDOW)
@@ -91,7 +91,7 @@ class LiveStage(QObject):
         self._timer = QTimer(self, interval=TICK)
         self._timer.setTimerType(Qt.TimerType.PreciseTimer)
         self._timer.timeout.connect(self.tick)
-        self._answers: dict[str, Answer] = {}
+        self._answers: dict[str, AskAnswer] = {}
         self._answered = -ANSWERED
         self._rated: deque[tuple[float, int]] = deque()
         self._ready = False
@@ -108,7 +108,7 @@ class LiveStage(QObject):
     def _make_graph(self) -> None:
         """Begin to make the motion graph of the project's own takes, where it has any, beside all else."""
         project = self.session.project
-        clips, speech = recorded_takes(project)
+        clips, speech = list_recorded_takes(project)
         if not clips:
             return
         future: Future[LiveGraph] = Future()
@@ -202,11 +202,11 @@ class LiveStage(QObject):
         """The latest requests of all clients."""
         return self.tape.latest
 
-    def answers(self) -> dict[str, Answer]:
+    def answers(self) -> dict[str, AskAnswer]:
         """Return what becomes of the latest requests."""
         if self.session.now >= self._answered + ANSWERED:
             self._answered = self.session.now
-            self._answers = answers(self.session.plan, (ask.id for ask in self.tape.latest))
+            self._answers = answer_asks(self.session.plan, (ask.id for ask in self.tape.latest))
         return self._answers
 
     @property

@@ -12,7 +12,7 @@ MOST = 5  # ghosts; each is drawn in every frame
 
 
 @dataclass(frozen=True)
-class Skin:
+class OnionSkin:
     """action: whose. moments: seconds of its clip, each seen so much: 0..1."""
 
     action: Action
@@ -26,12 +26,12 @@ class Onion(QObject):
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self.skin: Skin | None = None
+        self.skin: OnionSkin | None = None
 
-    def show(self, skin: Skin | None) -> None:
+    def show(self, skin: OnionSkin | None) -> None:
         """Let these moments be seen, of which the first `MOST` are; None for no skin."""
         if skin is not None:
-            skin = Skin(skin.action, skin.moments[:MOST])
+            skin = OnionSkin(skin.action, skin.moments[:MOST])
         if skin != self.skin:
             self.skin = skin
             self.changed.emit()

@@ -14,28 +14,28 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.project.document import Document
 from app.project.jobs import Jobs
-from app.stage.conversation_plans import ConversationPlans, keep
+from app.stage.conversation_plans import ConversationPlans, keep_conversation
 from app.stage.live_control import LiveControl
-from app.stage.playback_source import Shown, alone, by_hand, in_context
+from app.stage.playback_source import ShownPlayback, play_clip_alone, play_in_context, play_manual
 from app.stage.request_edits import SOON, RequestEdits
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.stage.timeline_edits import TimelineEdits
 from app.translation import tr, tr_phrase
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest
-from metagraph.graph.timeline_edits import only_noted
+from metagraph.graph.timeline_edits import differs_only_in_timeline
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.manual_playback import Fire
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.planning.extend_performance import Answer, answers
-from metagraph.playback.planning.running_plan import asks_of, perform
+from metagraph.playback.planning.extend_performance import AskAnswer, answer_asks
+from metagraph.playback.planning.running_plan import list_kept_asks, plan_performance
 
 LENGTH = 60.0  # seconds planned ahead, and how much more whenever the playhead comes near the end
 AHEAD = 15.0  # seconds before the end at which more is planned
 
 
-class Performance(QObject):
+class StagePerformance(QObject):
     """changed: something else plays, or the same was planned anew. requests: edits what is asked for.
     timeline: edits what is noted beside it. live: begins and ends live play. muted: layers that rest while
     one looks. before: the state of the project that
@@ -46,13 +46,13 @@ class Performance(QObject):
     changed = Signal()
 
     def __init__(
-        self, document: Document, session: Session, jobs: Jobs, parent: QObject | None = None
+        self, document: Document, session: StageSession, jobs: Jobs, parent: QObject | None = None
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.jobs = document, session, jobs
         self.length = LENGTH
-        self.shown = Shown(document.project, Plan(1, 0.0), LENGTH)
-        self.staged: Shown | None = None
+        self.shown = ShownPlayback(document.project, Plan(1, 0.0), LENGTH)
+        self.staged: ShownPlayback | None = None
         self.muted: frozenset[Layer] = frozenset()
         self._busy = self._again = False
         self._soon = QTimer(self, singleShot=True, interval=0)
@@ -75,8 +75,8 @@ class Performance(QObject):
         )
         self.timeline = TimelineEdits(document, session, lambda: self.shown.length, self)
         self.before: Project | None = None
-        self._answered: Shown | None = None
-        self._answers: dict[str, Answer] = {}
+        self._answered: ShownPlayback | None = None
+        self._answers: dict[str, AskAnswer] = {}
 
     # --- what plays
 
@@ -152,7 +152,7 @@ class Performance(QObject):
 
         def edit(project: Project) -> Project:
             nonlocal made
-            project, made = keep(project, ident or "", shown)
+            project, made = keep_conversation(project, ident or "", shown)
             return project
 
         if ident is not None and shown.others:
@@ -176,13 +176,13 @@ class Performance(QObject):
         self.replan()
 
     def _edited(self, before: Project, after: Project) -> None:
-        if only_noted(before, after):
+        if differs_only_in_timeline(before, after):
             return
         if self._own_length is not None:
             self.length = self._own_length
         if before.skeleton is not after.skeleton or after.skeleton is None:
             self.live.end()
-            self.shown = Shown(after, Plan(1, 0.0), LENGTH)
+            self.shown = ShownPlayback(after, Plan(1, 0.0), LENGTH)
             self.changed.emit()
         if self.live.stage is not None:
             self.live.stage.change(after)
@@ -209,27 +209,29 @@ class Performance(QObject):
         layer = self.session.place.layer
         talk, side, folder = self.conversation, self.session.onstage.side, self.document.folder or Path()
 
-        def work(_: object) -> Shown:
+        def work(_: object) -> ShownPlayback:
             if show == "clip" and shown in project.clips:
-                return alone(project, shown or "")
+                return play_clip_alone(project, shown or "")
             if manual:
                 known = project.state(shown) is not None or project.link(shown) is not None
-                return by_hand(project, length, fires, shown if show == "context" and known else None)
+                return play_manual(project, length, fires, shown if show == "context" and known else None)
             if show == "context" and shown is not None:
-                return in_context(project, shown, layer, stances, anew)
+                return play_in_context(project, shown, layer, stances, anew)
             if talk is not None and project.skeleton is not None:
                 return self.conversations.show(project, talk, folder, side)
             if kept is None:
-                return Shown(project, make_plan(project, length), length)
-            return Shown(
+                return ShownPlayback(project, make_plan(project, length), length)
+            return ShownPlayback(
                 project,
-                perform(project, asks_of(kept), length, kept.seed, dict(kept.stances), kept.idle),
+                plan_performance(
+                    project, list_kept_asks(kept), length, kept.seed, dict(kept.stances), kept.idle
+                ),
                 length,
             )
 
         self.jobs.start("plan", work, self._planned, self._failed, quick=True)
 
-    def _planned(self, shown: Shown) -> None:
+    def _planned(self, shown: ShownPlayback) -> None:
         self._busy = False
         if self.live.stage is not None and self.session.transport.show == "plan":
             return
@@ -259,7 +261,7 @@ class Performance(QObject):
         )
         over = live.session.overlay if self.live.following else None
         if plan is not self.shown.plan or (over is None) != (self.shown.over is None):
-            self.shown = self.staged = Shown(
+            self.shown = self.staged = ShownPlayback(
                 live.session.project, plan, plan.end, over=over, muted=self.muted
             )
             self.changed.emit()
@@ -281,14 +283,14 @@ class Performance(QObject):
             return self.shown.asks
         return self.requests.kept.asks if self.requests.kept is not None else ()
 
-    def answers(self) -> dict[str, Answer]:
+    def answers(self) -> dict[str, AskAnswer]:
         """Return what the plan that is shown does about each request."""
         if self.live.stage is not None:
             return self.live.stage.answers()
         if self._answered is not self.shown:
             self._answered, self._answers = (
                 self.shown,
-                answers(self.shown.plan, (ask.id for ask in self.asks)),
+                answer_asks(self.shown.plan, (ask.id for ask in self.asks)),
             )
         return self._answers
 

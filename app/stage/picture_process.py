@@ -52,7 +52,7 @@ class PictureOrder:
 _Waiting = queue.PriorityQueue[tuple[bool, float, PictureOrder | None]]
 
 
-def draw(offscreen: Any, figure: Any, order: PictureOrder) -> list[np.ndarray]:
+def draw_clip_pictures(offscreen: Any, figure: Any, order: PictureOrder) -> list[np.ndarray]:
     """Return a clip's pictures `[H, W, 4]`: one telling pose, or its whole loop."""
     from preview.scene import THEMES
     from preview.thumbnail import ThumbnailStyle, telling_frame, thumbnail, thumbnails
@@ -77,7 +77,7 @@ def draw(offscreen: Any, figure: Any, order: PictureOrder) -> list[np.ndarray]:
     return [thumbnail(offscreen, figure, r, p, style) for r, p in zip(rotations, positions, strict=True)]
 
 
-def serve(orders: BinaryIO, results: BinaryIO) -> None:
+def serve_pictures(orders: BinaryIO, results: BinaryIO) -> None:
     """Answer pickled orders with pickled (number, None) when one is begun and (number, pictures) when it is
     drawn, until the other side is gone: stills before loops, the latest first.
     """
@@ -103,7 +103,7 @@ def serve(orders: BinaryIO, results: BinaryIO) -> None:
             drawn[key] += 1
             if drawn[key] == WORTH_LEVELS:
                 figures[key].simplify()
-            pickle.dump((order.number, draw(offscreen, figures[key], order)), results)
+            pickle.dump((order.number, draw_clip_pictures(offscreen, figures[key], order)), results)
             results.flush()
 
 
@@ -118,21 +118,21 @@ def _read(orders: BinaryIO, waiting: _Waiting) -> None:
 
 def _figure(skeleton: Skeleton, character: Path | None, hidden: tuple[str, ...]) -> Any:
     from metagraph.errors import FileError
-    from preview.character_file import figure_of
+    from preview.character_file import figure_from_file
 
     try:
-        return figure_of(character, skeleton, hidden)
+        return figure_from_file(character, skeleton, hidden)
     except FileError:  # the preview says so
-        return figure_of(None, skeleton)
+        return figure_from_file(None, skeleton)
 
 
 if __name__ == "__main__":
     from app.faults import install_in_child
-    from app.memory import frugal
+    from app.memory import free_memory_early
     from app.stage import picture_process  # orders name their class by its module
 
-    frugal()
+    free_memory_early()
     install_in_child()
     # Whoever wanted pictures may be gone in the middle of one.
     with contextlib.suppress(BrokenPipeError), sys.stdout.buffer as out:
-        picture_process.serve(sys.stdin.buffer, out)
+        picture_process.serve_pictures(sys.stdin.buffer, out)

@@ -23,7 +23,7 @@ def pictures_folder() -> Path | None:
     return cache_folder("pictures")
 
 
-def key_of(order: PictureOrder) -> str:
+def picture_key(order: PictureOrder) -> str:
     """Return what a picture is found by, 40 hex digits: another wherever it would look otherwise."""
     clip = order.clip
     out = hashlib.blake2b(digest_size=20)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.edits import added_actions, place
+from metagraph.graph.edits import find_added_actions, place_clips
 from metagraph.graph.model import Action, Layer, Project
 from metagraph.graph.requests import AnyRequest
 from metagraph.motion.skeleton import Pose, Skeleton
@@ -25,7 +25,7 @@ from metagraph.playback.manual_playback import (
     ManualPlan,
     link_alone,
     make_manual_plan,
-    state_alone,
+    play_state_alone,
 )
 from metagraph.playback.plan import MetaRequest, Plan
 from metagraph.playback.planner import make_plan
@@ -49,7 +49,7 @@ LEAD = 0.8  # seconds of stance before and after a clip shown in context
 
 
 @dataclass(frozen=True)
-class Shown:
+class ShownPlayback:
     """project: the one the plan was made for. length: seconds. clip: the one that plays alone, then without a
     plan. manual: what the manual state machines play, where they do; `plan` then only shows it.
 
@@ -66,7 +66,7 @@ class Shown:
     length: float
     clip: str | None = None
     manual: ManualPlan | None = None
-    others: tuple[Shown, ...] = ()
+    others: tuple[ShownPlayback, ...] = ()
     side: int = 0
     stand: Stand | None = None
     asks: tuple[AnyRequest, ...] = ()
@@ -90,7 +90,7 @@ class Shown:
         return replace(self.plan, layers=layers)
 
     @property
-    def everyone(self) -> tuple[Shown, ...]:
+    def everyone(self) -> tuple[ShownPlayback, ...]:
         """Who is to be seen: this one alone, or all of a conversation, its first side first."""
         return tuple(sorted((self, *self.others), key=lambda one: one.side))
 
@@ -154,24 +154,28 @@ class Shown:
         return self.evaluator.faces_at(times) if self.evaluator is not None else [{} for _ in times]
 
 
-def alone(project: Project, clip: str) -> Shown:
+def play_clip_alone(project: Project, clip: str) -> ShownPlayback:
     """Return a clip playing by itself."""
-    return Shown(project, Plan(1, 0.0), max(1e-3, project.clips[clip].duration), clip)
+    return ShownPlayback(project, Plan(1, 0.0), max(1e-3, project.clips[clip].duration), clip)
 
 
-def by_hand(project: Project, length: float, fires: Iterable[Fire] = (), only: str | None = None) -> Shown:
+def play_manual(
+    project: Project, length: float, fires: Iterable[Fire] = (), only: str | None = None
+) -> ShownPlayback:
     """Return the manual state machines playing. only: a state or link to look at alone."""
     if only is not None:
         with suppress(KeyError):  # a link to a group that has no entry leads nowhere
-            plan = link_alone(project, only) if project.state(only) is None else state_alone(project, only)
-            return Shown(project, plan.plan, plan.end, manual=plan)
+            plan = (
+                link_alone(project, only) if project.state(only) is None else play_state_alone(project, only)
+            )
+            return ShownPlayback(project, plan.plan, plan.end, manual=plan)
     plan = make_manual_plan(project, length, fires)
-    return Shown(project, plan.plan, length, manual=plan)
+    return ShownPlayback(project, plan.plan, length, manual=plan)
 
 
-def in_context(
+def play_in_context(
     project: Project, ident: str, layer: Layer, stances: dict[Layer, str], anew: bool = False
-) -> Shown:
+) -> ShownPlayback:
     """Return stance, action, back to the stance, the other layers resting in theirs.
 
     ident: an action, or a clip; a clip that was not placed yet is tried as a gesture of the current stance.
@@ -186,22 +190,22 @@ def in_context(
     scratch = project
     if action is None:
         try:
-            scratch = place(project, [ident], layer, "gesture", stances.get(layer))
+            scratch = place_clips(project, [ident], layer, "gesture", stances.get(layer))
         except EditError:
-            return alone(project, ident)
-        action = scratch.action(*added_actions(project, scratch))
+            return play_clip_alone(project, ident)
+        action = scratch.action(*find_added_actions(project, scratch))
     if action is None:
-        return alone(project, ident)
+        return play_clip_alone(project, ident)
     begin = {**stances, action.layer: action.stance}
     if action.kind == "stance":
         start, end = scratch.span(action)
         graph = scratch.graphs[action.layer]
         only = {a.id: None for a in graph.of(action.stance, "stance") if a.id != action.id}
         scratch = scratch.with_graph(graph.with_actions(only))
-        return Shown(
+        return ShownPlayback(
             scratch, make_plan(scratch, end - start, (), stances=begin, idle=False), max(1.0, end - start)
         )
     request = MetaRequest("shown", action.layer, action.kind, LEAD, action=action.id)
     start, end = scratch.span(action)
     length = LEAD + max(0.0, end - start) + LEAD
-    return Shown(scratch, make_plan(scratch, length, (request,), stances=begin, idle=False), length)
+    return ShownPlayback(scratch, make_plan(scratch, length, (request,), stances=begin, idle=False), length)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from app.stage.performance import Performance
-from app.stage.session import Session
+from app.stage.performance import StagePerformance
+from app.stage.session import StageSession
 
 
 class Playhead:
     """Moves the session's playhead; what it runs through is the performance's."""
 
-    def __init__(self, session: Session, performance: Performance) -> None:
+    def __init__(self, session: StageSession, performance: StagePerformance) -> None:
         self.session, self.performance = session, performance
 
     def advance(self, elapsed: float) -> None:

@@ -8,11 +8,11 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.project.document import Document
 from app.project.jobs import Jobs
-from app.stage.compatibility_state import Compatibility, merged
-from app.stage.fixes import Fix, bridges_for, clips_for
-from app.stage.session import Session
+from app.stage.compatibility_state import Compatibility, merge_problems
+from app.stage.fixes import Fix, fix_clips, fix_unreachable
+from app.stage.session import StageSession
 from app.translation import tr_phrase
-from metagraph.graph.check import check
+from metagraph.graph.check import check_project
 from metagraph.graph.problem import Problem
 
 Checked = tuple[list[Problem], dict[Problem, Fix]]
@@ -30,7 +30,7 @@ class ProblemWatch(QObject):
     def __init__(
         self,
         document: Document,
-        session: Session,
+        session: StageSession,
         jobs: Jobs,
         compatibility: Compatibility,
         parent: QObject | None = None,
@@ -60,8 +60,8 @@ class ProblemWatch(QObject):
         project = self.document.project
 
         def work(_: object) -> Checked:
-            problems = check(project)
-            return problems, {**bridges_for(project, problems), **clips_for(project, problems)}
+            problems = check_project(project)
+            return problems, {**fix_unreachable(project, problems), **fix_clips(project, problems)}
 
         self.jobs.start("check", work, self._checked, lambda e: self._checked(([], {})), quick=True)
 
@@ -76,7 +76,7 @@ class ProblemWatch(QObject):
         meta = self.session.onstage.mode == "meta"
         found = tuple(p for p in self._found if not (p.state or p.link if meta else p.stance or p.action))
         flags = self.compatibility.flags if meta else {}
-        self.problems = merged(found, flags)
+        self.problems = merge_problems(found, flags)
         self.fixes = {**flags, **self._bridges}
         self.misfits = {
             p.action: f"{tr_phrase(p.message)}. {tr_phrase(p.remedy)}"

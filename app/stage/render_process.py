@@ -10,14 +10,14 @@ import threading
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.project.jobs import Job
-from app.translation import tr, translated
+from app.project.jobs import WindowJob
+from app.translation import lazy_texts, tr
 from metagraph.common.network_paths import is_allowed
-from metagraph.common.programs import python, start
+from metagraph.common.programs import python_command, start
 from metagraph.formats.store import absolute, save_project
 from metagraph.graph.model import Project
 
-SUFFIXES = translated(
+SUFFIXES = lazy_texts(
     lambda: {
         ".mp4": tr("Video with sound"),
         ".png": tr("Contact sheet"),
@@ -48,7 +48,7 @@ class RenderOrder:
     cuts: bool = True
 
 
-def write(project: Project, folder: Path, wanted: RenderOrder, job: Job) -> Path:
+def write_rendering(project: Project, folder: Path, wanted: RenderOrder, job: WindowJob) -> Path:
     """Write it; runs on a job's thread. Raises RuntimeError with the reason; a cancelled job leaves nothing
     behind.
     """
@@ -86,7 +86,7 @@ def write(project: Project, folder: Path, wanted: RenderOrder, job: Job) -> Path
         if wanted.conversation is not None:
             words += ["--conversation", wanted.conversation]
         process = start(
-            python("app.cli", *words),
+            python_command("app.cli", *words),
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
             text=True,
@@ -115,7 +115,7 @@ def write(project: Project, folder: Path, wanted: RenderOrder, job: Job) -> Path
     return wanted.out
 
 
-def _listen(process: subprocess.Popen[str], job: Job, said: list[str]) -> None:
+def _listen(process: subprocess.Popen[str], job: WindowJob, said: list[str]) -> None:
     """Pass progress on, and keep what else is said."""
     assert process.stderr is not None
     for line in process.stderr:

@@ -8,10 +8,10 @@ from typing import cast
 import msgspec
 from PySide6.QtGui import QGuiApplication
 
-from app.look.plural import listed
+from app.look.plural import list_in_words
 from app.project.document import Document
 from app.stage.live_control import LiveControl
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr, tr_error
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing import performances as performance_edits
@@ -34,7 +34,7 @@ class RequestEdits:
     def __init__(
         self,
         document: Document,
-        session: Session,
+        session: StageSession,
         live: LiveControl,
         length: Callable[[], float],
         locked: Callable[[], Collection[str]] = tuple,
@@ -193,7 +193,7 @@ class RequestEdits:
             self.session.onstage.select_requests(done.idents)
             if done.left_out:
                 self.document.failed.emit(
-                    tr("This project does not have {what}.", what=listed(done.left_out))
+                    tr("This project does not have {what}.", what=list_in_words(done.left_out))
                 )
 
     def close_up(self, idents: tuple[str, ...], plan: Plan) -> None:
@@ -202,7 +202,7 @@ class RequestEdits:
         gone = self.free(idents)
         if stage is None or kept is None or not gone:
             return
-        times = {x.id: performance_edits.asked_at(x) for x in kept.asks if x.id in gone}
+        times = {x.id: performance_edits.ask_time(x) for x in kept.asks if x.id in gone}
         played = [(c.meta.partition("+")[0], c.start, c.end) for of in plan.layers.values() for c in of.cues]
         played += [(s.id, s.start, s.end) for s in plan.track.speeches]
         # What waits for its stroke is asked for at the stroke; all it plays is gone with it.

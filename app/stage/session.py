@@ -20,7 +20,7 @@ from metagraph.graph.model import LAYERS, Layer, Project
 OPENED_ON: tuple[Layer, ...] = ("arms", "body", "head")
 
 
-class Session(QObject):
+class StageSession(QObject):
     """place: layer and stance. selection. onstage: who is on stage, and in which mode. transport: the
     playhead. look: the theme. onion: other moments to be seen beside the present one. watch: what helps to
     watch the character.

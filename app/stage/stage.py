@@ -10,9 +10,9 @@ from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.figures import Figures
 from app.stage.line_player import Sound
-from app.stage.performance import Performance
+from app.stage.performance import StagePerformance
 from app.stage.playhead import Playhead
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.stage.thumbnails import Thumbnails
 
 
@@ -27,9 +27,9 @@ class Stage(QObject):
 
     def __init__(self, document: Document, jobs: Jobs, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self.session = Session(document, self)
+        self.session = StageSession(document, self)
         self.figures = Figures(document, jobs, self)
-        self.performance = Performance(document, self.session, jobs, self)
+        self.performance = StagePerformance(document, self.session, jobs, self)
         self.playhead = Playhead(self.session, self.performance)
         self.thumbnails = Thumbnails(document, self.session, self.figures, self)
         self.sound = Sound(document, self.session, self.performance, jobs, self)

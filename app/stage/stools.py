@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from app.stage.playback_source import Shown
+from app.stage.playback_source import ShownPlayback
 from metagraph.graph.seats import seat_of
-from preview.scene import Actor
+from preview.scene import SceneActor
 from preview.stool import stool
 
 
-def stools(shown: Shown) -> tuple[Actor, ...]:
+def stools(shown: ShownPlayback) -> tuple[SceneActor, ...]:
     """Return the stool of a character whose graph has a stance that sits; it stays there while one stands.
     None for a clip that plays alone.
     """

@@ -22,8 +22,8 @@ from app.stage.gl_view import to_image
 from app.stage.kept_pictures import KeptPictures
 from app.stage.picture_process import LONG, PictureOrder
 from app.stage.picture_store import KEPT
-from app.stage.session import Session
-from metagraph.common.programs import python, start
+from app.stage.session import StageSession
+from metagraph.common.programs import python_command, start
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 
@@ -47,7 +47,7 @@ class Thumbnails(QObject):
     _ended = Signal(object)  # the process
 
     def __init__(
-        self, document: Document, session: Session, figures: Figures, parent: QObject | None = None
+        self, document: Document, session: StageSession, figures: Figures, parent: QObject | None = None
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.figures = document, session, figures
@@ -213,7 +213,7 @@ class Thumbnails(QObject):
     def _start(self) -> None:
         """Start the process; what goes out and what comes in have a thread each, since a full pipe blocks."""
         self._process = start(
-            python("app.stage.picture_process"),
+            python_command("app.stage.picture_process"),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,

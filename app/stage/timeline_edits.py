@@ -9,7 +9,7 @@ from collections.abc import Callable
 from PySide6.QtCore import QObject, Signal
 
 from app.project.document import Document
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr
 from metagraph.graph import timeline_edits as notes
 from metagraph.graph.conversation.model import Conversation
@@ -37,7 +37,11 @@ class TimelineEdits(QObject):
     changed = Signal()
 
     def __init__(
-        self, document: Document, session: Session, length: Callable[[], float], parent: QObject | None = None
+        self,
+        document: Document,
+        session: StageSession,
+        length: Callable[[], float],
+        parent: QObject | None = None,
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self._length = document, session, length

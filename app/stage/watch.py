@@ -10,13 +10,13 @@ from typing import Any
 
 from PySide6.QtCore import QObject, QSettings, Signal
 
-from app.translation import tr, translated
-from preview.scene import THEMES, Theme
+from app.translation import lazy_texts, tr
+from preview.scene import THEMES, SceneTheme
 
 KEY = "watch"
 STUDIO, STAGE = "studio", "stage"  # of `preview.looks`, which is read when others are chosen
 PANES = (1, 2, 4)
-SIDES = translated(
+SIDES = lazy_texts(
     lambda: {  # of a view beside the first: what it is called
         "front": tr("Front"),
         "left": tr("Left side"),
@@ -50,7 +50,7 @@ class Watched:
     panes: int = 1
     sides: str = "front left face"
 
-    def look(self, theme: str) -> Theme:
+    def look(self, theme: str) -> SceneTheme:
         """Return a theme as it is looked at."""
         if (self.light, self.background) == (STUDIO, STAGE):
             return THEMES[theme]

@@ -10,19 +10,19 @@ from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetricsF, QHelpEvent, QMouseEvent, QPainter, QPaintEvent, QWheelEvent
 from PySide6.QtWidgets import QToolTip, QWidget
 
-from app.look.theme import KIND_MARKS, Theme, theme
-from app.stage.session import Session
+from app.look.theme import KIND_MARKS, WindowTheme, theme
+from app.stage.session import StageSession
 from app.translation import tr
-from app.widgets.vocabulary import titled
+from app.widgets.vocabulary import vocabulary_title
 from metagraph.graph.model import KINDS, Layer
-from metagraph.playback.learning.learn import Act, state_of, state_words
+from metagraph.playback.learning.learn import Act, describe_state, state_of
 
 LEFT, RULER, LANE = 56, 20, 34
 STEPS = (0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 3600.0)
 NARROWEST, ROUND = 2.0, 4.0  # pixels of an act, and from how many on it has round corners
 
 
-def place(lane: QRectF, act: Act, layer: Layer) -> tuple[float, float]:
+def place_act(lane: QRectF, act: Act, layer: Layer) -> tuple[float, float]:
     """Return top and height of an act in its lane: only arms have sides."""
     if layer != "arms" or act.limb == "both":
         return lane.top(), lane.height()
@@ -30,7 +30,7 @@ def place(lane: QRectF, act: Act, layer: Layer) -> tuple[float, float]:
     return (lane.top(), half) if act.limb == "left" else (lane.bottom() - half, half)
 
 
-def clock(seconds: float) -> str:
+def format_clock(seconds: float) -> str:
     """Return "12 s", "1:05", "1:00:05"."""
     if seconds < 60:
         return f"{seconds:g} s"
@@ -39,10 +39,10 @@ def clock(seconds: float) -> str:
     return f"{hours}:{minutes:02d}:{left:02d}" if hours else f"{minutes}:{left:02d}"
 
 
-class Strip(QWidget):
+class ActStrip(QWidget):
     """The wheel zooms where the pointer is, dragging moves along; hovering tells what an act is."""
 
-    def __init__(self, session: Session, parent: QWidget, titles: bool = True) -> None:
+    def __init__(self, session: StageSession, parent: QWidget, titles: bool = True) -> None:
         super().__init__(parent)
         self.session = session
         self.left = LEFT if titles else 8
@@ -85,7 +85,7 @@ class Strip(QWidget):
         for row, (layer, acts) in enumerate(self.acts.items()):
             lane = self.lane(row)
             for act in reversed(acts):
-                top, height = place(lane, act, layer)
+                top, height = place_act(lane, act, layer)
                 width = max(NARROWEST, act.length * self.each())
                 if QRectF(self.x_at(act.start), top, width, height).contains(at):
                     return layer, act
@@ -105,7 +105,7 @@ class Strip(QWidget):
                 painter.drawText(
                     QRectF(2, lane.top(), LEFT - 8, lane.height()),
                     Qt.AlignmentFlag.AlignVCenter,
-                    titled(layer),
+                    vocabulary_title(layer),
                 )
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(QColor(t.field))
@@ -116,7 +116,7 @@ class Strip(QWidget):
             for act in acts:
                 left, width = self.left + (act.start - self.first) * each, max(NARROWEST, act.length * each)
                 if left + width >= lane.left() and left <= lane.right():
-                    top, height = place(lane, act, layer)
+                    top, height = place_act(lane, act, layer)
                     if width < ROUND:
                         painter.fillRect(QRectF(left, top, width, height), fills[act.kind])
                     else:
@@ -124,7 +124,7 @@ class Strip(QWidget):
             painter.restore()
         painter.end()
 
-    def _ruler(self, painter: QPainter, t: Theme) -> None:
+    def _ruler(self, painter: QPainter, t: WindowTheme) -> None:
         each = self.each()
         step = next((s for s in STEPS if s * each >= 58), STEPS[-1])
         painter.setPen(QColor(t.dim))
@@ -139,7 +139,7 @@ class Strip(QWidget):
                 )
                 side = Qt.AlignmentFlag.AlignLeft if x < self.left + 2 else Qt.AlignmentFlag.AlignHCenter
                 if x + width / 4 < self.width():
-                    painter.drawText(box, side | Qt.AlignmentFlag.AlignVCenter, clock(n * step))
+                    painter.drawText(box, side | Qt.AlignmentFlag.AlignVCenter, format_clock(n * step))
             n += 1
 
     def _act(self, painter: QPainter, rect: QRectF, act: Act, fill: QColor) -> None:
@@ -188,7 +188,7 @@ class Strip(QWidget):
                 layer, act = found
                 words = tr(
                     "{state}\n{start:.2f} to {end:.2f} s, {length:.2f} s long",
-                    state=state_words(state_of(act, True), layer),
+                    state=describe_state(state_of(act, True), layer),
                     start=act.start,
                     end=act.end,
                     length=act.length,

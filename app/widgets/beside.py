@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QWidget
 MARGIN = 8  # pixels between the two
 
 
-def free_place(size: tuple[int, int], least: tuple[int, int], room: QRect, about: QRect) -> QRect:
+def find_free_place(size: tuple[int, int], least: tuple[int, int], room: QRect, about: QRect) -> QRect:
     """Return where a window of a size stands in a room, at that side of what it is about that has most space
     for it, smaller if need be, but not below `least`. All in pixels of the screen.
     """
@@ -43,7 +43,7 @@ def stand_beside(dialog: QWidget, about: QWidget) -> None:
     least = dialog.minimumSizeHint().expandedTo(dialog.minimumSize())
     size = dialog.size()
     dialog.setGeometry(
-        free_place(
+        find_free_place(
             (size.width(), size.height()),
             (least.width(), least.height()),
             screen.availableGeometry(),

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QToolButton, QWidget
 from app.translation import tr
 from app.widgets.form_fields import Mixed
 from app.widgets.making import make_widget
-from app.widgets.vocabulary import titled, word
+from app.widgets.vocabulary import vocabulary_title, vocabulary_word
 from metagraph.graph.model import LIMBS
 
 
@@ -53,11 +53,11 @@ class LimbRow(ChoiceRow):
 
     def __init__(self, parent: QWidget, keeps: str) -> None:
         tips = {
-            "left": tr("Moves left arm; the other keeps to the {keeps}", keeps=word(keeps)),
-            "right": tr("Moves right arm; the other keeps to the {keeps}", keeps=word(keeps)),
-            "both": tr("Moves both arms; the other keeps to the {keeps}", keeps=word(keeps)),
+            "left": tr("Moves left arm; the other keeps to the {keeps}", keeps=vocabulary_word(keeps)),
+            "right": tr("Moves right arm; the other keeps to the {keeps}", keeps=vocabulary_word(keeps)),
+            "both": tr("Moves both arms; the other keeps to the {keeps}", keeps=vocabulary_word(keeps)),
         }
-        super().__init__(parent, ((titled(x), tips[x]) for x in LIMBS))
+        super().__init__(parent, ((vocabulary_title(x), tips[x]) for x in LIMBS))
 
     def show_limb(self, limb: Any) -> None:
         """Show a limb, or the marker `Mixed`."""

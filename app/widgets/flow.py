@@ -6,7 +6,7 @@ from PySide6.QtCore import QPoint, QRect, QSize, Qt
 from PySide6.QtWidgets import QLayout, QLayoutItem, QWidget
 
 
-class Flow(QLayout):
+class FlowLayout(QLayout):
     """spacing: pixels between two widgets and between two lines."""
 
     def __init__(self, parent: QWidget | None = None, spacing: int = 2) -> None:

@@ -25,7 +25,7 @@ class _MixedType:
 Mixed = _MixedType()
 
 
-def common(values: Sequence[Any]) -> Any:
+def common_value(values: Sequence[Any]) -> Any:
     """Return what all values are, or the marker `Mixed` when they differ."""
     first = values[0]
     return first if all(v == first for v in values) else Mixed
@@ -133,7 +133,7 @@ class Seconds(DoubleSpinBox):
             super().keyPressEvent(event)
 
 
-class Chooser(ComboBox):
+class QuietChooser(ComboBox):
     """A combo box that long entries do not widen and scrolling does not change."""
 
     def __init__(self, parent: QWidget, toolTip: str) -> None:

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QApplication
 Reason = Literal["escape", "replaced", "taken over", "lost"]
 
 
-class Gesture(Protocol):
+class PointerDrag(Protocol):
     """One drag. Points are the widget's, in pixels. Only `finish` changes the project for good, in one step.
 
     begun: the mouse has moved far enough for it to be a drag and no click. sticky: it goes on when the button
@@ -38,7 +38,7 @@ class Gesture(Protocol):
         return
 
 
-class PressDrag(Gesture):
+class PressDrag(PointerDrag):
     """What drags share that begin once the mouse has moved far enough. catch: pixels; None for the system's
     own distance.
     """
@@ -62,18 +62,18 @@ class PressDrag(Gesture):
         """Nothing was shown that would have to be taken back."""
 
 
-class Hand:
+class PointerHand:
     """What the mouse holds in a widget: one gesture, or nothing."""
 
     def __init__(self) -> None:
-        self.gesture: Gesture | None = None
+        self.gesture: PointerDrag | None = None
 
     @property
     def cursor(self) -> Qt.CursorShape | None:
         """The mouse's shape that the gesture wants; None where there is none, or it wants none."""
         return self.gesture.cursor if self.gesture is not None else None
 
-    def take(self, gesture: Gesture, at: QPointF) -> None:
+    def take(self, gesture: PointerDrag, at: QPointF) -> None:
         """Begin a gesture; one that still goes on is broken off."""
         self.drop("replaced")
         self.gesture = gesture

@@ -34,7 +34,7 @@ class JointFigure(QWidget):
     def __init__(self, skeleton: Skeleton, look: str, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._skeleton, self._look = skeleton, theme(look)
-        self._seen = front(skeleton)
+        self._seen = front_positions(skeleton)
         self._helpers = [is_control(name) for name in skeleton.names]  # no bone leads to them
         self._weights: Mapping[str, float] = {}
         self._wheel = 0  # eighths of a degree that are no whole notch yet
@@ -107,7 +107,7 @@ class JointFigure(QWidget):
         for joint, weight in enumerate(weights):
             if not 0 < weight < 1:
                 continue
-            words = number(weight)
+            words = format_weight(weight)
             box = QRectF(painter.fontMetrics().boundingRect(words))
             box.moveCenter(QPointF(places[joint][0] + 10 + box.width() / 2, places[joint][1]))
             box.moveRight(min(box.right(), self.width() - 2.0))
@@ -170,13 +170,13 @@ class JointFigure(QWidget):
         if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent):
             joint = self._joint_at(QPointF(event.pos()))
             name = self._skeleton.names[joint] if joint is not None else ""
-            words = f"{name}  {number(self._weights.get(name, 0.0))}" if name else ""
+            words = f"{name}  {format_weight(self._weights.get(name, 0.0))}" if name else ""
             QToolTip.showText(event.globalPos(), words, self)
             return True
         return super().event(event)
 
 
-def number(weight: float) -> str:
+def format_weight(weight: float) -> str:
     """Return a weight as it is shown, such as 0.25, and 1."""
     return f"{weight:.2f}".rstrip("0").rstrip(".")
 
@@ -189,7 +189,7 @@ def _between(low: QColor, high: QColor, share: float) -> QColor:
     )
 
 
-def front(skeleton: Skeleton) -> np.ndarray:
+def front_positions(skeleton: Skeleton) -> np.ndarray:
     """Return `[J, 2]` where joints are, right and up, metres, of somebody in the rest pose who is looked at
     from the front.
     """

@@ -23,9 +23,9 @@ from PySide6.QtWidgets import (
 )
 
 from app.project.document import Document
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr
-from app.widgets.joint_figure import JointFigure, number
+from app.widgets.joint_figure import JointFigure, format_weight
 from app.widgets.making import make_widget
 from app.widgets.mask_weights import MaskWeights
 from app.widgets.quiet_fields import DoubleSpinBox, Slider, SpinBox
@@ -60,7 +60,7 @@ def joint_tree(tree: QTreeWidget, project: Project) -> dict[str, QTreeWidgetItem
 class MaskDialog(QDialog):
     """Says how far the selected actions move each joint; all of all means no mask."""
 
-    def __init__(self, document: Document, session: Session, parent: QWidget | None = None) -> None:
+    def __init__(self, document: Document, session: StageSession, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.document, self.session = document, session
         self.weights = MaskWeights(document.project, self._first())
@@ -250,7 +250,7 @@ class MaskDialog(QDialog):
             weight = weights[name]
             soft = Qt.CheckState.PartiallyChecked if weight > 0 else Qt.CheckState.Unchecked
             item.setCheckState(0, Qt.CheckState.Checked if weight == 1 else soft)
-            item.setText(1, number(weight) if 0 < weight < 1 else "")
+            item.setText(1, format_weight(weight) if 0 < weight < 1 else "")
         self.tree.blockSignals(blocked)
         self.tree.viewport().update()
         self.undo_button.setEnabled(self.weights.can_undo)

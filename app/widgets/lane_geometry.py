@@ -13,15 +13,15 @@ from functools import lru_cache
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QFont
 
-from app.look.shortening import measured
-from app.stage.playback_source import Shown
-from app.translation import tr, translated
-from app.widgets.request_menu import STAGE, kind_of, request_words
+from app.look.shortening import measure_font
+from app.stage.playback_source import ShownPlayback
+from app.translation import lazy_texts, tr
+from app.widgets.request_menu import STAGE, ask_kind, describe_request
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest
 from metagraph.graph.timeline_edits import lane_of
 from metagraph.playback.plan import Cue
-from metagraph.playback.planning.extend_performance import Answer
+from metagraph.playback.planning.extend_performance import AskAnswer
 
 LEFT, RULER, LANE = 84, 28, 104
 NUMBERS = 16  # pixels of the ruler that are its numbers'; the strip below is the range's and the markers'
@@ -29,7 +29,7 @@ PLAYS = 34.0  # pixels at most for what plays in a lane; the rest is for what wa
 ROW, TALLEST = 19.0, 22.0  # pixels of a row of requests, at least and at most
 STEPS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0)
 NAMES = (STAGE, *LAYERS)
-TITLES = translated(
+TITLES = lazy_texts(
     lambda: {
         "cameras": tr("Cameras"),
         STAGE: tr("Speech"),
@@ -46,7 +46,7 @@ NARROWEST = 6.0  # pixels of a mark that others leave no room
 
 
 @dataclass(frozen=True)
-class Scale:
+class LaneScale:
     """Seconds to pixels: `first` seconds stand at the left of the lanes, `each` pixels a second."""
 
     first: float
@@ -94,7 +94,7 @@ class Sizes:
         """Return the sizes with which a lane ends at `bottom`, in a widget `whole` pixels high."""
         fixed = self.fixed(name)
         if fixed is not None:
-            top = lanes(whole, self)[name].top()
+            top = place_lanes(whole, self)[name].top()
             return self.with_factor(name, (bottom - top) * self.factor(name) / fixed)
         names = self.names
         before, room = names[: names.index(name)], whole - RULER - sum(self.fixed(n) or 0.0 for n in names)
@@ -118,7 +118,7 @@ class Sizes:
 EVEN = Sizes()
 
 
-def lanes(height: float, sizes: Sizes = EVEN) -> dict[str, QRectF]:
+def place_lanes(height: float, sizes: Sizes = EVEN) -> dict[str, QRectF]:
     """Return where each lane is, from the top: the stage, then the layers, with what is shown besides."""
     names, whole = sizes.names, sum(sizes.factor(n) for n in NAMES)
     room = height - RULER - sum(sizes.fixed(n) or 0.0 for n in names)
@@ -132,7 +132,7 @@ def lanes(height: float, sizes: Sizes = EVEN) -> dict[str, QRectF]:
     return out
 
 
-def rows(lane: QRectF) -> tuple[QRectF, QRectF]:
+def split_lane(lane: QRectF) -> tuple[QRectF, QRectF]:
     """Return a lane's upper row, what was asked, and its lower, what plays."""
     lower = min(PLAYS, lane.height() * 0.5)
     upper = lane.height() - lower
@@ -143,24 +143,24 @@ def rows(lane: QRectF) -> tuple[QRectF, QRectF]:
 
 def lane_at(height: float, at: QPointF, sizes: Sizes = EVEN) -> str | None:
     """Return the lane under a point."""
-    places = lanes(height, sizes)
+    places = place_lanes(height, sizes)
     return next((name for name, lane in places.items() if at.x() >= LEFT and lane.contains(at)), None)
 
 
 def cue_at(
-    shown: Shown, scale: Scale, height: float, at: QPointF, sizes: Sizes = EVEN
+    shown: ShownPlayback, scale: LaneScale, height: float, at: QPointF, sizes: Sizes = EVEN
 ) -> tuple[Layer, Cue] | None:
     """Return the cue under a point."""
     seconds = scale.seconds(at.x())
     for layer in LAYERS:
-        if at.x() >= LEFT and rows(lanes(height, sizes)[layer])[1].contains(at):
+        if at.x() >= LEFT and split_lane(place_lanes(height, sizes)[layer])[1].contains(at):
             cue = shown.plan.layers[layer].cue_at(seconds)
             return (layer, cue) if cue is not None else None
     return None
 
 
 @dataclass(frozen=True)
-class Mark:
+class RequestMark:
     """An ask as it is drawn. at: the seconds it asks for. lost: it will not play. late: by how many
     seconds.
     """
@@ -170,7 +170,7 @@ class Mark:
     words: str
     kind: str | None
     at: float
-    answer: Answer | None
+    answer: AskAnswer | None
 
     @property
     def lost(self) -> bool:
@@ -183,12 +183,12 @@ class Mark:
         return max(0.0, self.answer.at - self.at)
 
 
-def is_lost(answer: Answer | None) -> bool:
+def is_lost(answer: AskAnswer | None) -> bool:
     """Whether an ask will not play."""
     return answer is not None and answer.state == "refused"
 
 
-def time_of(ask: AnyRequest, answer: Answer | None) -> float:
+def time_of(ask: AnyRequest, answer: AskAnswer | None) -> float:
     """Return when an ask stands in the timeline: when it was wanted, else when it plays."""
     stroke = getattr(ask, "stroke", None)
     if stroke is not None:
@@ -200,30 +200,30 @@ def time_of(ask: AnyRequest, answer: Answer | None) -> float:
     return answer.at if answer is not None and answer.at is not None else 0.0
 
 
-def marks(
+def place_marks(
     asks: Sequence[AnyRequest],
-    answers: Mapping[str, Answer],
+    answers: Mapping[str, AskAnswer],
     project: Project,
-    scale: Scale,
+    scale: LaneScale,
     height: float,
     font: QFont,
     shift: Mapping[str, float] | None = None,
     sizes: Sizes = EVEN,
-) -> list[Mark]:
+) -> list[RequestMark]:
     """Return what stands in the upper rows, the later on top. shift: seconds by which some are being
     dragged.
     """
-    places, key = lanes(height, sizes), font.toString()
-    areas = {name: rows(places[name])[0] for name in NAMES}
+    places, key = place_lanes(height, sizes), font.toString()
+    areas = {name: split_lane(places[name])[0] for name in NAMES}
     counts = {name: max(1, int((area.height() + 1) // ROW)) for name, area in areas.items()}
     lasts: dict[tuple[str, int], int] = {}  # of each row its last mark, by its place in `out`
-    out: list[Mark] = []
+    out: list[RequestMark] = []
     timed = sorted(
         ((time_of(x, answers.get(x.id)) + (shift or {}).get(x.id, 0.0), n, x) for n, x in enumerate(asks)),
         key=lambda t: t[:2],
     )
     for at, _, ask in timed:
-        lane, words, left = lane_of(ask, project), request_words(ask, project), scale.x(at)
+        lane, words, left = lane_of(ask, project), describe_request(ask, project), scale.x(at)
         area, count = areas[lane], counts[lane]
         tall = min(TALLEST, (area.height() + 1) / count - 1)
         ends = [out[lasts[lane, n]].rect.right() if (lane, n) in lasts else -1e9 for n in range(count)]
@@ -239,21 +239,21 @@ def marks(
             area.top() + row * (tall + 1),
             max(
                 NARROWEST,
-                min(260.0, advance(f"⚠ {words}" if is_lost(answers.get(ask.id)) else words, key) + 16),
+                min(260.0, text_width(f"⚠ {words}" if is_lost(answers.get(ask.id)) else words, key) + 16),
             ),
             tall,
         )
         lasts[lane, row] = len(out)
-        out.append(Mark(ask, rect, words, kind_of(ask), at, answers.get(ask.id)))
+        out.append(RequestMark(ask, rect, words, ask_kind(ask), at, answers.get(ask.id)))
     return out
 
 
-def mark_at(found: Sequence[Mark], at: QPointF) -> Mark | None:
+def mark_at(found: Sequence[RequestMark], at: QPointF) -> RequestMark | None:
     """Return the mark under a point, the topmost of several."""
     return next((m for m in reversed(found) if m.rect.contains(at) and at.x() >= LEFT), None)
 
 
-VERBS = translated(
+VERBS = lazy_texts(
     lambda: {
         "say": tr("Said"),
         "look": tr("Looks"),
@@ -265,7 +265,7 @@ VERBS = translated(
 )
 
 
-def outcome(ask: AnyRequest, answer: Answer | None) -> str:
+def describe_outcome(ask: AnyRequest, answer: AskAnswer | None) -> str:
     """Return in one sentence what becomes of an ask; nothing while it is not known."""
     if answer is None:
         return ""
@@ -283,7 +283,7 @@ def outcome(ask: AnyRequest, answer: Answer | None) -> str:
     return f"{out}{f': {why}' if why else ''}."
 
 
-def wanted(mark: Mark) -> str:
+def describe_wanted(mark: RequestMark) -> str:
     """Return what was asked for, and when."""
     when = (
         tr("at {seconds:.2f} s", seconds=mark.at)
@@ -295,21 +295,21 @@ def wanted(mark: Mark) -> str:
     )
 
 
-def told(mark: Mark, editable: bool = True) -> str:
+def describe_mark(mark: RequestMark, editable: bool = True) -> str:
     """Return what to say about a mark: what was asked, what came of it, or why nothing did."""
-    lines = [wanted(mark), outcome(mark.ask, mark.answer)]
+    lines = [describe_wanted(mark), describe_outcome(mark.ask, mark.answer)]
     if editable:
         lines.append(tr("Drag it in time, with Ctrl a copy; double-click changes it; Delete takes it back"))
     return "\n".join(x for x in lines if x)
 
 
 @lru_cache(maxsize=8192)
-def advance(words: str, font: str) -> float:
+def text_width(words: str, font: str) -> float:
     """Return how wide words are in a font, given as `QFont.toString` does."""
-    return measured(font).horizontalAdvance(words)
+    return measure_font(font).horizontalAdvance(words)
 
 
 @lru_cache(maxsize=8192)
-def elided(text: str, font: str, width: int) -> str:
+def elide_text(text: str, font: str, width: int) -> str:
     """Return as much of a text as there is room for, from its beginning."""
-    return measured(font).elidedText(text, Qt.TextElideMode.ElideRight, width)
+    return measure_font(font).elidedText(text, Qt.TextElideMode.ElideRight, width)

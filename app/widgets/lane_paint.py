@@ -11,22 +11,22 @@ from dataclasses import dataclass
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
 
-from app.look.names import node_names, plain
-from app.look.shortening import chipped, fitted
-from app.look.theme import KIND_MARKS, Theme
-from app.stage.playback_source import Shown
+from app.look.names import node_names, plain_action_name
+from app.look.shortening import shorten_to_font, shorten_to_lines_in_font
+from app.look.theme import KIND_MARKS, WindowTheme
+from app.stage.playback_source import ShownPlayback
 from app.widgets.lane_geometry import (
     EVEN,
     LEFT,
     NUMBERS,
     RULER,
     TITLES,
-    Mark,
-    Scale,
+    LaneScale,
+    RequestMark,
     Sizes,
-    elided,
-    lanes,
-    rows,
+    elide_text,
+    place_lanes,
+    split_lane,
 )
 from app.widgets.request_menu import STAGE
 from metagraph.graph.model import LAYERS, Action, Layer, Project
@@ -44,9 +44,9 @@ class LaneScene:
     selected. locked: lanes whose requests are not to be moved.
     """
 
-    shown: Shown
-    marks: Sequence[Mark]
-    scale: Scale
+    shown: ShownPlayback
+    marks: Sequence[RequestMark]
+    scale: LaneScale
     width: float
     height: float
     layer: str
@@ -57,10 +57,10 @@ class LaneScene:
     locked: Collection[str] = ()
 
     def lanes(self) -> dict[str, QRectF]:
-        return lanes(self.height, self.sizes)
+        return place_lanes(self.height, self.sizes)
 
 
-def paint(painter: QPainter, t: Theme, scene: LaneScene) -> None:
+def paint_lane_scene(painter: QPainter, t: WindowTheme, scene: LaneScene) -> None:
     """Paint everything but the playhead."""
     painter.fillRect(QRectF(0, 0, scene.width, scene.height), QColor(t.panel))
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -93,12 +93,12 @@ def paint(painter: QPainter, t: Theme, scene: LaneScene) -> None:
                 _mark(painter, t, mark, mark.ask.id in scene.asks, scene.width)
     else:
         entry = scene.shown.project.clips[scene.shown.clip]
-        area = rows(scene.lanes()["body"])[1]
+        area = split_lane(scene.lanes()["body"])[1]
         rect = QRectF(
             scene.scale.x(0), area.top(), max(2.0, entry.duration * scene.scale.each), area.height()
         )
         inner = _bar(painter, t, rect, QColor(t.line), False, scene.width)
-        _chip(painter, t.text, inner, "", plain(entry.name))
+        _chip(painter, t.text, inner, "", plain_action_name(entry.name))
     if scene.ends is not None and (x := scene.scale.x(scene.ends)) < scene.width:
         veil = QColor(t.ground)
         veil.setAlpha(150)
@@ -106,7 +106,7 @@ def paint(painter: QPainter, t: Theme, scene: LaneScene) -> None:
     painter.setClipping(False)
 
 
-def playhead(painter: QPainter, t: Theme, x: float, height: float) -> None:
+def paint_playhead(painter: QPainter, t: WindowTheme, x: float, height: float) -> None:
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     painter.setPen(QPen(QColor(t.text), 1.6))
     painter.drawLine(QPointF(x, 4), QPointF(x, height))
@@ -115,7 +115,7 @@ def playhead(painter: QPainter, t: Theme, x: float, height: float) -> None:
     painter.drawPolygon([QPointF(x - 5, 4), QPointF(x + 5, 4), QPointF(x, 11)])
 
 
-def badge(painter: QPainter, t: Theme, at: QPointF, words: str, width: float) -> None:
+def paint_badge(painter: QPainter, t: WindowTheme, at: QPointF, words: str, width: float) -> None:
     """Paint words at the ruler while something is dragged, its middle at `at`, always in sight."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     wide = painter.fontMetrics().horizontalAdvance(words) + 14
@@ -127,7 +127,7 @@ def badge(painter: QPainter, t: Theme, at: QPointF, words: str, width: float) ->
     painter.drawText(rect, Qt.AlignmentFlag.AlignCenter, words)
 
 
-def _ruler(painter: QPainter, t: Theme, scene: LaneScene) -> None:
+def _ruler(painter: QPainter, t: WindowTheme, scene: LaneScene) -> None:
     scale = scene.scale
     step = scale.step()
     mark = max(0.0, (scale.first // step) * step)
@@ -140,10 +140,10 @@ def _ruler(painter: QPainter, t: Theme, scene: LaneScene) -> None:
         mark = round(mark + step, 3)
 
 
-def _stage(painter: QPainter, t: Theme, scene: LaneScene) -> None:
+def _stage(painter: QPainter, t: WindowTheme, scene: LaneScene) -> None:
     """Speech as bars with its words, looks as lines under them."""
     scale, shown = scene.scale, scene.shown
-    area, track = rows(scene.lanes()[STAGE])[1], shown.plan.track
+    area, track = split_lane(scene.lanes()[STAGE])[1], shown.plan.track
     for look, following in zip(track.looks, (*track.looks[1:], None), strict=False):
         until = min(look.end, following.start if following else look.end, max(shown.length, look.start))
         left, right = scale.x(look.start), scale.x(until)
@@ -162,10 +162,10 @@ def _stage(painter: QPainter, t: Theme, scene: LaneScene) -> None:
                 painter.drawText(inner, MIDDLE, _fitting(painter, speech.text, inner.width()))
 
 
-def _layer(painter: QPainter, t: Theme, scene: LaneScene, layer: Layer) -> None:
+def _layer(painter: QPainter, t: WindowTheme, scene: LaneScene, layer: Layer) -> None:
     """Stances as a quiet band, cues on it in their kind's colour."""
     scale, shown = scene.scale, scene.shown
-    plan, area = shown.plan.layers[layer], rows(scene.lanes()[layer])[1]
+    plan, area = shown.plan.layers[layer], split_lane(scene.lanes()[layer])[1]
     begin, end = scale.first, scale.seconds(scene.width)
     edges = [
         plan.past.free,
@@ -188,7 +188,7 @@ def _layer(painter: QPainter, t: Theme, scene: LaneScene, layer: Layer) -> None:
         _bar(painter, t, rect, fill, False)
         if found is not None:
             _in_the_clear(painter, t, rect, found.name, scene.width, spans)
-    names = [cue_words(shown.project, c.action) for c in cues]
+    names = [describe_cue(shown.project, c.action) for c in cues]
     beside = tuple(sorted(set(names)))
     for cue, name, (left, right) in zip(cues, names, spans, strict=True):
         rect = QRectF(left, area.top(), right - left, area.height())
@@ -199,7 +199,7 @@ def _layer(painter: QPainter, t: Theme, scene: LaneScene, layer: Layer) -> None:
 
 def _in_the_clear(
     painter: QPainter,
-    t: Theme,
+    t: WindowTheme,
     rect: QRectF,
     words: str,
     width: float,
@@ -220,19 +220,19 @@ def _in_the_clear(
     inner = QRectF(found[0] + 7, rect.top(), found[1] - found[0] - 10, rect.height())
     if inner.width() > 10:
         painter.setPen(QColor(t.text))
-        out = fitted(words, int(inner.width()), painter.font().toString())
+        out = shorten_to_font(words, int(inner.width()), painter.font().toString())
         if len(out) > 4 or out == words:
             painter.drawText(inner, MIDDLE, out)
 
 
-def cue_words(project: Project, action: Action) -> str:
+def describe_cue(project: Project, action: Action) -> str:
     """Return what tells an action from the others of its node; its stance stands on the band behind it."""
     names = node_names(project, action.layer, action.stance, action.kind)
-    return names.get(action.id) or plain(action.name)
+    return names.get(action.id) or plain_action_name(action.name)
 
 
 def _bar(
-    painter: QPainter, t: Theme, rect: QRectF, fill: QColor, selected: bool, width: float = 1e6
+    painter: QPainter, t: WindowTheme, rect: QRectF, fill: QColor, selected: bool, width: float = 1e6
 ) -> QRectF:
     """Paint a bar; return where in it words have room, empty where they have none."""
     if rect.width() <= PLAIN and not selected:
@@ -259,7 +259,11 @@ def _chip(
     tall = QFontMetricsF(small).height() - 1
     for font, lines in ((normal, 1), (small, max(1, int(room.height() / tall)))):
         others = beside if font is small else ()
-        shown = chipped(words, int(room.width()), lines, font.toString(), others) if room.width() > 0 else ()
+        shown = (
+            shorten_to_lines_in_font(words, int(room.width()), lines, font.toString(), others)
+            if room.width() > 0
+            else ()
+        )
         if shown and (font is small or shown == (words,)):
             break
     if sign and inner.width() >= lead - 4:
@@ -274,11 +278,11 @@ def _chip(
 
 def _fitting(painter: QPainter, words: str, width: float) -> str:
     """Return as much of the words as there is room for; hardly any, the sign in front of them alone."""
-    out = elided(words, painter.font().toString(), int(width))
+    out = elide_text(words, painter.font().toString(), int(width))
     return out if len(out) > 3 or out == words else words[:1]
 
 
-def _ties(painter: QPainter, t: Theme, scene: LaneScene) -> None:
+def _ties(painter: QPainter, t: WindowTheme, scene: LaneScene) -> None:
     """Lead from each request down to what plays for it."""
     painter.setPen(QPen(QColor(t.dim), 1.2))
     places = scene.lanes()
@@ -289,10 +293,10 @@ def _ties(painter: QPainter, t: Theme, scene: LaneScene) -> None:
         if to < LEFT or x > scene.width:
             continue
         lane = next(r for r in places.values() if r.contains(QPointF(1, mark.rect.center().y())))
-        painter.drawLine(QPointF(x, mark.rect.bottom()), QPointF(to, rows(lane)[1].top()))
+        painter.drawLine(QPointF(x, mark.rect.bottom()), QPointF(to, split_lane(lane)[1].top()))
 
 
-def _mark(painter: QPainter, t: Theme, mark: Mark, selected: bool, width: float) -> None:
+def _mark(painter: QPainter, t: WindowTheme, mark: RequestMark, selected: bool, width: float) -> None:
     color = QColor(t.warning) if mark.lost else t.kind(mark.kind) if mark.kind else QColor(t.dim)
     if mark.rect.width() <= NARROW and not selected:
         painter.fillRect(mark.rect.adjusted(0, 1, -1, -1), color)

@@ -47,7 +47,7 @@ class MaskWeights:
         """Let weights rise over so many joints where the mask begins (`anatomy.soft_edge`)."""
         skeleton = self._project.skeleton
         if skeleton is not None:
-            self.change(anatomy.soft_edge(skeleton, anatomy.parts(self._project), self._now, over))
+            self.change(anatomy.soft_edge(skeleton, anatomy.project_parts(self._project), self._now, over))
 
     def undo(self) -> None:
         if self._done:
@@ -62,7 +62,7 @@ class MaskWeights:
     def fields(self) -> dict[str, Any]:
         """Return an action's, or state's, fields that say this."""
         skeleton = self._project.skeleton
-        return anatomy.masked_by(skeleton, self._now) if skeleton is not None else {}
+        return anatomy.as_joint_mask(skeleton, self._now) if skeleton is not None else {}
 
     @property
     def empty(self) -> bool:

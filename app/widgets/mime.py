@@ -9,9 +9,9 @@ from PySide6.QtCore import QMimeData, QRectF, Qt
 from PySide6.QtGui import QFontMetricsF, QImage, QPainter, QPixmap
 from PySide6.QtWidgets import QWidget
 
-from app.look.shortening import fitting
+from app.look.shortening import shorten_middle
 from app.project.load import ANNOTATIONS, Load
-from app.project.speech_files import kinds_of
+from app.project.speech_files import sort_speech_files
 from metagraph.formats.clip_readers import clip_suffixes
 
 PICTURE, WIDEST = 84, 200.0  # pixels of what is carried: its picture, its name
@@ -19,7 +19,7 @@ CLIPS = "application/x-metagraph-clips"
 ACTIONS = "application/x-metagraph-actions"
 
 
-def mime(clips: Sequence[str] = (), actions: Sequence[str] = ()) -> QMimeData:
+def make_mime(clips: Sequence[str] = (), actions: Sequence[str] = ()) -> QMimeData:
     """Return what a drag of clips or actions carries."""
     out = QMimeData()
     if clips:
@@ -44,7 +44,7 @@ def sounds_of(data: QMimeData) -> tuple[Path, ...]:
     """Return the sounds that mime data carries, and their transcripts after them; nothing where no sound is
     among them.
     """
-    sounds, transcripts = kinds_of([Path(u.toLocalFile()) for u in data.urls() if u.isLocalFile()])
+    sounds, transcripts = sort_speech_files([Path(u.toLocalFile()) for u in data.urls() if u.isLocalFile()])
     return (*sounds, *transcripts) if sounds else ()
 
 
@@ -52,7 +52,7 @@ def drag_picture(text: str, widget: QWidget, picture: QImage | None = None) -> Q
     """Return what is carried under the pointer: a card with a picture, where there is one, over a name."""
     metrics = QFontMetricsF(widget.font())
     ratio = widget.devicePixelRatioF()
-    text = fitting(text, WIDEST, metrics.horizontalAdvance)
+    text = shorten_middle(text, WIDEST, metrics.horizontalAdvance)
     wide = max(metrics.horizontalAdvance(text) + 24, PICTURE + 16 if picture is not None else 0)
     high = 28 + (PICTURE if picture is not None else 0)
     out = QPixmap(round(wide * ratio), round(high * ratio))

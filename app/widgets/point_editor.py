@@ -17,11 +17,11 @@ from PySide6.QtWidgets import (
 )
 
 from app.project.document import Document
-from app.translation import tr, translated
+from app.translation import lazy_texts, tr
 from app.widgets.quiet_fields import DoubleSpinBox
 from metagraph.graph.editing import performances as performance_edits
 
-AXES = translated(
+AXES = lazy_texts(
     lambda: (
         (tr("To its left"), tr("Metres to the character's left; to its right below 0")),
         (tr("Up"), tr("Metres above the floor")),

@@ -11,9 +11,9 @@ from PySide6.QtWidgets import QInputDialog, QMenu, QWidget
 
 from app.look.theme import KIND_MARKS
 from app.project.document import Document
-from app.stage.performance import Performance
-from app.translation import tr, tr_noop, translated
-from app.widgets.vocabulary import titled, word
+from app.stage.performance import StagePerformance
+from app.translation import lazy_texts, tr, tr_noop
+from app.widgets.vocabulary import vocabulary_title, vocabulary_word
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, MODES, Layer, Project
 from metagraph.graph.words import FEELINGS
@@ -25,14 +25,14 @@ DIRECTIONS = {
     tr_noop("Up"): (0.0, 2.4, 1.0),
     tr_noop("Down"): (0.0, 0.6, 1.0),
 }
-MOOD_WORDS = {name: titled(name) for name in FEELINGS}
-MODE_WORDS = translated(lambda: {"idle": tr("Idle"), "listening": tr("Listen"), "talking": tr("Talk")})
-MODE_ASKED = translated(
+MOOD_WORDS = {name: vocabulary_title(name) for name in FEELINGS}
+MODE_WORDS = lazy_texts(lambda: {"idle": tr("Idle"), "listening": tr("Listen"), "talking": tr("Talk")})
+MODE_ASKED = lazy_texts(
     lambda: {"idle": tr("idle"), "listening": tr("listen"), "talking": tr("talk")}
 )  # within a sentence
 
 
-def kind_of(ask: a.AnyRequest) -> str | None:
+def ask_kind(ask: a.AnyRequest) -> str | None:
     """Return the kind an ask is coloured as, None for what no layer plays."""
     if isinstance(ask, a.Go | a.Change):
         return "transition"
@@ -41,13 +41,15 @@ def kind_of(ask: a.AnyRequest) -> str | None:
     return "gesture" if isinstance(ask, a.Gesture | a.Play | a.Nod | a.Shake) else None
 
 
-def request_words(ask: a.AnyRequest, project: Project) -> str:
+def describe_request(ask: a.AnyRequest, project: Project) -> str:
     """Return an ask in a few words: "▲ positive", "➜ on hips", "look at user"."""
     match ask:
         case a.Gesture() | a.Fidget():
             kind = "gesture" if isinstance(ask, a.Gesture) else "fidget"
-            limb = word(ask.limb) if ask.limb in ("left", "right") else ""
-            return f"{KIND_MARKS[kind]} {', '.join(x for x in (limb, *ask.tags) if x) or word(kind)}"
+            limb = vocabulary_word(ask.limb) if ask.limb in ("left", "right") else ""
+            return (
+                f"{KIND_MARKS[kind]} {', '.join(x for x in (limb, *ask.tags) if x) or vocabulary_word(kind)}"
+            )
         case a.Play():
             found = project.action(ask.action)
             return f"{KIND_MARKS[found.kind if found else 'gesture']} {found.name if found else ask.action}"
@@ -71,7 +73,7 @@ def request_words(ask: a.AnyRequest, project: Project) -> str:
         case a.Behave():
             return MODE_ASKED[ask.mode] if ask.mode else tr("as it comes")
         case a.Feel():
-            return mood_words(ask.mood, ask.intensity)
+            return describe_mood(ask.mood, ask.intensity)
         case a.Place():
             return tr("{name} moves", name=ask.name)
         case a.Blink():
@@ -81,11 +83,11 @@ def request_words(ask: a.AnyRequest, project: Project) -> str:
     return tr("withdraw")
 
 
-def mood_words(mood: a.MoodPoint, intensity: float | None) -> str:
+def describe_mood(mood: a.MoodPoint, intensity: float | None) -> str:
     """Return a mood in a few words: "sad", "sad × 1.5", "mood 0.3, -0.5"."""
     named = tr("mood")
     if isinstance(mood, str):
-        named = word(mood)
+        named = vocabulary_word(mood)
     elif mood:
         named = f"{named} {', '.join(f'{x:g}' for x in mood)}"
     return named if intensity is None else f"{named} × {intensity:g}"
@@ -94,8 +96,8 @@ def mood_words(mood: a.MoodPoint, intensity: float | None) -> str:
 Ask = Callable[[a.AnyRequest, str], object]
 
 
-def request_menu(
-    parent: QWidget, performance: Performance, seconds: float | None, lane: str | None = None
+def make_request_menu(
+    parent: QWidget, performance: StagePerformance, seconds: float | None, lane: str | None = None
 ) -> QMenu:
     """Return a menu of everything that can be asked for at a time (None: now), of one lane or all."""
     menu = QMenu(parent)
@@ -108,7 +110,7 @@ def request_menu(
     for layer in LAYERS:
         if lane not in (None, layer) or not project.graphs[layer].stances:
             continue
-        inner = menu if lane == layer else menu.addMenu(titled(layer))
+        inner = menu if lane == layer else menu.addMenu(vocabulary_title(layer))
         _layer_items(inner, project, layer, seconds, ask)
     if lane in (None, STAGE) and project.skeleton is not None:
         if lane is None:
@@ -179,7 +181,7 @@ def _stage_items(menu: QMenu, parent: QWidget, document: Document, at: float | N
     looks = menu.addMenu(tr("Look at"))
     for name in dict.fromkeys(("user", *project.points)):
         looks.addAction(
-            titled(name) if name == "user" else name,
+            vocabulary_title(name) if name == "user" else name,
             partial(ask, a.Look(to=name, at=at), tr("Ask for a look")),
         )
     looks.addAction(tr("Ahead"), lambda: ask(a.Look(to="ahead", at=at), tr("Ask for a look")))

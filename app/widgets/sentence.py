@@ -6,7 +6,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QLabel, QSizePolicy, QWidget
 
-from app.look.shortening import fitting
+from app.look.shortening import shorten_middle
 
 
 class OneLine(QLabel):
@@ -31,7 +31,7 @@ class OneLine(QLabel):
         self._fit()
 
     def _fit(self) -> None:
-        shown = fitting(self.words, max(1, self.width() - 2), self.fontMetrics().horizontalAdvance)
+        shown = shorten_middle(self.words, max(1, self.width() - 2), self.fontMetrics().horizontalAdvance)
         self.setText(shown)
         self.setToolTip("\n".join(x for x in (self.words if shown != self.words else "", self.more) if x))
         self.setAccessibleName(self.words)

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.translation import tr
 from metagraph.motion.clip import Clip
-from metagraph.motion.joint_names import HELPERS, take_apart
+from metagraph.motion.joint_names import HELPERS, split_joint_name
 
 YAW = np.radians(28)  # seen a little from the side
 
@@ -107,7 +107,9 @@ class _Seen:
         self.bones = [
             (j, int(p))
             for j, p in enumerate(skeleton.parents)
-            if p >= 0 and not (p == 0 and grounded) and not HELPERS & set(take_apart(skeleton.names[j]).words)
+            if p >= 0
+            and not (p == 0 and grounded)
+            and not HELPERS & set(split_joint_name(skeleton.names[j]).words)
         ]
         across = np.cos(YAW) * places[..., 0] + np.sin(YAW) * places[..., 2]
         drawn = sorted({j for bone in self.bones for j in bone}) or [0]

@@ -8,7 +8,7 @@ import pyqtgraph as pg
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QWidget
 
-from app.look.theme import Theme
+from app.look.theme import WindowTheme
 
 AXES = ("left", "bottom")
 
@@ -25,7 +25,7 @@ def still_plot(parent: QWidget) -> Any:
     return plot
 
 
-def empty_plot(plot: Any, look: Theme) -> None:
+def empty_plot(plot: Any, look: WindowTheme) -> None:
     """Take everything out of a plot, and give it the theme's colours."""
     plot.clear()
     plot.setBackground(look.panel)

@@ -34,7 +34,7 @@ class Envelope:
 
     def fill(self, first: int, values: Array, each: float = 1.0) -> None:
         """Fill bins from the `first` on from values `[N]`, `each` of them a bin; nan is nothing."""
-        self.put(first, *binned(values, each))
+        self.put(first, *bin_values(values, each))
 
     def put(self, first: int, lows: Array, highs: Array) -> None:
         """Fill bins from the `first` on with their least and greatest values `[N]`; quick, for the window's
@@ -90,7 +90,7 @@ class Envelope:
         return np.minimum(low[:-1], low[1:]), np.maximum(high[:-1], high[1:])
 
 
-def binned(values: Array, each: float = 1.0) -> tuple[Array, Array]:
+def bin_values(values: Array, each: float = 1.0) -> tuple[Array, Array]:
     """Return the least and greatest `[B]` of bins of `each` values `[N]`; nan is nothing. For a thread: it
     takes what the values take.
     """
@@ -103,7 +103,7 @@ def binned(values: Array, each: float = 1.0) -> tuple[Array, Array]:
     return lows, np.maximum.reduceat(np.where(np.isnan(values), -np.inf, values), starts)
 
 
-def joined(low: Array, high: Array, least: float) -> tuple[Array, Array]:
+def join_columns(low: Array, high: Array, least: float) -> tuple[Array, Array]:
     """Return columns `[W]` of y, downwards, made to touch the one before, where both are something, and at
     least so thick.
     """
@@ -118,7 +118,7 @@ def joined(low: Array, high: Array, least: float) -> tuple[Array, Array]:
     return top - thin, bottom + thin
 
 
-def painted(low: Array, high: Array, height: int, color: QColor) -> QImage:
+def paint_columns(low: Array, high: Array, height: int, color: QColor) -> QImage:
     """Return a picture of columns from `low` to `high` `[W]`, pixels from the top; nothing where low is
     greater.
     """

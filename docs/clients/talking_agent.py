@@ -12,7 +12,7 @@ import wave
 from websockets.sync.client import connect
 
 from metagraph.formats.store import open_project
-from metagraph.speech.text_gestures import gesture_requests, proposed, words_of
+from metagraph.speech.text_gestures import gesture_requests, propose_gestures, timed_words
 
 project = open_project(sys.argv[1]).project
 tags = {layer: {t for x in graph.actions.values() for t in x.tags} for layer, graph in project.graphs.items()}
@@ -36,6 +36,8 @@ with connect("ws://127.0.0.1:8765") as line:
             rate, samples = sound.getframerate(), sound.readframes(sound.getnframes())
         pieces = [base64.b64encode(samples[n : n + 40_000]).decode() for n in range(0, len(samples), 40_000)]
         told = [ask(do="say", id=said, audio=piece, rate=rate) for piece in pieces]
-        words = words_of(text, seconds=len(samples) / 2 / rate)
-        made = [ask(**request) for request in gesture_requests(proposed(words, tags), told[0]["at"], said)]
+        words = timed_words(text, seconds=len(samples) / 2 / rate)
+        made = [
+            ask(**request) for request in gesture_requests(propose_gestures(words, tags), told[0]["at"], said)
+        ]
         print(text, *(x.get("actions", x.get("why")) for x in made), sep="\n  ", flush=True)

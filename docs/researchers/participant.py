@@ -25,8 +25,8 @@ sys.path.insert(0, str(ROOT))
 from PySide6.QtCore import QPoint, QSettings  # noqa: E402
 from PySide6.QtTest import QTest  # noqa: E402
 
-from app.main import prepare  # noqa: E402
-from metagraph.research.study.machines.klm import predicted  # noqa: E402
+from app.main import prepare_application  # noqa: E402
+from metagraph.research.study.machines.klm import predict_seconds  # noqa: E402
 
 SIZES = (10, 20, 50, 100, 152)
 PROPOSED, BY_KEYS, ONE_BY_ONE = (
@@ -98,7 +98,7 @@ def looked_at(row: Mapping[str, Any]) -> dict[str, Any]:
     for name, count in LOOK.items():
         operators[name] += count * len(clips)
     every = sum(e.duration for e in clips)
-    times = {"hands": predicted(operators), "seconds": predicted({**operators, "L": every})}
+    times = {"hands": predict_seconds(operators), "seconds": predict_seconds({**operators, "L": every})}
     return {**row, "look": True, "operators": operators, **times}
 
 
@@ -107,8 +107,8 @@ def done(condition: str, clips: int, named: bool, look: bool) -> dict[str, Any]:
     from app.project.files import SAMPLE
     from metagraph.formats.store import open_project
     from metagraph.research.study.machines.by_hand import Way
-    from metagraph.research.study.machines.counted_drops import dropped
-    from metagraph.research.study.machines.counted_hand import searched, try_way
+    from metagraph.research.study.machines.counted_drops import label_by_drops
+    from metagraph.research.study.machines.counted_hand import search_ways, try_way
     from metagraph.research.study.machines.normal_machine import normal
     from metagraph.research.study.scores.machines import score
     from tests.app.expert import Expert, Reviewer, hidden, without_times
@@ -120,10 +120,10 @@ def done(condition: str, clips: int, named: bool, look: bool) -> dict[str, Any]:
     every = sum(e.duration for e in given.project.clips.values())
     counted: Any = None
     if condition == BEST and not named and clips > IN_WINDOW:
-        counted = searched(given.reference, named, look)[0]
+        counted = search_ways(given.reference, named, look)[0]
         row["counted"] = True
     elif condition == BY_KEYS:
-        counted = dropped(given.reference)
+        counted = label_by_drops(given.reference)
     elif condition in (FROM_ANY, EVERY):
         links: Any = "from any state" if condition == FROM_ANY else "one by one"
         counted = try_way(Way("one by one", links, "clicks", "each", named), given.reference)
@@ -136,13 +136,13 @@ def done(condition: str, clips: int, named: bool, look: bool) -> dict[str, Any]:
     bare(drive, given, "manual" if condition == BEST else "meta")
     began = time.process_time()
     if condition == BEST:
-        best = searched(given.reference, named)[0]
+        best = search_ways(given.reference, named)[0]
         row["way"], row["links"] = str(best.way), best.edges
         row["least"] = [w.cover.least for w in _works(given)]
         row["rectangles"] = [len(w.cover.rectangles) for w in _works(given)]
         row["tried"] = [
             [str(t.way), round(t.seconds, 1), t.edges, len(t.score.mistakes)]
-            for t in searched(given.reference, named)
+            for t in search_ways(given.reference, named)
         ]
         expert = Expert(drive, given)
         expert.act = lambda _: expert.draw(best.way, look)  # type: ignore[method-assign]
@@ -175,8 +175,8 @@ def told(operators: dict[str, float], looked: float, found: Any) -> dict[str, An
     """Return what a task took, and how right it is."""
     return {
         "operators": operators,
-        "hands": predicted(operators),
-        "seconds": predicted({**operators, "L": looked}),
+        "hands": predict_seconds(operators),
+        "seconds": predict_seconds({**operators, "L": looked}),
         "connections": found.right,
         "missing": found.missing,
         "mistakes": found.extra + found.wrong + sum(m.count for m in found.mistakes if m.what != "missing"),
@@ -344,7 +344,7 @@ def main(arguments: Sequence[str]) -> None:
     if "--anew" in arguments:
         kept.unlink(missing_ok=True)
     rows = [json.loads(line) for line in kept.read_text().splitlines()] if kept.is_file() else []
-    prepare()
+    prepare_application()
     for one in tasks(sizes):
         if any(key(r) == one for r in rows):
             continue

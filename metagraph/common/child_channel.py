@@ -10,12 +10,12 @@ import sys
 from contextlib import suppress
 from typing import IO
 
-from metagraph.common.programs import python, start
+from metagraph.common.programs import python_command, start
 
 _LENGTH = struct.Struct("<q")
 
 
-class Channel:
+class ChildChannel:
     """One end. Raises OSError where the other has ended. Sends and receives may be on threads of their
     own.
     """
@@ -46,13 +46,13 @@ class Channel:
         return content
 
 
-class Child(Channel):
+class Child(ChildChannel):
     """A module of ours that runs as a process until it is closed; the end of its parent ends it, too."""
 
     def __init__(self, module: str, *words: str) -> None:
         import subprocess
 
-        self.process = start(python(module, *words), stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        self.process = start(python_command(module, *words), stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         assert self.process.stdin is not None and self.process.stdout is not None
         super().__init__(self.process.stdout, self.process.stdin)
 
@@ -81,8 +81,8 @@ class Child(Channel):
             pipe.close()
 
 
-def parent() -> Channel:
+def connect_to_parent() -> ChildChannel:
     """Return, in the child, the way to its parent; what is printed goes to standard error from now on."""
     outgoing = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what libraries print is no message
-    return Channel(sys.stdin.buffer, outgoing)
+    return ChildChannel(sys.stdin.buffer, outgoing)

@@ -16,7 +16,7 @@ from threading import Lock
 from types import ModuleType
 from typing import Any
 
-from metagraph.common.programs import ROOT, is_own, run
+from metagraph.common.programs import ROOT, is_own, run_program
 
 NUMBA = "numba>=0.60"
 
@@ -27,19 +27,19 @@ class CompilerError(RuntimeError):
     """numba is not there and could not be installed; the message says what to do."""
 
 
-def there() -> bool:
+def is_numba_installed() -> bool:
     """Return whether numba is installed, without importing it."""
     return sys.modules.get("numba") is not None or find_spec("numba") is not None
 
 
-def compiler(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+def find_compiler(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     """Return a decorator that compiles a function as `numba.njit` does with these options, and keeps the
     result on disk where the user's own folder allows it. Installs numba (a minute, once) where it may. Raises
     CompilerError.
     """
-    if not there():
+    if not is_numba_installed():
         with _ONE:
-            if not there():
+            if not is_numba_installed():
                 _install()
     numba = _numba()
 
@@ -86,9 +86,11 @@ def _install() -> None:
         "Installing the compiler that new motion needs (60 MB to load, once) ...", file=sys.stderr, flush=True
     )
     retries = os.environ.get("PIP_RETRIES", "2")  # where there is no network that is told in seconds
-    code, words = run([sys.executable, "-I", str(setup), "install"], cwd=ROOT, env={"PIP_RETRIES": retries})
+    code, words = run_program(
+        [sys.executable, "-I", str(setup), "install"], cwd=ROOT, env={"PIP_RETRIES": retries}
+    )
     importlib.invalidate_caches()
-    if code != 0 or not there():
+    if code != 0 or not is_numba_installed():
         said = [line for line in words.splitlines() if "ERROR" in line] or ["nothing was said"]
         raise CompilerError(
             f"This needs numba, which could not be installed ({said[-1].strip()}). "

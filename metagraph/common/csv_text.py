@@ -20,19 +20,19 @@ def csv_text(rows: Iterable[Sequence[Any]], separator: str = ",") -> str:
     special = re.compile(f'[{re.escape(separator)}"\r\n]')  # `csv` leaves a lone "\r" without quotes
 
     def cell(value: Any) -> str:
-        text = "" if value is None else str(plain(value))
+        text = "" if value is None else str(escape_cell(value))
         return '"' + text.replace('"', '""') + '"' if special.search(text) else text
 
     return "".join(separator.join(map(cell, row)) + "\n" for row in rows)
 
 
-def plain(value: Any) -> Any:
+def escape_cell(value: Any) -> Any:
     """Return a cell that no spreadsheet reckons with."""
     if isinstance(value, str) and _FORMULA.match(value) and not _NUMBER.fullmatch(value):
         return f"'{value}"
     return value
 
 
-def restored(cell: str) -> str:
+def restore_cell(cell: str) -> str:
     """Return the text of a cell that `plain` may have changed."""
     return cell[1:] if _KEPT.match(cell) else cell

@@ -35,7 +35,7 @@ def file_stem(text: str, otherwise: str = "unnamed", most: int = NAME_BYTES) -> 
     return f"{first}_{dot}{rest}" if first.rstrip(" ").casefold() in _DEVICES else stem
 
 
-def folded(name: str) -> str:
+def fold_file_name(name: str) -> str:
     """Return what a name is to a system that does not tell capitals or accents' spelling apart."""
     return unicodedata.normalize("NFC", unicodedata.normalize("NFD", name).casefold())
 
@@ -49,9 +49,9 @@ def file_stems(texts: Iterable[str], otherwise: str = "unnamed") -> list[str]:
     for text in texts:
         stem = file_stem(text, otherwise)
         name, number = stem, 1
-        while folded(name) in taken:
+        while fold_file_name(name) in taken:
             number += 1
             name = f"{stem}-{number}"
-        taken.add(folded(name))
+        taken.add(fold_file_name(name))
         out.append(name)
     return out

@@ -61,24 +61,24 @@ def is_inside(path: Path, folder: Path) -> bool:
 
 
 @contextmanager
-def opened(path: str | Path, most: int) -> Iterator[BufferedReader]:
+def open_file(path: str | Path, most: int) -> Iterator[BufferedReader]:
     """Open a file of at most `most` bytes for reading. Raises FileError; so does reading it."""
     path = Path(path)
     try:
         file = _handle(path)
     except (OSError, ValueError) as error:
-        raise unreadable(path, error) from None
+        raise unreadable_error(path, error) from None
     try:
         with file:
             _checked(path, os.fstat(file.fileno()), most)
             yield file
     except OSError as error:
-        raise unreadable(path, error) from None
+        raise unreadable_error(path, error) from None
 
 
 def read_file(path: str | Path, most: int) -> bytes:
     """Return the bytes of a file of at most `most` bytes. Raises FileError."""
-    with opened(path, most) as file:
+    with open_file(path, most) as file:
         # As much as it says it has: a buffer for all it may have would cost as much.
         parts = [file.read(os.fstat(file.fileno()).st_size + 1)]
         size = len(parts[0])
@@ -92,11 +92,11 @@ def read_file(path: str | Path, most: int) -> bytes:
 
 def check_file(path: str | Path, most: int) -> Path:
     """Return the path of a file that a library will open. Raises FileError for what `opened` refuses."""
-    with opened(path, most):
+    with open_file(path, most):
         return Path(path)
 
 
-def unreadable(path: Path, error: OSError | ValueError) -> FileError:
+def unreadable_error(path: Path, error: OSError | ValueError) -> FileError:
     """Return the error that says why a file cannot be read."""
     words = (error.strerror or str(error)) if isinstance(error, OSError) else "its path is none"
     return FileError(path, phrase("cannot be read ({words})", words=words), phrase("on opening it"), _THERE)
@@ -131,7 +131,7 @@ def _too_large(path: Path, most: int) -> FileError:
     )
 
 
-def guarded(read: Callable[P, R]) -> Callable[P, R]:
+def guard_reader(read: Callable[P, R]) -> Callable[P, R]:
     """Make a reader, whose first argument is the file's path, raise FileError for whatever goes wrong in it.
 
     ValueError for arguments that are no file's fault must be raised before, outside.
@@ -147,12 +147,12 @@ def guarded(read: Callable[P, R]) -> Callable[P, R]:
             if strict:
                 raise
             path = args[0] if args else kwargs["path"]
-            raise unforeseen(path, error) from error  # type: ignore[arg-type]
+            raise unforeseen_error(path, error) from error  # type: ignore[arg-type]
 
     return safely
 
 
-def unforeseen(path: str | Path, error: Exception) -> FileError:
+def unforeseen_error(path: str | Path, error: Exception) -> FileError:
     """Return what to tell of a file on which a reader failed in a way that nobody foresaw."""
     if isinstance(error, FileError):
         return error
@@ -160,7 +160,7 @@ def unforeseen(path: str | Path, error: Exception) -> FileError:
         remedy = phrase("Close other programs, or split the file.")
         return FileError(path, phrase("there is not enough memory for it"), phrase("on reading it"), remedy)
     if isinstance(error, OSError):
-        return unreadable(Path(path), error)
+        return unreadable_error(Path(path), error)
     said = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
     remedy = phrase(
         "Export it again; if that does not help, report it with the file (docs/animators/safety.md)."

@@ -35,7 +35,7 @@ _ADDRESS = re.compile(r"[a-z][a-z0-9+.-]+:[\\/]", re.I)
 _allowed = [False]
 
 
-def reason(name: str, folder: Path | None = None) -> str | None:
+def explain_refusal(name: str, folder: Path | None = None) -> str | None:
     """Return why a file's name is not opened without asking, in words; None for an ordinary file.
 
     folder: where a relative name starts; then it is also known where `..` and links lead.
@@ -52,10 +52,10 @@ def reason(name: str, folder: Path | None = None) -> str | None:
         return ANOTHER
     if any(_DEVICES.fullmatch(part) for part in plain.split("/")):
         return DEVICE
-    return ANOTHER if folder is not None and leads_away(folder)(text) else None
+    return ANOTHER if folder is not None and make_escape_check(folder)(text) else None
 
 
-def leads_away(folder: Path) -> Callable[[str], bool]:
+def make_escape_check(folder: Path) -> Callable[[str], bool]:
     """Return what tells whether a name that starts in a folder leads, by `..` and links, to where systems
     reach other computers by themselves. Nothing there is looked at.
 
@@ -113,28 +113,28 @@ def is_allowed() -> bool:
     return _allowed[0]
 
 
-def refused(name: str, folder: Path | None = None) -> str | None:
+def find_refusal(name: str, folder: Path | None = None) -> str | None:
     """Return why a name that a file in a folder gives is not opened now; None where it may be."""
-    return None if _allowed[0] else reason(name, folder)
+    return None if _allowed[0] else explain_refusal(name, folder)
 
 
-def closed(name: str) -> str:
+def close_path(name: str) -> str:
     """Return a path that a file gives, or one that leads nowhere in its place where that is not allowed."""
-    return nowhere(name) if refused(name) is not None else name
+    return path_to_nowhere(name) if find_refusal(name) is not None else name
 
 
-def nowhere(name: str) -> str:
+def path_to_nowhere(name: str) -> str:
     """Return the path that leads nowhere in a name's place."""
     return f"{FOLDER}/_{quote(name, safe='')}"
 
 
-def original(name: str) -> str:
+def original_path(name: str) -> str:
     """Return what a closed path was; any other as it is."""
     if not name.startswith(f"{FOLDER}/_"):
         return name
     was = unquote(name.removeprefix(f"{FOLDER}/_"))
-    return was if nowhere(was) == name else name
+    return was if path_to_nowhere(was) == name else name
 
 
 def is_closed(name: str) -> bool:
-    return original(name) != name
+    return original_path(name) != name

@@ -60,12 +60,12 @@ def start(command: Sequence[str], **options: Any) -> subprocess.Popen[Any]:
 
     if not Path(command[0]).is_absolute():
         raise ValueError(f"the program '{command[0]}' has no folder: anybody's could be meant")
-    options["env"] = environment(options.get("env") or {})
+    options["env"] = program_environment(options.get("env") or {})
     options["cwd"] = options.get("cwd") or working_folder()
     return subprocess.Popen(command, **options)
 
 
-def run(command: Sequence[str], timeout: float | None = None, **options: Any) -> tuple[int, str]:
+def run_program(command: Sequence[str], timeout: float | None = None, **options: Any) -> tuple[int, str]:
     """Run a program to its end, as `start` does; return its exit status and all it said. Raises OSError, and
     TimeoutError where it took longer than `timeout` seconds.
     """
@@ -85,7 +85,7 @@ def run(command: Sequence[str], timeout: float | None = None, **options: Any) ->
     return process.returncode, said.decode("utf-8", "replace")
 
 
-def python(module: str, *words: str) -> list[str]:
+def python_command(module: str, *words: str) -> list[str]:
     """Return the command that runs a module of ours with this Python, whatever lies in the working folder or
     is said in PYTHON* variables.
     """
@@ -110,7 +110,7 @@ def _search_path() -> list[str]:
     return out
 
 
-def environment(more: dict[str, str] | None = None) -> dict[str, str]:
+def program_environment(more: dict[str, str] | None = None) -> dict[str, str]:
     """Return the variables that a program is given. more: others, which are ours."""
     out = {}
     for name, value in os.environ.items():
@@ -128,7 +128,7 @@ def _absolute(folders: str) -> list[str]:
     return [place for place in folders.split(os.pathsep) if Path(place).is_absolute()]
 
 
-def settle() -> None:
+def leave_working_folder() -> None:
     """Take the working folder out of PATH, in which Qt and libraries look for programs (`xdg-open`, `gcc`).
     For programs that begin; a library must leave its host's environment alone.
     """

@@ -11,27 +11,28 @@ from metagraph.common.xml_text import escape
 WIDTH = 640
 
 
-def number(value: float) -> str:
+def format_px(value: float) -> str:
     """Return a coordinate, the same on every machine."""
     return f"{value:.1f}".removesuffix(".0")
 
 
-def line(x1: float, y1: float, x2: float, y2: float, css: str = "") -> str:
+def svg_line(x1: float, y1: float, x2: float, y2: float, css: str = "") -> str:
     named = f" class='{css}'" if css else ""
-    return f"<line{named} x1='{number(x1)}' y1='{number(y1)}' x2='{number(x2)}' y2='{number(y2)}'/>"
-
-
-def dot(x: float, y: float, r: float) -> str:
-    return f"<circle cx='{number(x)}' cy='{number(y)}' r='{number(r)}'/>"
-
-
-def text(x: float, y: float, words: str, css: str, anchor: str) -> str:
     return (
-        f"<text class='{css}' x='{number(x)}' y='{number(y)}' text-anchor='{anchor}'>{escape(words)}</text>"
+        f"<line{named} x1='{format_px(x1)}' y1='{format_px(y1)}' x2='{format_px(x2)}' y2='{format_px(y2)}'/>"
     )
 
 
-def svg(height: float, parts: Sequence[str], title: str) -> str:
+def svg_dot(x: float, y: float, r: float) -> str:
+    return f"<circle cx='{format_px(x)}' cy='{format_px(y)}' r='{format_px(r)}'/>"
+
+
+def svg_text(x: float, y: float, words: str, css: str, anchor: str) -> str:
+    place = f"x='{format_px(x)}' y='{format_px(y)}' text-anchor='{anchor}'"
+    return f"<text class='{css}' {place}>{escape(words)}</text>"
+
+
+def svg_drawing(height: float, parts: Sequence[str], title: str) -> str:
     """Return a drawing WIDTH wide."""
-    shape = f"viewBox='0 0 {WIDTH} {number(height)}' role='img' aria-label='{escape(title, quote=True)}'"
+    shape = f"viewBox='0 0 {WIDTH} {format_px(height)}' role='img' aria-label='{escape(title, quote=True)}'"
     return f"<svg xmlns='http://www.w3.org/2000/svg' {shape}>{''.join(parts)}</svg>"

@@ -23,7 +23,7 @@ class Phrase(str):
 
     def __new__(cls, template: str, values: Mapping[str, Any], plural: str = "") -> Self:
         chosen = plural if plural and values["count"] != 1 else template
-        made = super().__new__(cls, fill(chosen, values))
+        made = super().__new__(cls, fill_template(chosen, values))
         made.template, made.values, made.plural = template, values, plural
         return made
 
@@ -69,7 +69,7 @@ def change_quoted(words: str, change: Callable[[str], str], quote: str = "'") ->
     return Phrase(words.template, values, words.plural)
 
 
-def fill(template: str, values: Mapping[str, Any]) -> str:
+def fill_template(template: str, values: Mapping[str, Any]) -> str:
     """Return a template with its values."""
     return template.format(**values) if values else template
 
@@ -86,4 +86,4 @@ def translate_phrase(
         name: translate_phrase(value, look_up, show) if isinstance(value, str) else show(value)
         for name, value in words.values.items()
     }
-    return fill(look_up(words), values)
+    return fill_template(look_up(words), values)

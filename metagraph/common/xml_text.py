@@ -25,7 +25,7 @@ def escape(text: str, quote: bool = True) -> str:
     return html.escape(xml_text(text), quote)
 
 
-def quoted(text: str) -> str:
+def quote_xml(text: str) -> str:
     """Return a text as the value of an attribute, with its quotes; line ends and tabs are kept."""
     kept = escape(text).replace("\n", "&#10;").replace("\t", "&#9;").replace("\r", "&#13;")
     return f'"{kept}"'

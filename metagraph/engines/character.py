@@ -22,13 +22,13 @@ import msgspec
 from metagraph.engines.reading import read_export
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Layer, Project
-from metagraph.graph.offered import offered, tools
+from metagraph.graph.offered import offered_requests, tools
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.life.line_timing import VisemeMark
 from metagraph.playback.life.streamed_voice import StreamedVoice
 from metagraph.playback.plan import Plan
-from metagraph.playback.planning.extend_performance import Answer, answer, answers
+from metagraph.playback.planning.extend_performance import AskAnswer, answer_ask, answer_asks
 from metagraph.playback.planning.running_plan import CUT, RunningPlan
 
 LEAP = 3600.0  # seconds an update may move on: all that lies between is planned
@@ -73,7 +73,7 @@ class Character:
         self._recent = recent
         self._queue: list[a.AnyRequest] = []
         self._asked: set[str] = set()  # ids that the plan can tell of
-        self._settled: dict[str, Answer] = {}  # answers of those it has forgotten or never heard of
+        self._settled: dict[str, AskAnswer] = {}  # answers of those it has forgotten or never heard of
         self._happened: list[Happening] = []
         self._sounds: dict[str, StreamedVoice] = {}  # of lines that are heard
         self._count = 0
@@ -98,7 +98,7 @@ class Character:
 
     def describe(self) -> dict[str, Any]:
         """Return what may be asked for, as plain data: see `metagraph.graph.offered.offered`."""
-        return offered(self.project, a.WORDS)
+        return offered_requests(self.project, a.WORDS)
 
     def tools(self) -> list[dict[str, Any]]:
         """Return what may be asked for as tools that a language model can call: see
@@ -163,10 +163,10 @@ class Character:
         return ask.id
 
     def _refuse(self, ident: str, why: str) -> str:
-        self._settle(Answer(ident, "refused", None, None, (), why))
+        self._settle(AskAnswer(ident, "refused", None, None, (), why))
         return ident
 
-    def _settle(self, final: Answer) -> None:
+    def _settle(self, final: AskAnswer) -> None:
         """Keep an answer that will not change any more."""
         self._asked.discard(final.id)
         self._settled.pop(final.id, None)
@@ -199,7 +199,7 @@ class Character:
         self._running.hear(self.now, self._queue)
         for ask in self._queue:
             if isinstance(ask, a.Withdraw):
-                self._settle(Answer(ask.id, "done", None, None, (), ""))
+                self._settle(AskAnswer(ask.id, "done", None, None, (), ""))
         self._queue = []
         if self._seen - self._cut >= CUT:  # what has begun and ended since then is still to be told
             self._cut = self._seen
@@ -207,9 +207,9 @@ class Character:
 
     def _forget(self, over: float) -> None:
         """Forget what is over, and settle the answers of what was asked for then."""
-        known = answers(self.plan, self._asked)
+        known = answer_asks(self.plan, self._asked)
         self._running.forget(over)
-        left = answers(self.plan, self._asked)
+        left = answer_asks(self.plan, self._asked)
         for ident, told in known.items():
             # What the plan no longer knows was played; so was a look without an end that another has
             # replaced.
@@ -246,15 +246,15 @@ class Character:
         happened, self._happened = self._happened, []
         return tuple(happened)
 
-    def answer(self, ident: str) -> Answer:
+    def answer(self, ident: str) -> AskAnswer:
         """Say what became of a request: when it plays, or why it does not."""
         if ident in self._settled:
             return self._settled[ident]
         if ident not in self._asked:
-            return Answer(ident, "refused", None, None, (), f"nothing was asked for as '{ident}'")
+            return AskAnswer(ident, "refused", None, None, (), f"nothing was asked for as '{ident}'")
         if any(ask.id == ident for ask in self._queue):
-            return Answer(ident, "planned", None, None, (), "taken up at the next update")
-        return answer(self.plan, ident)
+            return AskAnswer(ident, "planned", None, None, (), "taken up at the next update")
+        return answer_ask(self.plan, ident)
 
     def pose(self, alive: bool = True) -> Pose:
         """Return the pose at the time of the last update; alive: with the life layers."""

@@ -468,7 +468,7 @@ class Export(Struct, omit_defaults=True, forbid_unknown_fields=True):
     ] = None
 
 
-def schema() -> dict[str, Any]:
+def export_schema() -> dict[str, Any]:
     """Return the JSON Schema of an export."""
     out = msgspec.json.schema(Export)
     return {

@@ -21,9 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
-from metagraph.graph.expand import chain, connections, ends_in
+from metagraph.graph.expand import chain, find_end_stance, list_connections
 from metagraph.graph.model import LAYERS, REACH, Action, Layer, MetaGraph, Project
-from metagraph.motion.character_mesh import Character
+from metagraph.motion.character_mesh import CharacterMesh
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import unique_names
 from metagraph.playback.posing.layers import keep_to
@@ -32,7 +32,7 @@ Array = NDArray[Any]
 
 
 @dataclass(frozen=True, slots=True)
-class State:
+class EngineState:
     """An action as a state. number: from 1 on, unique in its layer. name: unique in the whole export,
     letters, digits and "_"; its animation bears it, too. seconds: how long it plays. loop: whether it repeats
     until something else is asked.
@@ -52,8 +52,8 @@ class Arrow:
     one of which must be set.
     """
 
-    source: State
-    target: State
+    source: EngineState
+    target: EngineState
     leave: float | None
     blend: float
     on: Literal["done", "action", "stance"]
@@ -66,7 +66,7 @@ class Machine:
 
     layer: Layer
     graph: MetaGraph
-    states: tuple[State, ...]
+    states: tuple[EngineState, ...]
     arrows: tuple[Arrow, ...]
     stances: Mapping[str, int]
     joints: tuple[str, ...]
@@ -80,18 +80,18 @@ class Machine:
             out[ident] = f"{word}_{number}" if word in out.values() else word
         return out
 
-    def hop(self, here: str, goal: str) -> State | None:
+    def hop(self, here: str, goal: str) -> EngineState | None:
         """Return the first transition of the shortest way between two stances, None where there is none."""
         way = chain(self.graph, here, goal)
         actions = (s for s in self.states if s.action.kind == "transition" and s.action.stance == here)
         return next((s for s in actions if s.action.end_stance == way[0]), None) if way else None
 
     @property
-    def start(self) -> State:
+    def start(self) -> EngineState:
         """The loop it begins in."""
         return self.rest(next(iter(self.stances)))
 
-    def rest(self, stance: str) -> State:
+    def rest(self, stance: str) -> EngineState:
         """Return the loop that plays of itself in a stance: the first that was placed."""
         return next(s for s in self.states if s.action.kind == "stance" and s.action.stance == stance)
 
@@ -120,7 +120,7 @@ def _word(name: str) -> str:
 def _playing(graph: MetaGraph) -> Iterator[Action]:
     """Yield the actions that can play: their stances have loops."""
     for action in graph.actions.values():
-        ends = ends_in(action)
+        ends = find_end_stance(action)
         if ends is not None and graph.of(action.stance, "stance") and graph.of(ends, "stance"):
             yield action
 
@@ -131,11 +131,13 @@ def _machine(project: Project, graph: MetaGraph, named: Mapping[str, str]) -> Ma
     if begin is None or project.skeleton is None:
         return None
     stances = {s: n for n, s in enumerate(sorted(resting, key=lambda s: s != begin))}
-    states: dict[str, State] = {}
+    states: dict[str, EngineState] = {}
     for number, action in enumerate(_playing(graph), 1):
         start, end = project.span(action)
-        states[action.id] = State(number, named[action.id], action, end - start, action.kind == "stance")
-    part = anatomy.parts(project)
+        states[action.id] = EngineState(
+            number, named[action.id], action, end - start, action.kind == "stance"
+        )
+    part = anatomy.project_parts(project)
     joints = tuple(
         n
         for n, p in zip(project.skeleton.names, part, strict=True)
@@ -146,7 +148,7 @@ def _machine(project: Project, graph: MetaGraph, named: Mapping[str, str]) -> Ma
     return replace(machine, arrows=arrows)
 
 
-def _arrows(project: Project, machine: Machine, states: Mapping[str, State]) -> Iterator[Arrow]:
+def _arrows(project: Project, machine: Machine, states: Mapping[str, EngineState]) -> Iterator[Arrow]:
     graph = machine.graph
     first: dict[tuple[str, str], str] = {}  # the transition that stands for all between two stances
     for state in states.values():
@@ -158,7 +160,7 @@ def _arrows(project: Project, machine: Machine, states: Mapping[str, State]) -> 
             way = chain(graph, here, goal)
             if way:
                 goals.setdefault((here, way[0]), []).append(number)
-    for row in connections(project, graph):
+    for row in list_connections(project, graph):
         if row.source not in states or row.target not in states:
             continue
         source, target = states[row.source], states[row.target]
@@ -187,9 +189,9 @@ def animations(project: Project, machines: tuple[Machine, ...]) -> list[Clip]:
     return [_animation(project, machine, state) for machine in machines for state in machine.states]
 
 
-def _animation(project: Project, machine: Machine, state: State) -> Clip:
+def _animation(project: Project, machine: Machine, state: EngineState) -> Clip:
     assert project.skeleton is not None
-    rest = machine.rest(ends_in(state.action) or "").action
+    rest = machine.rest(find_end_stance(state.action) or "").action
     loop, motion = project.clips[rest.clip].motion, project.clips[state.action.clip].motion
     playing = state.action if motion is not None else rest
     clip = motion if motion is not None else loop
@@ -200,7 +202,7 @@ def _animation(project: Project, machine: Machine, state: State) -> Clip:
     times = np.linspace(start, end, frames)
     pose = clip.pose_at(times)
     rotations, translations = np.array(pose.rotations), np.array(pose.translations)
-    mask = anatomy.mask(project, state.action)
+    mask = anatomy.action_mask(project, state.action)
     if mask is not None and loop is not None:
         stance = loop.pose_at(project.span(rest)[0])
         shape = rotations.shape[:-1]
@@ -216,7 +218,7 @@ def _animation(project: Project, machine: Machine, state: State) -> Clip:
 
 
 def write_machine_glb(
-    project: Project, machines: tuple[Machine, ...], path: Path, character: Character | None
+    project: Project, machines: tuple[Machine, ...], path: Path, character: CharacterMesh | None
 ) -> None:
     """Write the GLB engines' own state machines play: the joints' nodes stand in the base pose, against which
     additive layers are taken, and every state has an animation of its name. Raises FileError.

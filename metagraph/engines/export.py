@@ -12,23 +12,23 @@ import msgspec
 from metagraph import __version__
 from metagraph.common.budgets import SOUND_FILE
 from metagraph.common.file_names import file_stem, file_stems
-from metagraph.common.files import is_inside, read_file, unforeseen
+from metagraph.common.files import is_inside, read_file, unforeseen_error
 from metagraph.common.wording import phrase
 from metagraph.engines import contract as c
-from metagraph.engines.export_document import to_document, used_clips
+from metagraph.engines.export_document import list_used_clips, to_document
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets.placing import Staging
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.clips import digest
 from metagraph.formats.store import writable
-from metagraph.graph.check import check
-from metagraph.graph.face.curves import worn
+from metagraph.graph.check import check_project
+from metagraph.graph.face.curves import fit_curves_to_face
 from metagraph.graph.face.expression_presets import presets_of
 from metagraph.graph.model import (
     Project,
 )
-from metagraph.motion.character_mesh import Character, bound, no_character
+from metagraph.motion.character_mesh import CharacterMesh, bind_character, explain_no_character
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton, unique_names
 from metagraph.speech.sound import sound_ending
@@ -36,7 +36,7 @@ from metagraph.speech.sound import sound_ending
 Chosen = Callable[[Path], bool]
 
 
-def nothing_chosen(path: Path) -> bool:
+def choose_nothing(path: Path) -> bool:
     """Say of every file that the user did not choose it."""
     return False
 
@@ -52,12 +52,12 @@ class Exported:
     sounds: tuple[Path, ...] = ()
 
 
-def export(
+def export_project(
     project: Project,
     folder: str | Path,
     expanded: bool = False,
     mesh: bool = True,
-    character: Path | Character | None = None,
+    character: Path | CharacterMesh | None = None,
     progress: Callable[[int, int, str], None] | None = None,
     compress: bool = False,
 ) -> Exported:
@@ -67,10 +67,12 @@ def export(
     `character` is it, or its file. compress: pack the GLB, see `write_glb`. Raises ExportError while the
     project has errors, FileError when a file cannot be written.
     """
-    warnings = sound(project)
+    warnings = require_exportable(project)
     place = Path(folder)
     with Staging(place) as staged:
-        made = write(project, staged.path, expanded, character if mesh else None, progress, compress=compress)
+        made = write_project_files(
+            project, staged.path, expanded, character if mesh else None, progress, compress=compress
+        )
         names = [path.relative_to(staged.path).as_posix() for path in (made.glb, *made.sounds, made.json)]
         staged.move(names)
     return replace(
@@ -82,11 +84,11 @@ def export(
     )
 
 
-def sound(project: Project) -> tuple[str, ...]:
+def require_exportable(project: Project) -> tuple[str, ...]:
     """Return the warnings about a project that can be exported, in words. Raises ExportError with what must
     be mended first.
     """
-    problems = check(project)
+    problems = check_project(project)
     errors = [p for p in problems if p.severity == "error"]
     if errors:
         first, rest = errors[0], len(errors) - 1
@@ -106,14 +108,14 @@ def stem_of(project: Project) -> str:
     return file_stem(re.sub(r"[^\w.-]+", "_", project.name).strip("._"), "metagraph")
 
 
-def write(
+def write_project_files(
     project: Project,
     folder: str | Path,
     expanded: bool = False,
-    character: Path | Character | None = None,
+    character: Path | CharacterMesh | None = None,
     progress: Callable[[int, int, str], None] | None = None,
     base: Path | None = None,
-    chosen: Chosen = nothing_chosen,
+    chosen: Chosen = choose_nothing,
     compress: bool = False,
 ) -> Exported:
     """Write a project that has clips without asking whether it is sound. Arguments as for `export`. base: the
@@ -123,12 +125,12 @@ def write(
     project = writable(project)
     tell = progress or (lambda done, total, words: None)
     assert project.skeleton is not None
-    used = used_clips(project)
+    used = list_used_clips(project)
     stem, target = stem_of(project), Path(folder)
     glb, json = target / f"{stem}.glb", target / f"{stem}.json"
     names = unique_names([entry.name for entry in used])
     tell(0, 3, "clips")
-    clips = exported_clips(project)
+    clips = list_exported_clips(project)
     notes = _write_glb(glb, clips, project, character, compress)
     tell(1, 3, "graph")
     document = to_document(project, glb.name, names, expanded)
@@ -167,7 +169,7 @@ def _sounds(
                 read_file(source, SOUND_FILE) if line.channel is None else _channel(source, line.channel)
             )
         except Exception as error:  # one bad sound never spoils an export
-            missing.append(f"the sound of line '{ident}' is left out: {unforeseen(source, error)}")
+            missing.append(f"the sound of line '{ident}' is left out: {unforeseen_error(source, error)}")
             document.lines[ident] = msgspec.structs.replace(line, audio=None, channel=None)
             continue
         write_atomically(folder / inside, content)
@@ -196,7 +198,7 @@ def _write_glb(
     path: Path,
     clips: list[Clip],
     project: Project,
-    character: Path | Character | None,
+    character: Path | CharacterMesh | None,
     compress: bool,
 ) -> list[str]:
     """Write the GLB, without the meshes that are hidden; return what is not in it, in words."""
@@ -221,8 +223,8 @@ def _write_glb(
 
 
 def mesh_on(
-    skeleton: Skeleton, given: Path | Character | None, hidden: Collection[str] = ()
-) -> tuple[Character | None, list[str]]:
+    skeleton: Skeleton, given: Path | CharacterMesh | None, hidden: Collection[str] = ()
+) -> tuple[CharacterMesh | None, list[str]]:
     """Return the mesh that is written for clips of a skeleton, without the meshes that are hidden, and what
     there is to say about it. One of another skeleton is bound by the names of its joints, as the preview
     draws it, and left out where the preview does not draw it. Raises FileError.
@@ -234,7 +236,7 @@ def mesh_on(
         return None, []
     notes = []
     if body.skeleton != skeleton:
-        why = no_character(body, skeleton)
+        why = explain_no_character(body, skeleton)
         if why is not None:
             return None, [
                 f"the mesh of '{given.name}' is left out: it has another skeleton than the clips, and {why}"
@@ -245,25 +247,25 @@ def mesh_on(
             f"its joints, {there} of {len(body.skeleton)}"
             + ("; the others move with the joint above them" if there < len(body.skeleton) else "")
         )
-        body = bound(body, skeleton)
+        body = bind_character(body, skeleton)
     shown = body.without(hidden)
     return shown if len(shown.triangles) else None, notes
 
 
-def exported_clips(project: Project) -> list[Clip]:
+def list_exported_clips(project: Project) -> list[Clip]:
     """Return the motion of the clips that are written, by the names they are written with, with the curves
     that the face wears.
     """
-    used = [e for e in used_clips(project) if e.motion is not None]
-    names = unique_names([entry.name for entry in used_clips(project)])
+    used = [e for e in list_used_clips(project) if e.motion is not None]
+    names = unique_names([entry.name for entry in list_used_clips(project)])
     assert project.skeleton is not None
     return [
-        replace(worn(project, e.motion).renamed(name), skeleton=project.skeleton)
+        replace(fit_curves_to_face(project, e.motion).renamed(name), skeleton=project.skeleton)
         for e, name in zip(used, names, strict=True)
         if e.motion is not None
     ]
 
 
-def schema_text() -> bytes:
+def export_schema_text() -> bytes:
     """Return the published schema's text."""
-    return msgspec.json.format(msgspec.json.encode(c.schema()), indent=1) + b"\n"
+    return msgspec.json.format(msgspec.json.encode(c.export_schema()), indent=1) + b"\n"

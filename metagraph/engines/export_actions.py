@@ -7,8 +7,8 @@ from typing import Any
 from metagraph.engines import contract as c
 from metagraph.engines.export_contacts import contacts_of
 from metagraph.graph.model import MetaGraph, Project
-from metagraph.playback.planning.vigour import speed_within, vigours
-from metagraph.playback.timing.phases import phases_within
+from metagraph.playback.planning.vigour import mean_speed_within, vigours
+from metagraph.playback.timing.phases import find_phases_within
 
 NONE: list[Any] = []  # as most have it: an export is made to be written, and nothing is added to it
 
@@ -22,12 +22,15 @@ def actions_of(project: Project, graph: MetaGraph) -> list[c.ExportedAction]:
         timing, entry = action.timing, clips.get(action.clip)
         motion = entry.motion if entry is not None else None
         start, end = span(action)
-        if motion is not None and (speed := speed_within(project, action, motion, start, end)) is not None:
+        if (
+            motion is not None
+            and (speed := mean_speed_within(project, action, motion, start, end)) is not None
+        ):
             speeds[action.id] = speed
         phases: list[float] = NONE
         own_phases: list[float | None] = NONE
         if action.kind == "gesture":
-            found = phases_within(project, action, motion, start, end)
+            found = find_phases_within(project, action, motion, start, end)
             phases = [found.ready, found.stroke, found.stroke_end, found.relax]
             if not timing.ready is timing.stroke_end is timing.relax is None:
                 own_phases = [timing.ready, timing.stroke_end, timing.relax]

@@ -11,7 +11,7 @@ from metagraph.motion.contact_solve import BodyCapsule, ContactArm, ContactRig
 from metagraph.motion.contact_spans import ContactKey, ContactSpan
 from metagraph.motion.plain_vectors import Vector
 from metagraph.motion.skeleton import Skeleton
-from metagraph.playback.posing.contacts import matters
+from metagraph.playback.posing.contacts import has_contacts
 from metagraph.playback.posing.rigs import rigs_of
 
 
@@ -51,7 +51,7 @@ def read_contacts(contacts: Sequence[c.ExportedContact]) -> tuple[ContactSpan, .
 
 def contact_rig_of(project: Project) -> c.ExportedContactRig | None:
     """Return what runtimes need for contacts and the guard, None where neither does anything."""
-    rig = rigs_of(project).contacts if matters(project) else None
+    rig = rigs_of(project).contacts if has_contacts(project) else None
     if rig is None:
         return None
     return c.ExportedContactRig(
@@ -84,7 +84,7 @@ def read_contact_rig(rig: c.ExportedContactRig, skeleton: Skeleton) -> ContactRi
     )
     if not fits:
         raise DataError("$.contact_rig", "does not fit the joints")
-    arms = tuple(ContactArm(arm[0], arm[1], arm[2], below(rig.parents, arm[0])) for arm in rig.arms)
+    arms = tuple(ContactArm(arm[0], arm[1], arm[2], list_below(rig.parents, arm[0])) for arm in rig.arms)
     return ContactRig(
         tuple(rig.joints),
         tuple(rig.parents),
@@ -100,7 +100,7 @@ def read_contact_rig(rig: c.ExportedContactRig, skeleton: Skeleton) -> ContactRi
     )
 
 
-def below(parents: Sequence[int], place: int) -> tuple[int, ...]:
+def list_below(parents: Sequence[int], place: int) -> tuple[int, ...]:
     """Return a place and all below it, parents first."""
     out = [place]
     for n in range(place + 1, len(parents)):

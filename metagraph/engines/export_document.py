@@ -7,8 +7,8 @@ from typing import Any, Literal
 from metagraph.engines import contract as c
 from metagraph.engines.export_actions import NONE, actions_of
 from metagraph.engines.export_contacts import contact_rig_of
-from metagraph.engines.export_listing import ListedExport, listed
-from metagraph.engines.export_rig import rig_of, voices_of
+from metagraph.engines.export_listing import ListedExport, list_machine
+from metagraph.engines.export_rig import export_rig, list_export_voices
 from metagraph.engines.export_weight import arms_of, feet_of, weight_rig_of
 from metagraph.graph import anatomy
 from metagraph.graph.model import KINDS, LAYERS, REACH, ClipEntry, MetaGraph, Project, Settings
@@ -21,7 +21,7 @@ from metagraph.playback.timing.phase_times import LEAST_BLEND
 _SCALES: tuple[Literal["neither", "smaller", "both"], ...] = ("neither", "smaller", "both")
 
 
-def used_clips(project: Project) -> list[ClipEntry]:
+def list_used_clips(project: Project) -> list[ClipEntry]:
     """Return the clips that are placed, and the base pose's, in the project's order."""
     placed = {*project.uses, project.base.clip}
     return [e for e in project.clips.values() if e.id in placed]
@@ -33,7 +33,11 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
     """
     skeleton = project.skeleton
     assert skeleton is not None
-    parts, sides, scales = anatomy.parts(project), anatomy.sides(project), anatomy.scales(project)
+    parts, sides, scales = (
+        anatomy.project_parts(project),
+        anatomy.project_sides(project),
+        anatomy.scales(project),
+    )
     joints = [
         c.Joint(
             name,
@@ -63,7 +67,7 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
             arms.get(e.id, NONE),
             feet.get(e.id, NONE),
         )
-        for n, (e, name) in enumerate(zip(used_clips(project), names, strict=True))
+        for n, (e, name) in enumerate(zip(list_used_clips(project), names, strict=True))
     ]
     kind: type[Any] = ListedExport if expanded else c.Export
     out: c.Export = kind(
@@ -86,14 +90,16 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
         ),
         roles=dict(project.roles),
         parts=dict(project.parts),
-        expanded={layer: listed(project, project.graphs[layer]) for layer in LAYERS} if expanded else None,
+        expanded={layer: list_machine(project, project.graphs[layer]) for layer in LAYERS}
+        if expanded
+        else None,
         life=project.life,
         face=project.face,
         points=dict(project.points),
         lines=dict(project.lines),
         performances=dict(project.performances),
-        rig=rig_of(project),
-        voices=voices_of(project),
+        rig=export_rig(project),
+        voices=list_export_voices(project),
         touch=project.touch,
         contact_rig=contact_rig_of(project),
         weight_rig=weight_rig_of(project),

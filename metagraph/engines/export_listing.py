@@ -13,7 +13,7 @@ import msgspec
 from msgspec import Raw, Struct
 
 from metagraph.engines import contract as c
-from metagraph.graph.expand import fans
+from metagraph.graph.expand import list_fans
 from metagraph.graph.model import MetaGraph, Project
 
 
@@ -48,11 +48,11 @@ class _Numbers:
         return self.text[: self.begins[place]] + self.text[self.begins[place + 1] :]
 
 
-def listed(project: Project, graph: MetaGraph) -> ListedLayer:
+def list_machine(project: Project, graph: MetaGraph) -> ListedLayer:
     """Return a layer's machine: sources in the order they were placed, each with its targets."""
     sources, targets, leave, blend = (bytearray(b"[") for _ in range(4))
     texts: dict[str, tuple[_Numbers, _Numbers]] = {}
-    for fan in fans(project, graph):
+    for fan in list_fans(project, graph):
         node, itself = fan.node, fan.itself
         if node.stance not in texts:
             texts[node.stance] = _Numbers(node.targets), _Numbers(node.blends[node.loops :])

@@ -19,7 +19,7 @@ from metagraph.playback.posing.rigs import rigs_of
 STEPS = 1e4  # a mouth shape's weight is written in steps of this part of one
 
 
-def rig_of(project: Project) -> c.Rig | None:
+def export_rig(project: Project) -> c.Rig | None:
     """Return the resolved body of a project, None where nothing of it can live."""
     body = rigs_of(project).body
     if body.empty:
@@ -134,7 +134,7 @@ def _four(values: Sequence[float]) -> Quaternion:
     return x, y, z, w
 
 
-def voices_of(project: Project) -> dict[str, c.ExportedVoice]:
+def list_export_voices(project: Project) -> dict[str, c.ExportedVoice]:
     """Return the voices of a project's lines, as far as their sound was read."""
     return {
         line: _voice(voice)

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from metagraph.engines import contract as c
-from metagraph.engines.export_contacts import below
+from metagraph.engines.export_contacts import list_below
 from metagraph.formats.project.fields import DataError
 from metagraph.graph.model import Project
 from metagraph.motion.contact_solve import ContactArm, ContactRig
 from metagraph.motion.plain_vectors import Vector
 from metagraph.motion.skeleton import Skeleton
 from metagraph.motion.weight_solve import WeightBend, WeightCollar, WeightRig
-from metagraph.playback.posing.feet import moved_alone
+from metagraph.playback.posing.feet import moves_legs_alone
 from metagraph.playback.posing.rigs import rigs_of
-from metagraph.playback.posing.weight import Weight, foot_rows_of, plants, rows_of, sways
+from metagraph.playback.posing.weight import Weight, arm_track_rows, foot_rows_of, has_planted_feet, has_sway
 
 
 def weight_rig_of(project: Project) -> c.ExportedWeightRig | None:
@@ -45,7 +45,7 @@ def arms_of(project: Project) -> dict[str, list[list[int]]]:
     if weight.rig is None or not _sways(project, weight.rig):
         return {}
     clips = {action.clip for action in project.graphs["arms"].actions.values()}
-    return {clip: [[int(x) for x in row] for row in rows_of(weight, project, clip)] for clip in clips}
+    return {clip: [[int(x) for x in row] for row in arm_track_rows(weight, project, clip)] for clip in clips}
 
 
 def feet_of(project: Project) -> dict[str, list[list[int]]]:
@@ -58,11 +58,11 @@ def feet_of(project: Project) -> dict[str, list[list[int]]]:
 
 
 def _sways(project: Project, rig: WeightRig) -> bool:
-    return sways(project) and rig.strength > 0
+    return has_sway(project) and rig.strength > 0
 
 
 def _plants(project: Project, rig: WeightRig) -> bool:
-    return plants(project) and moved_alone(project, rig)
+    return has_planted_feet(project) and moves_legs_alone(project, rig)
 
 
 def read_weight(
@@ -89,7 +89,7 @@ def read_weight(
     )
     if not fits:
         raise DataError("$.weight_rig", "does not fit the joints")
-    legs = tuple(ContactArm(leg[0], leg[1], leg[2], below(rig.parents, leg[0])) for leg in rig.legs)
+    legs = tuple(ContactArm(leg[0], leg[1], leg[2], list_below(rig.parents, leg[0])) for leg in rig.legs)
     body = ContactRig(
         tuple(rig.joints), tuple(rig.parents), {}, legs, (rig.hands[0], rig.hands[1]), (), False, False
     )

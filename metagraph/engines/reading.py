@@ -11,7 +11,7 @@ import msgspec
 import numpy as np
 
 from metagraph.common.budgets import TEXT_FILE
-from metagraph.common.files import guarded, is_file, read_file
+from metagraph.common.files import guard_reader, is_file, read_file
 from metagraph.common.wording import phrase
 from metagraph.engines import contract as c
 from metagraph.engines.export_contacts import read_contact_rig, read_contacts
@@ -46,7 +46,7 @@ from metagraph.playback.planning.markov import DEFAULTS
 from metagraph.playback.posing.rigs import ResolvedProject
 
 
-@guarded
+@guard_reader
 def read_export(path: str | Path, motions: bool = True, resolved: bool = False) -> Project:
     """Read an export back into a project with the same graph, ids and constants. motions: load the clips from
     its GLB. resolved: take gestures' phases, the base pose and the rig as the export has them, as a runtime

@@ -8,47 +8,47 @@ from collections.abc import Iterator
 from itertools import combinations
 from typing import Any
 
-from metagraph.engines.script_chatter import chatter_cases
-from metagraph.engines.script_faces import face_cases
-from metagraph.engines.script_feet import feet_cases
-from metagraph.engines.script_life import life_cases
-from metagraph.engines.script_moods import mood_cases
-from metagraph.engines.script_parts import Ask, Case, ScriptStep
+from metagraph.engines.script_chatter import list_chatter_cases
+from metagraph.engines.script_faces import list_face_cases
+from metagraph.engines.script_feet import list_feet_cases
+from metagraph.engines.script_life import list_life_cases
+from metagraph.engines.script_moods import list_mood_cases
+from metagraph.engines.script_parts import Ask, ScriptCase, ScriptStep
 from metagraph.engines.script_parts import ask as _ask
-from metagraph.engines.script_parts import once as _once
-from metagraph.engines.script_parts import some as _some
-from metagraph.engines.script_replaced import replaced_cases
-from metagraph.engines.script_shades import shade_cases
-from metagraph.engines.script_timely import timely_cases
-from metagraph.engines.script_weight import weight_cases
+from metagraph.engines.script_parts import list_some_actions as _some
+from metagraph.engines.script_parts import make_case as _once
+from metagraph.engines.script_replaced import list_replaced_cases
+from metagraph.engines.script_shades import list_shade_cases
+from metagraph.engines.script_timely import list_timely_cases
+from metagraph.engines.script_weight import list_weight_cases
 from metagraph.graph.expand import chain
 from metagraph.graph.model import LAYERS, Layer, Project
 
 
-def cases(project: Project) -> Iterator[Case]:
+def cases(project: Project) -> Iterator[ScriptCase]:
     """Yield the cases that suit a project."""
     for part in (
         _alone,
         _layers,
         _requests,
-        timely_cases,
+        list_timely_cases,
         _conflicts,
         _stances,
         _refused,
         _over_time,
-        life_cases,
-        mood_cases,
-        shade_cases,
-        face_cases,
-        replaced_cases,
-        chatter_cases,
-        weight_cases,
-        feet_cases,
+        list_life_cases,
+        list_mood_cases,
+        list_shade_cases,
+        list_face_cases,
+        list_replaced_cases,
+        list_chatter_cases,
+        list_weight_cases,
+        list_feet_cases,
     ):
         yield from part(project)
 
 
-def _alone(project: Project) -> Iterator[Case]:
+def _alone(project: Project) -> Iterator[ScriptCase]:
     yield _once(
         "nothing is asked",
         "no requests and no models: every layer rests in its stance",
@@ -74,7 +74,7 @@ def _alone(project: Project) -> Iterator[Case]:
             )
 
 
-def _layers(project: Project) -> Iterator[Case]:
+def _layers(project: Project) -> Iterator[ScriptCase]:
     for count in (1, 2, 3):
         for layers in combinations(LAYERS, count):
             asks = []
@@ -91,7 +91,7 @@ def _layers(project: Project) -> Iterator[Case]:
                 )
 
 
-def _requests(project: Project) -> Iterator[Case]:
+def _requests(project: Project) -> Iterator[ScriptCase]:
     for layer in LAYERS:
         gestures = _some(project, layer, "gesture")
         if not gestures:
@@ -147,7 +147,7 @@ def _requests(project: Project) -> Iterator[Case]:
             yield _once(f"{layer}: fidgets", "two at once, one more important", asks)
 
 
-def _conflicts(project: Project) -> Iterator[Case]:
+def _conflicts(project: Project) -> Iterator[ScriptCase]:
     layer: Layer = (
         "arms"
         if _some(project, "arms", "gesture")
@@ -196,7 +196,7 @@ def _conflicts(project: Project) -> Iterator[Case]:
     )
 
 
-def _stances(project: Project) -> Iterator[Case]:
+def _stances(project: Project) -> Iterator[ScriptCase]:
     for layer in LAYERS:
         graph = project.graphs[layer]
         begin = next(
@@ -238,7 +238,7 @@ def _stances(project: Project) -> Iterator[Case]:
             _ask("leave", "withdraw", 30.0, what="stay"),
         ]
         steps = (ScriptStep(0.0, 40.0, (asks[0],)), ScriptStep(20.0, 40.0, (asks[1],)))
-        yield Case(
+        yield ScriptCase(
             f"{layer}: to stay", "the models do not leave a stance that was asked to stay", steps, idle=True
         )
         asks = [_ask("c1", "change", 1.0, layer=layer), _ask("c2", "change", 6.0, layer=layer)]
@@ -262,7 +262,7 @@ def _stances(project: Project) -> Iterator[Case]:
                 ScriptStep(1.2, 20.0, (_ask("u", "stance", layer=layer, stance=begin, priority=4),)),
                 ScriptStep(3.0, 22.0),
             )
-            yield Case(
+            yield ScriptCase(
                 f"{layer}: a way that is interrupted", "something more important comes while on the way", hops
             )
         hop = _some(project, layer, "transition")[0]
@@ -273,7 +273,7 @@ def _stances(project: Project) -> Iterator[Case]:
         yield _once(f"{layer}: a transition by name", "found by its id and by its name", asks)
 
 
-def _refused(project: Project) -> Iterator[Case]:
+def _refused(project: Project) -> Iterator[ScriptCase]:
     asks = [
         _ask("u1", "action", 1.0, action="no such action"),
         _ask("u2", "stance", 1.0, stance="no such stance"),
@@ -292,10 +292,10 @@ def _refused(project: Project) -> Iterator[Case]:
         _ask("now", "gesture", layer=layer),
     ]
     steps = (ScriptStep(0.0, 20.0), ScriptStep(10.0, 20.0, tuple(asks)))
-    yield Case("asked in the past", "too late is past, a little late waits", steps, idle=True)
-    yield Case("asked in the past, at rest", "no model plays meanwhile", steps)
+    yield ScriptCase("asked in the past", "too late is past, a little late waits", steps, idle=True)
+    yield ScriptCase("asked in the past, at rest", "no model plays meanwhile", steps)
     asks = [_ask("negative", "gesture", 0.0, layer=layer), _ask("beyond", "gesture", 60.0, layer=layer)]
-    yield Case(
+    yield ScriptCase(
         "beyond the end",
         "what begins after the end waits for the plan to grow",
         (ScriptStep(0.0, 10.0, tuple(asks)), ScriptStep(5.0, 70.0)),
@@ -303,12 +303,12 @@ def _refused(project: Project) -> Iterator[Case]:
     )
 
 
-def _over_time(project: Project) -> Iterator[Case]:
+def _over_time(project: Project) -> Iterator[ScriptCase]:
     layer: Layer = next((x for x in ("arms", "head", "body") if _some(project, x, "gesture")), "arms")
     grow = tuple(ScriptStep(0.0 if n == 0 else n * 2.0, 10.0 + n * 2.0) for n in range(12))
-    yield Case("a horizon that moves", "in many steps as in one", grow, idle=True)
+    yield ScriptCase("a horizon that moves", "in many steps as in one", grow, idle=True)
     forget = tuple(ScriptStep(n * 3.0, 12.0 + n * 3.0, forget=max(0.0, n * 3.0 - 6.0)) for n in range(12))
-    yield Case(
+    yield ScriptCase(
         "a past that is forgotten",
         "what is planned on stays as it would have been",
         forget,
@@ -330,7 +330,7 @@ def _over_time(project: Project) -> Iterator[Case]:
     busy.append(
         ScriptStep(75.0, 130.0, tuple(ask for ask in late if _some(project, ask["layer"], "gesture")))
     )
-    yield Case(
+    yield ScriptCase(
         "much that is forgotten",
         "counts, spacing and cooldown reach back over what is forgotten",
         tuple(busy),
@@ -346,18 +346,18 @@ def _over_time(project: Project) -> Iterator[Case]:
         ScriptStep(2.0, 20.0, (_ask("w", "withdraw", what="gone"),)),
         ScriptStep(4.6, 20.0, (_ask("v", "withdraw", what="keep"),)),
     )
-    yield Case("withdrawn", "what has not begun is taken back; what has plays on", steps)
+    yield ScriptCase("withdrawn", "what has not begun is taken back; what has plays on", steps)
     steps = (ScriptStep(0.0, 20.0, asks), ScriptStep(2.0, 20.0, (_ask("w", "withdraw"),)))
-    yield Case("all withdrawn", "with no name everything is taken back", steps, idle=True)
+    yield ScriptCase("all withdrawn", "with no name everything is taken back", steps, idle=True)
     steps = (ScriptStep(0.0, 20.0, asks), ScriptStep(2.0, 20.0, (_ask("keep", "gesture", 7.0, layer=layer),)))
-    yield Case("asked again under the same id", "the later one counts", steps)
+    yield ScriptCase("asked again under the same id", "the later one counts", steps)
     asks = (_ask("long", "gesture", 1.0, layer=layer, duration=9.0, resume=True),)
     steps = (
         ScriptStep(0.0, 24.0, asks),
         ScriptStep(3.0, 24.0, (_ask("now", "gesture", layer=layer, priority=3),)),
         ScriptStep(6.0, 30.0),
     )
-    yield Case("interrupted live", "the running action is never touched", steps)
+    yield ScriptCase("interrupted live", "the running action is never touched", steps)
     steps = (
         ScriptStep(0.0, 60.0),
         ScriptStep(2.0, 60.0, (_ask("m1", "mode", 5.0, mode="listening"),)),
@@ -365,4 +365,6 @@ def _over_time(project: Project) -> Iterator[Case]:
         ScriptStep(20.0, 60.0, (_ask("s1", "say", 22.0, text="and so it went on for quite some time"),)),
         ScriptStep(30.0, 60.0, (_ask("w1", "withdraw", what="m2"),)),
     )
-    yield Case("modes asked for live", "who listens or idles gestures less than who talks", steps, idle=True)
+    yield ScriptCase(
+        "modes asked for live", "who listens or idles gestures less than who talks", steps, idle=True
+    )

@@ -8,12 +8,12 @@ from collections.abc import Iterator, Sequence
 from math import floor
 from typing import Any
 
-from metagraph.engines.script_parts import Ask, Case, ScriptStep, ask, some
-from metagraph.engines.script_parts import once as _with_poses
+from metagraph.engines.script_parts import Ask, ScriptCase, ScriptStep, ask, list_some_actions
+from metagraph.engines.script_parts import make_case as _with_poses
 from metagraph.graph.model import LAYERS, Action, Layer, Project
 from metagraph.graph.requests import request_from
 from metagraph.playback.plan import Cue, Plan
-from metagraph.playback.planning.extend_performance import hear
+from metagraph.playback.planning.extend_performance import hear_asks
 
 FITS = (-2e-6, -5e-7, 5e-7, 2e-6)  # seconds: either side of `cue_shapes.FITS`
 
@@ -25,10 +25,10 @@ def _just(seconds: float) -> tuple[float, ...]:
     return (*FITS, 0.0) if (seconds * 4096).is_integer() else FITS
 
 
-def boundary_cases(project: Project) -> Iterator[Case]:
+def list_boundary_cases(project: Project) -> Iterator[ScriptCase]:
     """Yield the cases that suit a project."""
     for layer in LAYERS if _exact(project) else ():
-        if some(project, layer, "gesture"):
+        if list_some_actions(project, layer, "gesture"):
             for part in (_windows, _waits, _limits, _written, _extensions):
                 yield from part(project, layer)
         yield from _cooldowns(project, layer)
@@ -45,30 +45,32 @@ def _exact(project: Project) -> bool:
     return all((4096 / project.clips[clip].fps).is_integer() for clip in played)
 
 
-def once(name: str, about: str, asks: Sequence[Ask], end: float = 14.0, idle: bool = False) -> Case:
+def make_plan_case(
+    name: str, about: str, asks: Sequence[Ask], end: float = 14.0, idle: bool = False
+) -> ScriptCase:
     """Return a case of one step whose plan alone is compared."""
     return _with_poses(name, about, asks, end, idle=idle, alive=())
 
 
 def _planned(project: Project, asks: Sequence[Ask], end: float = 20.0, idle: bool = False) -> Plan:
-    return hear(project, Plan(1, 0.0), 0.0, [request_from(dict(each)) for each in asks], end, {}, idle)
+    return hear_asks(project, Plan(1, 0.0), 0.0, [request_from(dict(each)) for each in asks], end, {}, idle)
 
 
 def _first(project: Project, layer: Layer) -> tuple[Action, Cue]:
     """Return a layer's first gesture, and how it plays when asked for at 1 s."""
-    one = some(project, layer, "gesture")[0]
+    one = list_some_actions(project, layer, "gesture")[0]
     cues = _planned(project, [ask("a", "action", 1.0, action=one.id)]).layers[layer].cues
     return one, cues[-1]
 
 
-def _windows(project: Project, layer: Layer) -> Iterator[Case]:
+def _windows(project: Project, layer: Layer) -> Iterator[ScriptCase]:
     """Windows of requests that touch, or leave as little as may be left."""
     shortest, wait = project.settings.shortest, project.settings.wait
 
     def g(ident: str, at: float, length: float, **more: Any) -> Ask:
         return ask(ident, "gesture", at, layer=layer, duration=length, **more)
 
-    yield once(
+    yield make_plan_case(
         f"{layer}: windows that touch",
         "one ends where the next begins: neither waits",
         [g("x", 1.0, 2.0), g("y", 3.0, 1.0), g("z", 4.0, 0.0), g("w", 4.0, 0.5)],
@@ -79,19 +81,19 @@ def _windows(project: Project, layer: Layer) -> Iterator[Case]:
             g("long", 1.0, 8.0, resume=True),
             g("urgent", urgent - less, 9.0 - urgent - shortest + 2 * less, priority=3),
         ]
-        yield once(
+        yield make_plan_case(
             f"{layer}: as short as may be left, less {less:g}",
             "before and after what interrupts",
             asks,
         )
     asks = [g("x", 1.0, 8.0), g("y", 9.0 - wait, 1.0), g("z", 9.0 - wait - 1 / 64, 1.0)]
-    yield once(f"{layer}: as long as may be waited", "in the meta plan", asks, 24.0)
+    yield make_plan_case(f"{layer}: as long as may be waited", "in the meta plan", asks, 24.0)
     asks = [g("x", 1.0, 3.0), g("y", 1.0, 3.0, priority=2), g("z", 4.0, 2.0, priority=0, resume=True)]
     asks += [g("v", 4.0, 1.0, priority=0), g("u", 4.0, 1.0, priority=0), g("t", 6.0, 0.5, priority=2)]
-    yield once(f"{layer}: of the same start", "priority, then the id, decides", asks, 24.0)
+    yield make_plan_case(f"{layer}: of the same start", "priority, then the id, decides", asks, 24.0)
 
 
-def _waits(project: Project, layer: Layer) -> Iterator[Case]:
+def _waits(project: Project, layer: Layer) -> Iterator[ScriptCase]:
     """What waits for a running action exactly as long as it may, or ends when that does."""
     one, cue = _first(project, layer)
     ready = cue.end + project.settings.rest
@@ -99,22 +101,24 @@ def _waits(project: Project, layer: Layer) -> Iterator[Case]:
     first = ask("a", "action", 1.0, action=one.id)
     for place, more in enumerate(_just(ready)):
         asks = [first, ask("b", "gesture", max(0.0, ready - wait + more), layer=layer)]
-        yield once(f"{layer}: waits as long as it may {place}", "for a running action", asks)
+        yield make_plan_case(f"{layer}: waits as long as it may {place}", "for a running action", asks)
         start = 0.5 * (1.0 + ready)
         asks = [first, ask("b", "gesture", start, layer=layer, duration=ready - start + more)]
-        yield once(f"{layer}: a window over with the action before {place}", "it is covered, or not", asks)
+        yield make_plan_case(
+            f"{layer}: a window over with the action before {place}", "it is covered, or not", asks
+        )
         asks = [first, ask("b", "gesture", ready + more, layer=layer, duration=0.5 if more else 0.0)]
-        yield once(f"{layer}: asked for when it can begin {place}", "at that very moment", asks)
+        yield make_plan_case(f"{layer}: asked for when it can begin {place}", "at that very moment", asks)
     late = ask("b", "gesture", max(0.0, ready - wait), layer=layer)
     later = ask("c", "gesture", max(0.0, ready - wait - 1 / 64), layer=layer)
     for name, asked in (("just", late), ("not", later)):
         steps = (ScriptStep(0.0, 20.0, (first,)), ScriptStep(cue.start + 0.25, 20.0, (asked,)))
-        yield Case(f"{layer}: may {name} wait live", "for the action that runs", steps, alive=())
+        yield ScriptCase(f"{layer}: may {name} wait live", "for the action that runs", steps, alive=())
 
 
-def _limits(project: Project, layer: Layer) -> Iterator[Case]:
+def _limits(project: Project, layer: Layer) -> Iterator[ScriptCase]:
     """Something more important that begins exactly when an action is over, or may be left."""
-    for one in some(project, layer, "gesture")[:3]:
+    for one in list_some_actions(project, layer, "gesture")[:3]:
         asks = [ask("a", "action", 1.0, action=one.id)]
         cues = _planned(project, asks).layers[layer].cues
         if not cues:
@@ -124,19 +128,21 @@ def _limits(project: Project, layer: Layer) -> Iterator[Case]:
             for place in range(4):
                 both = [ask("a", "action", 1.0, action=one.id, hold=0.25 + 0.5 * place)]
                 both += [ask("u", "gesture", 1.5 + 0.5 * place, layer=layer, priority=3)]
-                yield once(f"{layer}: {one.name} held and left {place}", "before something else", both)
+                yield make_plan_case(
+                    f"{layer}: {one.name} held and left {place}", "before something else", both
+                )
         if one.timing.earliest_exit is not None:
             left = cues[-1].start + one.timing.earliest_exit - cues[-1].entry + one.timing.blend_out
             ends["left"] = left
         for word, end in ends.items():
             for place, more in enumerate(_just(end)):
                 both = [*asks, ask("u", "gesture", end + more, layer=layer, priority=3)]
-                yield once(
+                yield make_plan_case(
                     f"{layer}: {one.name} {word} {place}", "before something more important begins", both
                 )
 
 
-def _written(project: Project, layer: Layer) -> Iterator[Case]:
+def _written(project: Project, layer: Layer) -> Iterator[ScriptCase]:
     """Requests that leave what a model wrote exactly as much as it needs, or touch it."""
     metas = [m for m in _planned(project, [], 20.0, True).layers[layer].metas if m.written]
     shortest = project.settings.shortest
@@ -145,22 +151,26 @@ def _written(project: Project, layer: Layer) -> Iterator[Case]:
         about = "what was written is left the shortest"
         for word, more in (("less", -near), ("more", near)):
             asks = [ask("r", "fidget", meta.start + shortest + more, layer=layer, duration=0.5)]
-            yield once(f"{layer}: {about}, {word} {place}", "and no more", asks, meta.end + 4.0, idle=True)
+            yield make_plan_case(
+                f"{layer}: {about}, {word} {place}", "and no more", asks, meta.end + 4.0, idle=True
+            )
         first = (floor(meta.start * 64) + 8) / 64  # a gap between requests of just the shortest, and less
         for word, less in (("just", 0.0), ("hardly", 1 / 64)):
             asks = [ask("r", "fidget", first - 0.5, layer=layer, duration=0.5)]
             asks += [ask("s", "fidget", first + shortest - less, layer=layer, duration=4.0)]
-            yield once(f"{layer}: a gap {word} long enough {place}", about, asks, meta.end + 4.0, idle=True)
+            yield make_plan_case(
+                f"{layer}: a gap {word} long enough {place}", about, asks, meta.end + 4.0, idle=True
+            )
         asks = [ask("r", "fidget", meta.end + near, layer=layer, duration=0.5)]
         start = max(0.0, meta.start - 0.5)
         asks += [ask("s", "fidget", start, layer=layer, duration=meta.start - start - near)]
         about = "what was written is not touched"
-        yield once(f"{layer}: {about} {place}", "before and after", asks, meta.end + 4.0, idle=True)
+        yield make_plan_case(f"{layer}: {about} {place}", "before and after", asks, meta.end + 4.0, idle=True)
 
 
-def _extensions(project: Project, layer: Layer) -> Iterator[Case]:
+def _extensions(project: Project, layer: Layer) -> Iterator[ScriptCase]:
     """A plan that grows at the very moment something begins or ends."""
-    gestures = some(project, layer, "gesture")
+    gestures = list_some_actions(project, layer, "gesture")
     asks = tuple(ask(f"g{n}", "action", 1.0 + 4 * n, action=gestures[n % len(gestures)].id) for n in range(3))
     plan = _planned(project, asks)
     of = plan.layers[layer]
@@ -177,14 +187,14 @@ def _extensions(project: Project, layer: Layer) -> Iterator[Case]:
             ScriptStep(now, 20.0, (ask("new", "gesture", layer=layer, priority=2),)),
             ScriptStep(now, 24.0, (ask("w", "withdraw", what="g1"),)),
         )
-        yield Case(
+        yield ScriptCase(
             f"{layer}: heard at a moment that tells {place}",
             "what has begun stays",
             steps,
             alive=(),
         )
         growing = (ScriptStep(0.0, now), ScriptStep(now, now + 8.0, forget=now))
-        yield Case(
+        yield ScriptCase(
             f"{layer}: ends and is forgotten at such a moment {place}",
             "as it would have been",
             growing,
@@ -192,7 +202,7 @@ def _extensions(project: Project, layer: Layer) -> Iterator[Case]:
         )
 
 
-def _cooldowns(project: Project, layer: Layer) -> Iterator[Case]:
+def _cooldowns(project: Project, layer: Layer) -> Iterator[ScriptCase]:
     """What may be drawn again exactly when its cooldown is over."""
     graph = project.graphs[layer]
     for kind in ("gesture", "fidget"):
@@ -207,17 +217,19 @@ def _cooldowns(project: Project, layer: Layer) -> Iterator[Case]:
             again = cues[-1].end + one.cooldown
             for place, more in enumerate(_just(again)):
                 asks = [first, ask("b", kind, again + more, layer=layer, tags=list(one.tags))]
-                yield once(f"{layer}: {one.name} has cooled down {place}", "or nearly", asks, again + 6.0)
+                yield make_plan_case(
+                    f"{layer}: {one.name} has cooled down {place}", "or nearly", asks, again + 6.0
+                )
 
 
-def _remembered(project: Project) -> Iterator[Case]:
+def _remembered(project: Project) -> Iterator[ScriptCase]:
     """Uses that are exactly as old as the settings' memory, and draws as far back as spacing looks."""
     memory = project.settings.memory
     for layer in LAYERS:
-        if len(some(project, layer, "gesture")) < 2:
+        if len(list_some_actions(project, layer, "gesture")) < 2:
             continue
         asks = [ask(f"g{n}", "gesture", 0.5 + 4.0 * n, layer=layer) for n in range(16)]
-        yield once(
+        yield make_plan_case(
             f"{layer}: sixteen, one by one",
             "what came long before counts as it should",
             asks,
@@ -226,10 +238,10 @@ def _remembered(project: Project) -> Iterator[Case]:
         if memory > 0:
             asks = [ask(f"g{n}", "gesture", 1.0 + 0.5 * memory * n, layer=layer) for n in range(24)]
             about = "uses at the edge of the memory"
-            yield once(f"{layer}: as old as is remembered", about, asks, 13.0 * memory + 5.0)
+            yield make_plan_case(f"{layer}: as old as is remembered", about, asks, 13.0 * memory + 5.0)
 
 
-def _faces(project: Project) -> Iterator[Case]:
+def _faces(project: Project) -> Iterator[ScriptCase]:
     """Texts whose letters, marks and pauses tell, and looks as far as head, eyes and lids go."""
     if not project.life.on:
         return
@@ -260,7 +272,7 @@ def _faces(project: Project) -> Iterator[Case]:
     )
 
 
-def _forgotten(project: Project) -> Iterator[Case]:
+def _forgotten(project: Project) -> Iterator[ScriptCase]:
     """Looks, words and modes that are over, just over, or not yet when the past is forgotten."""
     if not project.life.on:
         return
@@ -278,11 +290,13 @@ def _forgotten(project: Project) -> Iterator[Case]:
         )
         times = (seconds + 0.55, seconds + 1.3)
         about = "what still shows is kept"
-        yield Case(f"looks and words that are forgotten {place}", about, steps, times=times, alive=(True,))
-        yield Case(f"looks and words, just forgotten {place}", about, steps[:2], alive=(), idle=True)
+        yield ScriptCase(
+            f"looks and words that are forgotten {place}", about, steps, times=times, alive=(True,)
+        )
+        yield ScriptCase(f"looks and words, just forgotten {place}", about, steps[:2], alive=(), idle=True)
 
 
-def _talked_over(project: Project) -> Iterator[Case]:
+def _talked_over(project: Project) -> Iterator[ScriptCase]:
     """Lines that begin together or interrupt others, and what is taken back at the moment it begins."""
     if not project.life.on:
         return
@@ -306,12 +320,12 @@ def _talked_over(project: Project) -> Iterator[Case]:
         ScriptStep(now, 12.0, tuple(ask(f"w{x}", "withdraw", what=x) for x in "kambn")),
     )
     times = (3.7, 3.95, 4.05, 4.3, 5.1, 6.2)
-    yield Case("taken back as it begins", "it never was", steps, times=times, alive=(True,))
+    yield ScriptCase("taken back as it begins", "it never was", steps, times=times, alive=(True,))
 
 
-def _read(project: Project) -> Iterator[Case]:
+def _read(project: Project) -> Iterator[ScriptCase]:
     """Values at the ends of the ranges that requests have, and just beyond."""
-    layer = next((x for x in LAYERS if some(project, x, "gesture")), None)
+    layer = next((x for x in LAYERS if list_some_actions(project, x, "gesture")), None)
     if layer is None:
         return
     values: list[dict[str, Any]] = [
@@ -358,4 +372,4 @@ def _read(project: Project) -> Iterator[Case]:
         {"id": "none"},
         ask("z", "gesture", 1e6, layer=layer),
     ]
-    yield once("values at the ends of their ranges", "what is read, what is refused", asks, 6.0)
+    yield make_plan_case("values at the ends of their ranges", "what is read, what is refused", asks, 6.0)

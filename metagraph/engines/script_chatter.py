@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from random import Random
 from typing import Any
 
-from metagraph.engines.script_parts import Ask, Case, ScriptStep, ask
+from metagraph.engines.script_parts import Ask, ScriptCase, ScriptStep, ask
 from metagraph.graph.model import LAYERS, Layer, Project
 
 
-def chatter_cases(project: Project) -> Iterator[Case]:
+def list_chatter_cases(project: Project) -> Iterator[ScriptCase]:
     """Yield sessions in which this and that is asked by chance."""
     for seed in (1, 2, 3):
         chance = Random(seed)
@@ -24,7 +24,7 @@ def chatter_cases(project: Project) -> Iterator[Case]:
             now += chance.choice((0.016, 0.2, 1.0, 2.5))
         last = steps[-1].now
         times = tuple(round(last + x, 3) for x in (-4.0, -1.7, 0.1, 0.9, 3.3, 8.0))
-        yield Case(
+        yield ScriptCase(
             f"chatter {seed}",
             "asked this and that while it plays",
             tuple(steps),

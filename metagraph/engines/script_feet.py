@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from metagraph.engines.script_parts import Case, ask, once
+from metagraph.engines.script_parts import ScriptCase, ask, make_case
 from metagraph.graph.model import Project
-from metagraph.playback.posing.feet import moved_alone
+from metagraph.playback.posing.feet import moves_legs_alone
 from metagraph.playback.posing.rigs import rigs_of
-from metagraph.playback.posing.weight import plants
+from metagraph.playback.posing.weight import has_planted_feet
 
 MOST = 6  # actions in a case
 EDGES = (
@@ -26,11 +26,11 @@ EDGES = (
 )  # seconds from where an action begins, and to its end
 
 
-def feet_cases(project: Project) -> Iterator[Case]:
+def list_feet_cases(project: Project) -> Iterator[ScriptCase]:
     """Yield cases of one of the body's actions after the other, from stance to stance, and of its loops."""
-    rig = rigs_of(project).weight.rig if plants(project) and project.skeleton is not None else None
+    rig = rigs_of(project).weight.rig if has_planted_feet(project) and project.skeleton is not None else None
     body = project.graphs["body"]
-    if rig is None or not moved_alone(project, rig):
+    if rig is None or not moves_legs_alone(project, rig):
         return
     for stance in [*body.stances][:2]:
         acts = [a for kind in ("gesture", "fidget") for a in body.of(stance, kind)][:MOST]
@@ -42,7 +42,7 @@ def feet_cases(project: Project) -> Iterator[Case]:
                 times |= {1.0 + 3.0 * n + x for x in EDGES} | {1.0 + 3.0 * n + end - start - x for x in EDGES}
             about = "feet are held, and step, as the body's actions come and go"
             more = {"stances": {"body": stance}, "times": tuple(sorted(round(t, 3) for t in times))}
-            yield once(f"feet in {stance}", about, asks, 20.0, alive=(True,), **more)
+            yield make_case(f"feet in {stance}", about, asks, 20.0, alive=(True,), **more)
     ways = [a for a in body.actions.values() if a.kind == "transition" and a.stance == body.start][:2]
     asks = []
     for n, action in enumerate(ways):
@@ -51,9 +51,9 @@ def feet_cases(project: Project) -> Iterator[Case]:
     every = tuple(np.round(np.arange(0.5, 4.0 + 6.0 * len(ways), 0.13), 3).tolist())
     for seed in (1, 2):
         about = "loops take over from loops, and transitions lead from stance to stance"
-        yield once(
+        yield make_case(
             f"feet from stance to stance {seed}", about, asks, 19.0, seed=seed, times=every, alive=(True,)
         )
     about = "nothing is asked: loops take over from one another, and begin anew"
     often = tuple(np.round(np.arange(0.2, 9.0, 0.17), 3).tolist())
-    yield once("feet at rest", about, [], 20.0, seed=3, times=often, alive=(True,))
+    yield make_case("feet at rest", about, [], 20.0, seed=3, times=often, alive=(True,))

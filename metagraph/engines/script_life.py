@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from metagraph.engines.script_parts import Case, ScriptStep, ask, once
+from metagraph.engines.script_parts import ScriptCase, ScriptStep, ask, make_case
 from metagraph.graph.model import Project
 
 ALIVE = (True,)  # the life layers are on
 
 
-def _timed_lines() -> Iterator[Case]:
+def _timed_lines() -> Iterator[ScriptCase]:
     """Yield lines whose words and mouth shapes are told with their times."""
     words = [["Hello", 0.1, 0.45], ["there", 1.5, 1.9], {"word": "friend", "start": 1.9, "end": 2.4}]
     polly = [
@@ -41,7 +41,7 @@ def _timed_lines() -> Iterator[Case]:
         ask("r4", "say", 13.0, words=[["back", 1.0, 0.5]]),
         ask("r5", "say", 13.0, words=[["only"]]),
     ]  # fmt: skip
-    yield once(
+    yield make_case(
         "words and shapes with their times",
         "the mouth follows them and is shut between; what cannot be read is refused",
         asks,
@@ -79,7 +79,7 @@ def _timed_lines() -> Iterator[Case]:
         ScriptStep(6.2, 12.0, (ask("n", "say", 7.0, words=[["told", 0.1, 0.4]]),)),
         ScriptStep(6.4, 12.0, (ask("n", "say", 7.0, words=[["beforehand", 0.5, 1.0]]),)),
     )
-    yield Case(
+    yield ScriptCase(
         "a line that is added to",
         "what is said of it stands, what comes later is added",
         steps,
@@ -88,12 +88,12 @@ def _timed_lines() -> Iterator[Case]:
     )
 
 
-def life_cases(project: Project) -> Iterator[Case]:
+def list_life_cases(project: Project) -> Iterator[ScriptCase]:
     """Yield looks, blinks, modes, lines and nods, where the life layers are on."""
     if not project.life.on:
         return
     yield from _looks()
-    yield once(
+    yield make_case(
         "blinks and modes",
         "blinks asked for; modes change rates",
         [
@@ -113,8 +113,8 @@ def life_cases(project: Project) -> Iterator[Case]:
     yield from _lines(project)
     if any(a.kind == "gesture" for a in project.graphs["head"].actions.values()):
         asks = [ask("n1", "nod", 1.0), ask("n2", "shake", 5.0), ask("n3", "nod", 9.0, priority=2)]
-        yield once("nods", "gestures of the head tagged so, or called so", asks, alive=ALIVE)
-    yield once(
+        yield make_case("nods", "gestures of the head tagged so, or called so", asks, alive=ALIVE)
+    yield make_case(
         "two minutes",
         "what is drawn goes on being drawn",
         [],
@@ -125,14 +125,14 @@ def life_cases(project: Project) -> Iterator[Case]:
     )
 
 
-def _looks() -> Iterator[Case]:
+def _looks() -> Iterator[ScriptCase]:
     times = (0.5, 1.05, 1.3, 2.2, 3.6, 5.15, 7.9, 11.0)
     asks = [
         ask("l1", "look", 1.0, to=[0.8, 1.4, 0.9], duration=2.0),
         ask("l2", "look", 5.0, to="ahead", duration=1.5),
         ask("l3", "look", 7.0, to=[-1.0, 0.6, 0.2], amount=0.5),
     ]
-    yield once(
+    yield make_case(
         "looks",
         "eyes first, the head after; back when a look ends",
         asks,
@@ -144,7 +144,7 @@ def _looks() -> Iterator[Case]:
         ask("l4", "look", 1.0, to=[0.06, 1.58, 0.2]),
         ask("l5", "look", 4.0, to=[0.0, 3.0, 0.4], duration=2.0),
     ]
-    yield once(
+    yield make_case(
         "something near",
         "what is nearer than a hand is looked at as if it were farther",
         near,
@@ -160,7 +160,7 @@ def _looks() -> Iterator[Case]:
         for n in range(8)
     ]
     asks += [ask("s2", "look", 6.0, to=[0.0, 1.5, -2.0], priority=0), ask("s3", "look", 8.0, to="user")]
-    yield once(
+    yield make_case(
         "a thing that moves",
         "strict looks do not avert; the gaze follows a named point",
         asks,
@@ -169,7 +169,7 @@ def _looks() -> Iterator[Case]:
     )
 
 
-def _said() -> Case:
+def _said() -> ScriptCase:
     asks = [
         ask("t1", "say", 1.0, text="Hello there, nice to see you!"),
         ask("t2", "say", 4.0, text="Größe, naïve Straße: 42", duration=2.0),
@@ -177,7 +177,7 @@ def _said() -> Case:
         ask("t4", "say", 9.0, text="日本 Ещё καλημέρα", priority=2),
         ask("t5", "say", 9.5, text="not said", priority=1),
     ]
-    return once(
+    return make_case(
         "words that are said",
         "mouth shapes from letters; what interrupts, what is not said",
         asks,
@@ -186,7 +186,7 @@ def _said() -> Case:
     )
 
 
-def _cut_short() -> Case:
+def _cut_short() -> ScriptCase:
     long = (
         "This is a rather long sentence, which goes on and on, so that many of its syllables are "
         "stressed, and nobody stops it for a while."
@@ -196,7 +196,7 @@ def _cut_short() -> Case:
         ask("cut", "say", 14.0, text="Nobody hears the end of this one, ever, at all."),
     ]
     steps = (ScriptStep(0.0, 24.0, tuple(asks)), ScriptStep(15.0, 24.0, (ask("w", "withdraw", what="cut"),)))
-    return Case(
+    return ScriptCase(
         "stressed syllables",
         "blinks on them; a mouth that is cut short closes",
         steps,
@@ -205,12 +205,12 @@ def _cut_short() -> Case:
     )
 
 
-def _lines(project: Project) -> Iterator[Case]:
+def _lines(project: Project) -> Iterator[ScriptCase]:
     said = list(project.lines)[:2]
     if not said:
         return
     asks = [ask(f"line{n}", "say", 1.0 + 6 * n, line=line) for n, line in enumerate(said)]
-    yield once(
+    yield make_case(
         "lines",
         "their sound's mouth shapes and their own requests",
         [*asks, ask("bare", "say", 14.0, line=said[0], gestures=False)],

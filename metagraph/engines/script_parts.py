@@ -24,7 +24,7 @@ class ScriptStep:
 
 
 @dataclass(frozen=True)
-class Case:
+class ScriptCase:
     """One script. times: at which poses are compared, the most telling ones where empty. alive: with the life
     layers, without, both.
     """
@@ -39,9 +39,9 @@ class Case:
     alive: tuple[bool, ...] = (False,)
 
 
-def once(name: str, about: str, asks: Sequence[Ask], end: float = 14.0, **more: Any) -> Case:
+def make_case(name: str, about: str, asks: Sequence[Ask], end: float = 14.0, **more: Any) -> ScriptCase:
     """Return a case of one step that begins at 0 s."""
-    return Case(name, about, (ScriptStep(0.0, end, tuple(asks)),), **more)
+    return ScriptCase(name, about, (ScriptStep(0.0, end, tuple(asks)),), **more)
 
 
 def ask(ident: str, do: str, at: float | None = None, **more: Any) -> Ask:
@@ -49,7 +49,7 @@ def ask(ident: str, do: str, at: float | None = None, **more: Any) -> Ask:
     return {"do": do, "id": ident, **({} if at is None else {"at": at}), **more}
 
 
-def some(project: Project, layer: Layer, *kinds: Kind) -> list[Action]:
+def list_some_actions(project: Project, layer: Layer, *kinds: Kind) -> list[Action]:
     """Return a layer's actions of some kinds, those of its first stance first."""
     graph = project.graphs[layer]
     order = [s for s in (graph.start, *graph.stances) if s is not None]

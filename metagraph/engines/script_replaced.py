@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from metagraph.engines.script_parts import Case, ScriptStep, ask, once, some
+from metagraph.engines.script_parts import ScriptCase, ScriptStep, ask, list_some_actions, make_case
 from metagraph.graph.model import LAYERS, Project
 from metagraph.playback.life.line_timing import AZURE, OCULUS, POLLY
 
@@ -36,7 +36,7 @@ _CHANGES: tuple[tuple[str, dict[str, Any], dict[str, Any]], ...] = (
 )  # fmt: skip
 
 
-def replaced_cases(project: Project) -> Iterator[Case]:
+def list_replaced_cases(project: Project) -> Iterator[ScriptCase]:
     """Yield the cases that suit a project."""
     looked = ask("seen", "look", AT - 0.5, to="lamp")
     here = ask("lamp", "place", 0.0, name="lamp", point=[-0.7, 1.4, 0.9])
@@ -46,12 +46,12 @@ def replaced_cases(project: Project) -> Iterator[Case]:
             ScriptStep(0.0, 14.0, (*begin, ask("x", do, AT, **first))),
             ScriptStep(3.0, 14.0, (ask("x", do, AT, **then),)),
         )
-        yield Case(
+        yield ScriptCase(
             f"asked again: {do} {n}", "one thing of it is another now", steps, times=(7.45,), alive=(True,)
         )
     for layer in LAYERS:
         for stance in list(project.graphs[layer].stances)[1:2]:
-            yield Case(
+            yield ScriptCase(
                 f"asked again: stance of {layer}",
                 "no longer to stay in it",
                 (
@@ -65,7 +65,7 @@ def replaced_cases(project: Project) -> Iterator[Case]:
     yield from _named(project)
 
 
-def _sets() -> Iterator[Case]:
+def _sets() -> Iterator[ScriptCase]:
     oculus = [[0.12 * n, name] for n, name in enumerate(OCULUS)]
     azure = [{"audioOffset": 1_200_000 * n, "visemeId": int(name)} for n, name in enumerate(AZURE)]
     polly = [{"time": 120 * n, "type": "viseme", "value": name} for n, name in enumerate(POLLY)]
@@ -81,7 +81,7 @@ def _sets() -> Iterator[Case]:
     times = [round(start + 0.12 * n + 0.06, 3) for start, count in starts for n in range(0, count, 2)]
     times += [round(start + 0.12 * n + 0.1, 3) for start, count in starts for n in range(1, count, 4)]
     times += [12.03, 12.12, 12.22, 12.33, 13.02, 13.08, 13.2]
-    yield once(
+    yield make_case(
         "every shape of every set",
         "speech services' shapes, some of them very short",
         asks,
@@ -91,10 +91,10 @@ def _sets() -> Iterator[Case]:
     )
 
 
-def _named(project: Project) -> Iterator[Case]:
+def _named(project: Project) -> Iterator[ScriptCase]:
     asks = []
     for n, layer in enumerate(LAYERS):
-        found = some(project, layer, "gesture", "fidget", "transition")
+        found = list_some_actions(project, layer, "gesture", "fidget", "transition")
         if not found:
             continue
         other = LAYERS[(n + 1) % len(LAYERS)]
@@ -106,22 +106,22 @@ def _named(project: Project) -> Iterator[Case]:
             ask(f"{layer}4", "action", 17.0, action=one.id, stroke=0.01),
             ask(f"{layer}5", "action", action=one.id, stroke=24.0, late=0.2),
         ]
-    yield once("by id and layer", "an action is looked for in the layer that is told alone", asks, 30.0)
+    yield make_case("by id and layer", "an action is looked for in the layer that is told alone", asks, 30.0)
     soon = [
         ask(f"{layer}s", "gesture", layer=layer, stroke=0.04)
         for layer in LAYERS
-        if some(project, layer, "gesture")
+        if list_some_actions(project, layer, "gesture")
     ]
     again = [
         ask(f"{layer}t", "gesture", layer=layer, stroke=8.0, late=0.05)
         for layer in LAYERS
-        if some(project, layer, "gesture")
+        if list_some_actions(project, layer, "gesture")
     ]
     near = [
         ask(f"{layer}u", "gesture", layer=layer, stroke=8.25, late=0.0)
         for layer in LAYERS
-        if some(project, layer, "gesture")
+        if list_some_actions(project, layer, "gesture")
     ]
-    yield once(
+    yield make_case(
         "strokes sooner than can be", "and two a quarter of a second apart", [*soon, *again, *near], 20.0
     )

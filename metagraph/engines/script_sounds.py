@@ -27,7 +27,7 @@ _SAID: tuple[tuple[float, tuple[tuple[float, float], ...]], ...] = (
 )
 
 
-def streamed() -> list[tuple[int, list[list[int]]]]:
+def list_streams() -> list[tuple[int, list[list[int]]]]:
     """Return sounds: samples a second, and pieces of 8-bit samples as they come in, some of them empty."""
     out = []
     for rate, parts, lengths in ((8000, 4, (700, 0, 37)), (12000, len(_SAID), (4800, 1, 2400))):
@@ -49,7 +49,7 @@ def _samples(rate: int, said: Sequence[tuple[float, tuple[tuple[float, float], .
     return out
 
 
-def heard(rate: int, pieces: Sequence[Sequence[int]]) -> list[list[list[Any]]]:
+def list_heard_marks(rate: int, pieces: Sequence[Sequence[int]]) -> list[list[list[Any]]]:
     """Return for each piece the marks it brings: seconds, viseme, weight."""
     voice = StreamedVoice(float(rate))
     return [

@@ -8,8 +8,8 @@ from typing import Any
 from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.planning.hashing import Bits
 from metagraph.speech import word_gestures
-from metagraph.speech.language_packs import languages
-from metagraph.speech.text_gestures import gesture_words
+from metagraph.speech.language_packs import list_language_packs
+from metagraph.speech.text_gestures import words_for_gesture
 from metagraph.speech.word_gestures import GestureAsk, ToldWord, gesture_asks, proposed_for, sentence_end
 
 # Language, text, seconds it takes where that is told, and whether a synthesiser tells when its words come.
@@ -26,13 +26,13 @@ TEXTS: tuple[tuple[str, str, float | None, bool], ...] = (
 )
 
 
-def talked() -> list[dict[str, Any]]:
+def list_talks() -> list[dict[str, Any]]:
     """Return texts with what comes of them, as plain data: for arms that can do all that a lexicon proposes,
     for those that only beat, and with a head that does not move.
     """
     out: list[dict[str, Any]] = []
     for n, (language, text, seconds, told) in enumerate(TEXTS):
-        lexicon = gesture_words(language)
+        lexicon = words_for_gesture(language)
         every = (lexicon.question, lexicon.exclamation, lexicon.clause, *lexicon.rules)
         arms = ["beat"] if n % 4 == 3 else sorted({tag for rule in every for tag in rule.tags})
         words = word_gestures.words_of(ALPHABET, text)
@@ -47,7 +47,7 @@ def talk_of(row: Mapping[str, Any]) -> dict[str, Any]:
     """Return what comes of a text: "sentences", "words" (each its text, in small letters, start, end, the
     mark behind it) and "asks" (do, layer, tags, at, stroke, late).
     """
-    pack = languages().get(row["language"])
+    pack = list_language_packs().get(row["language"])
     words = word_gestures.words_of(
         ALPHABET, row["text"], [ToldWord(start, end) for start, end in row["told"]], row["seconds"]
     )
@@ -55,7 +55,7 @@ def talk_of(row: Mapping[str, Any]) -> dict[str, Any]:
         words,
         set(row["arms"]),
         row["head"],
-        gesture_words(row["language"]),
+        words_for_gesture(row["language"]),
         set(pack.small) if pack is not None else set(),
         Bits(row["seed"]),
     )

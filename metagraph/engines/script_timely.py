@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from metagraph.engines.script_parts import Case, ScriptStep, ask, once, some
+from metagraph.engines.script_parts import ScriptCase, ScriptStep, ask, list_some_actions, make_case
 from metagraph.graph.model import LAYERS, Project
 
 
-def timely_cases(project: Project) -> Iterator[Case]:
+def list_timely_cases(project: Project) -> Iterator[ScriptCase]:
     """Yield cases of requests that say how late they may come."""
     for layer in LAYERS:
-        gestures = some(project, layer, "gesture")
+        gestures = list_some_actions(project, layer, "gesture")
         if not gestures:
             continue
         one, own = gestures[0], dict[str, Any](layer=layer, late=0.0)
@@ -33,7 +33,7 @@ def timely_cases(project: Project) -> Iterator[Case]:
             ask("after", "gesture", stroke=29.9, layer=layer, late=2.0),
         ]
         about = "strokes on time or not at all, shared ones, and what leaves room for the next"
-        yield once(f"{layer}: strokes that may not be late", about, asks, 36.0)
+        yield make_case(f"{layer}: strokes that may not be late", about, asks, 36.0)
         now = [
             ask("n0", "gesture", stroke=6.6, **own),
             ask("n1", "gesture", stroke=7.8, layer=layer, late=0.5),
@@ -47,7 +47,7 @@ def timely_cases(project: Project) -> Iterator[Case]:
             ScriptStep(12.0, 24.0, (ask("n6", "gesture", stroke=12.7, **own),), forget=9.0),
         )
         about = "what runs is left for what may not be late"
-        yield Case(f"{layer}: strokes that become known late", about, steps, idle=True)
+        yield ScriptCase(f"{layer}: strokes that become known late", about, steps, idle=True)
         asks = [
             ask("a", "gesture", stroke=4.0, **own),
             ask("b", "gesture", stroke=4.5, layer=layer, late=4.0),
@@ -57,10 +57,12 @@ def timely_cases(project: Project) -> Iterator[Case]:
         ]
         on = [ScriptStep(now, now + 18.0) for now in (1.0, 3.0, 12.0, 13.0)]
         about = "lateness is told once, and what serves two is not played twice"
-        yield Case(f"{layer}: strokes that are planned on", about, (ScriptStep(0.0, 20.0, tuple(asks)), *on))
+        yield ScriptCase(
+            f"{layer}: strokes that are planned on", about, (ScriptStep(0.0, 20.0, tuple(asks)), *on)
+        )
     for layer in LAYERS:
         graph = project.graphs[layer]
-        gestures, late = some(project, layer, "gesture"), {"late": 0.4}
+        gestures, late = list_some_actions(project, layer, "gesture"), {"late": 0.4}
         if not gestures:
             continue
         other = next((a for a in gestures if a.stance != gestures[0].stance), None)
@@ -78,4 +80,4 @@ def timely_cases(project: Project) -> Iterator[Case]:
         ]
         asks += [ask("nod", "nod", 18.1, **late), ask("shake", "shake", 18.3, **late)]
         about = "of those without a stroke the start counts; transitions on the way take time"
-        yield once(f"{layer}: starts that may not be late", about, asks, 26.0)
+        yield make_case(f"{layer}: starts that may not be late", about, asks, 26.0)

@@ -6,17 +6,17 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from metagraph.engines.script_parts import Case, ask, once
+from metagraph.engines.script_parts import ScriptCase, ask, make_case
 from metagraph.graph.model import Project
 from metagraph.playback.posing.rigs import rigs_of
-from metagraph.playback.posing.weight import weighs
+from metagraph.playback.posing.weight import has_weight
 
 MOST = 6  # actions in a case
 
 
-def weight_cases(project: Project) -> Iterator[Case]:
+def list_weight_cases(project: Project) -> Iterator[ScriptCase]:
     """Yield cases of one arms' action after the other, and of some that the body plays, too."""
-    rig = rigs_of(project).weight.rig if weighs(project) and project.skeleton is not None else None
+    rig = rigs_of(project).weight.rig if has_weight(project) and project.skeleton is not None else None
     arms, body = project.graphs["arms"], project.graphs["body"]
     if rig is None or rig.strength <= 0:
         return
@@ -26,7 +26,7 @@ def weight_cases(project: Project) -> Iterator[Case]:
     about = "the body answers as it stands, and comes back"
     for stance in [*body.stances][:2] if asks else ():
         name = f"arms that weigh in {stance}"
-        yield once(name, about, asks, 19.0, stances={"body": stance}, times=times, alive=(True,))
+        yield make_case(name, about, asks, 19.0, stances={"body": stance}, times=times, alive=(True,))
     clips = {a.clip: a for a in acts}
     both = [(clips[a.clip], a) for a in body.actions.values() if a.clip in clips and a.stance == body.start]
     asks = []
@@ -39,4 +39,6 @@ def weight_cases(project: Project) -> Iterator[Case]:
         about = "what the body shows of a clip, too, moves its own hips"
         times = tuple(np.round(np.arange(0.9, 2.0 + 3.0 * len(both), 0.37), 3).tolist())
         for seed in (1, 2):
-            yield once(f"one clip on both {seed}", about, asks, 19.0, seed=seed, times=times, alive=(True,))
+            yield make_case(
+                f"one clip on both {seed}", about, asks, 19.0, seed=seed, times=times, alive=(True,)
+            )

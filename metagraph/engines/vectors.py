@@ -20,14 +20,14 @@ from numpy.typing import NDArray
 
 from metagraph.engines.reading import read_export
 from metagraph.engines.script import cases
-from metagraph.engines.script_boundaries import boundary_cases
-from metagraph.engines.script_parts import Case, ScriptStep
-from metagraph.engines.script_sounds import heard, streamed
-from metagraph.engines.script_talk import talk_of, talked
+from metagraph.engines.script_boundaries import list_boundary_cases
+from metagraph.engines.script_parts import ScriptCase, ScriptStep
+from metagraph.engines.script_sounds import list_heard_marks, list_streams
+from metagraph.engines.script_talk import list_talks, talk_of
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph.model import LAYERS, Project
-from metagraph.graph.offered import offered
+from metagraph.graph.offered import offered_requests
 from metagraph.graph.requests import AnyRequest, RequestError, request_from
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
@@ -35,9 +35,9 @@ from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.plan import LayerPlan, Plan, Report
 from metagraph.playback.planning.choice import key32
-from metagraph.playback.planning.extend_performance import hear, since
+from metagraph.playback.planning.extend_performance import hear_asks, since
 from metagraph.playback.posing.rigs import rigs_of
-from metagraph.playback.posing.weight import weighs
+from metagraph.playback.posing.weight import has_weight
 
 Array = NDArray[Any]
 
@@ -55,7 +55,7 @@ HASHES: tuple[tuple[int, tuple[str, ...]], ...] = (
 )
 
 
-def follow(project: Project, case: Case) -> Plan:
+def play_case(project: Project, case: ScriptCase) -> Plan:
     """Return the plan a case leads to. What cannot be read is in its reports, as a runtime tells it."""
     plan = Plan(case.seed, 0.0)
     for step in case.steps:
@@ -67,37 +67,38 @@ def follow(project: Project, case: Case) -> Plan:
             except RequestError as error:
                 at = step.now + project.settings.lookahead if step.now > 0 else 0.0
                 refused.append(Report(ask.get("id", ""), "not-understood", str(error), "arms", at))
-        plan = hear(project, plan, step.now, asks, step.end, case.stances, case.idle)
+        plan = hear_asks(project, plan, step.now, asks, step.end, case.stances, case.idle)
         plan = replace(plan, reports=(*plan.reports, *refused))
         if step.forget is not None:
             plan = since(plan, step.forget)
     return plan
 
 
-def every_case(project: Project) -> Iterator[Case]:
+def list_cases(project: Project) -> Iterator[ScriptCase]:
     """Yield all cases that suit a project."""
     yield from cases(project)
-    yield from boundary_cases(project)
+    yield from list_boundary_cases(project)
 
 
-def write_vectors(export: Path, chosen: Iterable[Case] | None = None) -> Path:
+def write_vectors(export: Path, chosen: Iterable[ScriptCase] | None = None) -> Path:
     """Write the vectors of an export beside its JSON; return the file. chosen: the cases, all that suit it
     when None.
 
     Raises FileError when the export cannot be read or the file cannot be written.
     """
     project = read_export(export, resolved=True)
-    found = [_expected(project, case) for case in (every_case(project) if chosen is None else chosen)]
+    found = [_expected(project, case) for case in (list_cases(project) if chosen is None else chosen)]
     head = {
         "vectors": VERSION,
         "export": export.name,
         "tolerance": {"metres": METRES, "degrees": DEGREES, "seconds": SECONDS, "weight": WEIGHT},
         "hashes": [[seed, list(words), key32(seed, *words)] for seed, words in HASHES],
-        "described": offered(project),
+        "described": offered_requests(project),
         "heard": [
-            {"rate": rate, "pieces": pieces, "marks": heard(rate, pieces)} for rate, pieces in streamed()
+            {"rate": rate, "pieces": pieces, "marks": list_heard_marks(rate, pieces)}
+            for rate, pieces in list_streams()
         ],
-        "talked": talked(),
+        "talked": list_talks(),
     }
     lines = ",\n".join(json.dumps(case, ensure_ascii=False, separators=(",", ":")) for case in found)
     text = json.dumps(head, ensure_ascii=False)[:-1] + f', "cases": [\n{lines}\n]}}\n'
@@ -106,10 +107,10 @@ def write_vectors(export: Path, chosen: Iterable[Case] | None = None) -> Path:
     return path
 
 
-def _expected(project: Project, case: Case) -> dict[str, Any]:
-    plan = follow(project, case)
+def _expected(project: Project, case: ScriptCase) -> dict[str, Any]:
+    plan = play_case(project, case)
     times = case.times or _telling(plan)
-    answers = weighs(project) and rigs_of(project).weight.rig is not None
+    answers = has_weight(project) and rigs_of(project).weight.rig is not None
     evaluator = Evaluator(plan, project)
     living = (*times, *_living(plan, answers)) if len(case.steps) + case.idle > 1 else times
     return {
@@ -317,26 +318,28 @@ def check_vectors(folder: Path, project: Project | None = None) -> Outcome:
     for seed, words, expected in data["hashes"]:
         if key32(seed, *words) != expected:
             out.failures.append(("hashes", f"{seed} {words}"))
-    wrong = _unlike(offered(project), data["described"], "described") if "described" in data else []
+    wrong = _unlike(offered_requests(project), data["described"], "described") if "described" in data else []
     out.failures += [("described", what) for what in wrong]
     for n, sound in enumerate(data.get("heard", ())):
-        wrong = _unlike(heard(sound["rate"], sound["pieces"]), sound["marks"], f"heard[{n}]")
+        wrong = _unlike(list_heard_marks(sound["rate"], sound["pieces"]), sound["marks"], f"heard[{n}]")
         out.failures += [("heard", what) for what in wrong]
     for n, row in enumerate(data.get("talked", ())):
         found = talk_of(row)
         wrong = _unlike(found, {name: row[name] for name in found}, f"talked[{n}]")
         out.failures += [("talked", what) for what in wrong]
     for case in data["cases"]:
-        wrong = differences(project, case)
+        wrong = find_case_differences(project, case)
         out.failures += [(case["name"], what) for what in wrong]
         out.passed += not wrong
     return out
 
 
-def differences(project: Project, case: Mapping[str, Any]) -> list[str]:
+def find_case_differences(project: Project, case: Mapping[str, Any]) -> list[str]:
     """Return in words how what this library makes of a case differs from what the case expects."""
     steps = tuple(ScriptStep(s["now"], s["end"], tuple(s["asks"]), s["forget"]) for s in case["steps"])
-    plan = follow(project, Case(case["name"], "", steps, case["seed"], case["idle"], case["stances"]))
+    plan = play_case(
+        project, ScriptCase(case["name"], "", steps, case["seed"], case["idle"], case["stances"])
+    )
     out = [*_unlike(plan_data(plan), case["plan"], "plan"), *_unlike(life_data(plan), case["life"], "life")]
     if out:
         return out

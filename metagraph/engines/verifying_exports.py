@@ -10,20 +10,27 @@ from pathlib import Path
 import msgspec
 
 from metagraph.common.budgets import TEXT_FILE
-from metagraph.common.files import is_file, is_inside, opened, read_file, unforeseen
-from metagraph.common.network_paths import reason
+from metagraph.common.files import is_file, is_inside, open_file, read_file, unforeseen_error
+from metagraph.common.network_paths import explain_refusal
 from metagraph.engines import contract as c
 from metagraph.engines.reading import read_export
-from metagraph.engines.targets.placing import RECORD, Record, forsaken_staging, read_record
+from metagraph.engines.targets.placing import RECORD, ExportRecord, find_forsaken_staging, read_record
 from metagraph.engines.targets.registry import targets
-from metagraph.errors import FileError, shown
+from metagraph.errors import FileError, clean_text
 from metagraph.formats.clips import digest
 from metagraph.formats.gltf.file import open_gltf
 from metagraph.formats.gltf.reader import read_gltf_clips
-from metagraph.formats.project.verified import Fault, Verified, VerifiedPart, counted, fault_of, whole_of
-from metagraph.formats.project.verifying import BROKEN, unfinished_faults, verify_project
+from metagraph.formats.project.verified import (
+    VerificationFault,
+    Verified,
+    VerifiedPart,
+    count_in_words,
+    describe_whole,
+    fault_of,
+)
+from metagraph.formats.project.verifying import BROKEN, find_unfinished_files, verify_project
 from metagraph.formats.store import SUFFIX
-from metagraph.graph.check import check
+from metagraph.graph.check import check_project
 from metagraph.speech.sound import read_head
 
 AGAIN = "Export it again."
@@ -91,7 +98,7 @@ def _root_of(path: Path) -> Path | None:
 
 def _is_export(path: Path) -> bool:
     try:
-        with opened(path, TEXT_FILE) as file:
+        with open_file(path, TEXT_FILE) as file:
             head = file.read(HEAD)
     except FileError:
         return False
@@ -136,67 +143,75 @@ def _jsons_of_record(folder: Path) -> list[Path]:
 
 def _is_own(name: str, folder: Path) -> bool:
     """Return whether a record names a file that an export could have written."""
-    return reason(name) is None and is_inside(folder / name, folder)
+    return explain_refusal(name) is None and is_inside(folder / name, folder)
 
 
 def _recorded(folder: Path) -> Verified:
     record = read_record(folder)
     if record is None:
-        part = VerifiedPart("record", "not whole", (Fault(RECORD, "is damaged or not a record.", AGAIN),))
+        part = VerifiedPart(
+            "record", "not whole", (VerificationFault(RECORD, "is damaged or not a record.", AGAIN),)
+        )
         jsons = [path for path in sorted(folder.glob("*.json")) if _is_export(path)]
         return _export(str(folder), "export", jsons, [part, _leftovers(folder)])
     jsons = _jsons_of_record(folder)
     parts = [_record(record, jsons), _files(folder, record), _leftovers(folder)]
-    return _export(str(folder), f"export for {shown(record.target)}", jsons, parts)
+    return _export(str(folder), f"export for {clean_text(record.target)}", jsons, parts)
 
 
-def _record(record: Record, jsons: Sequence[Path]) -> VerifiedPart:
+def _record(record: ExportRecord, jsons: Sequence[Path]) -> VerifiedPart:
     faults = []
     if record.replaced is not None:
         faults.append(
-            Fault(
+            VerificationFault(
                 RECORD,
                 "tells of an export that was interrupted while it exchanged files.",
                 "Export it again: that replaces the old files and the new ones.",
             )
         )
     if record.target not in targets():
-        faults.append(Fault(RECORD, f"names a target that there is not: '{shown(record.target)}'.", AGAIN))
+        faults.append(
+            VerificationFault(
+                RECORD, f"names a target that there is not: '{clean_text(record.target)}'.", AGAIN
+            )
+        )
     names = {document.name for path in jsons if (document := _decoded(path)) is not None}
     if names and record.project not in names:
-        faults.append(Fault(RECORD, f"is of another project: '{shown(record.project)}'.", AGAIN))
-    words = f"an export of '{shown(record.project)}' that was finished"
+        faults.append(
+            VerificationFault(RECORD, f"is of another project: '{clean_text(record.project)}'.", AGAIN)
+        )
+    words = f"an export of '{clean_text(record.project)}' that was finished"
     return VerifiedPart("record", "not whole" if faults else words, tuple(faults))
 
 
-def _files(folder: Path, record: Record) -> VerifiedPart:
+def _files(folder: Path, record: ExportRecord) -> VerifiedPart:
     faults = list(_file_faults(folder, record))
-    words = whole_of(len(record.files), faults, "are as they were written")
+    words = describe_whole(len(record.files), faults, "are as they were written")
     return VerifiedPart("files", words, tuple(faults))
 
 
-def _file_faults(folder: Path, record: Record) -> Iterator[Fault]:
+def _file_faults(folder: Path, record: ExportRecord) -> Iterator[VerificationFault]:
     for name, wanted in record.files.items():
         if not _is_own(name, folder):
-            yield Fault(
-                shown(name), "is no file that an export would have written; it was not opened.", AGAIN
+            yield VerificationFault(
+                clean_text(name), "is no file that an export would have written; it was not opened.", AGAIN
             )
             continue
         if not is_file(folder / name):
-            yield Fault(shown(name), "is missing.", AGAIN)
+            yield VerificationFault(clean_text(name), "is missing.", AGAIN)
             continue
         try:
             found = digest(folder / name)
         except Exception as error:  # one bad file never hides the others
-            yield fault_of(unforeseen(folder / name, error), shown(name))
+            yield fault_of(unforeseen_error(folder / name, error), clean_text(name))
             continue
         if found == wanted:
             continue
         if found == (record.replaced or {}).get(name):
-            yield Fault(shown(name), "is still the one of the export before.", AGAIN)
+            yield VerificationFault(clean_text(name), "is still the one of the export before.", AGAIN)
         else:
-            yield Fault(
-                shown(name),
+            yield VerificationFault(
+                clean_text(name),
                 "was changed since it was exported: its SHA-256 is another.",
                 "Export it again with --overwrite, or leave it if it was changed on purpose.",
             )
@@ -205,10 +220,10 @@ def _file_faults(folder: Path, record: Record) -> Iterator[Fault]:
 def _leftovers(folder: Path) -> VerifiedPart:
     remedy = "Exporting into this folder again removes it; it can be removed by hand as well."
     faults = [
-        Fault(path.name, "is a folder that an interrupted export left.", remedy)
-        for path in sorted(forsaken_staging(folder))
+        VerificationFault(path.name, "is a folder that an interrupted export left.", remedy)
+        for path in sorted(find_forsaken_staging(folder))
     ]
-    faults += unfinished_faults(folder)
+    faults += find_unfinished_files(folder)
     return VerifiedPart("leftovers", "found" if faults else "none", tuple(faults))
 
 
@@ -236,7 +251,9 @@ def _pair(path: Path) -> list[VerifiedPart]:
         return [*parts, _readable(glb)] if document is None and is_file(glb) else parts
     assert document is not None
     faults = [
-        Fault(path.name, f"{problem.message}.", AGAIN) for problem in check(project) if problem.code in BROKEN
+        VerificationFault(path.name, f"{problem.message}.", AGAIN)
+        for problem in check_project(project)
+        if problem.code in BROKEN
     ]
     faults += _lost_names(path, document)
     words = f"format {document.metagraph}, as the schema has it"
@@ -247,7 +264,7 @@ def _pair(path: Path) -> list[VerifiedPart]:
     ]
 
 
-def _lost_names(path: Path, document: c.Export) -> Iterator[Fault]:
+def _lost_names(path: Path, document: c.Export) -> Iterator[VerificationFault]:
     """Find ids in an index, a transition or an expanded machine that nothing has."""
     for layer, graph in document.layers.items():
         ids = {action.id for action in graph.actions}
@@ -257,7 +274,9 @@ def _lost_names(path: Path, document: c.Export) -> Iterator[Fault]:
         named += [(f"expanded.{layer}.states", i) for i in machine.states] if machine is not None else []
         for where, ident in named:
             if ident not in ids:
-                yield Fault(f"{path.name}, $.{where}", f"names no action: '{shown(ident)}'.", AGAIN)
+                yield VerificationFault(
+                    f"{path.name}, $.{where}", f"names no action: '{clean_text(ident)}'.", AGAIN
+                )
 
 
 def _readable(glb: Path) -> VerifiedPart:
@@ -265,15 +284,21 @@ def _readable(glb: Path) -> VerifiedPart:
         takes = read_gltf_clips(glb)
     except FileError as error:
         return VerifiedPart("GLB", "not whole", (fault_of(error),))
-    return VerifiedPart("GLB", f"can be read, {counted(len(takes), 'animation')}; nothing to compare it with")
+    return VerifiedPart(
+        "GLB", f"can be read, {count_in_words(len(takes), 'animation')}; nothing to compare it with"
+    )
 
 
 def _glb(path: Path, document: c.Export) -> list[VerifiedPart]:
     glb = path.parent / document.glb
-    if (why := reason(document.glb)) is not None:
-        return [VerifiedPart("GLB", "not whole", (Fault(document.glb, f"was not opened: {why}.", AGAIN),))]
+    if (why := explain_refusal(document.glb)) is not None:
+        return [
+            VerifiedPart(
+                "GLB", "not whole", (VerificationFault(document.glb, f"was not opened: {why}.", AGAIN),)
+            )
+        ]
     if not is_file(glb):
-        return [VerifiedPart("GLB", "not whole", (Fault(document.glb, "is missing.", BOTH),))]
+        return [VerifiedPart("GLB", "not whole", (VerificationFault(document.glb, "is missing.", BOTH),))]
     try:
         faults = list(_pair_faults(path, document, glb))
         if document.glb_sha256 is None:
@@ -285,43 +310,41 @@ def _glb(path: Path, document: c.Export) -> list[VerifiedPart]:
             return [pair, VerifiedPart("animations", "not compared, since the GLB is another")]
         faults = list(_content_faults(document, glb))
     except Exception as error:  # whatever a damaged file does to its reader
-        return [VerifiedPart("GLB", "not whole", (fault_of(unforeseen(glb, error)),))]
-    words = (
-        f"{counted(len(document.clips), 'animation')} and {counted(len(document.joints), 'joint')} are there"
-    )
+        return [VerifiedPart("GLB", "not whole", (fault_of(unforeseen_error(glb, error)),))]
+    animations = count_in_words(len(document.clips), "animation")
+    words = f"{animations} and {count_in_words(len(document.joints), 'joint')} are there"
     return [pair, VerifiedPart("animations", "not whole" if faults else words, tuple(faults))]
 
 
-def _pair_faults(path: Path, document: c.Export, glb: Path) -> Iterator[Fault]:
+def _pair_faults(path: Path, document: c.Export, glb: Path) -> Iterator[VerificationFault]:
     size = glb.stat().st_size
     if document.glb_bytes is not None and size != document.glb_bytes:
-        yield Fault(
+        yield VerificationFault(
             glb.name, f"has {size:,} bytes; {path.name} was written with {document.glb_bytes:,}.", BOTH
         )
     elif document.glb_sha256 is not None and digest(glb) != document.glb_sha256:
-        yield Fault(
+        yield VerificationFault(
             glb.name, f"is not the GLB that {path.name} was written with: its SHA-256 is another.", BOTH
         )
 
 
-def _content_faults(document: c.Export, glb: Path) -> Iterator[Fault]:
+def _content_faults(document: c.Export, glb: Path) -> Iterator[VerificationFault]:
     """Compare the animations and joints of a GLB with those that its JSON names."""
     scene = open_gltf(glb).json
     names = [animation.name for animation in scene.animations]
     for clip in document.clips:
         if clip.animation >= len(names):
-            yield Fault(glb.name, f"has no animation {clip.animation} ('{shown(clip.name)}').", BOTH)
-        elif names[clip.animation] != clip.name:
-            yield Fault(
-                glb.name,
-                f"has '{shown(names[clip.animation] or '')}' as animation {clip.animation}; the JSON has "
-                f"'{shown(clip.name)}' there.",
-                BOTH,
+            yield VerificationFault(
+                glb.name, f"has no animation {clip.animation} ('{clean_text(clip.name)}').", BOTH
             )
+        elif names[clip.animation] != clip.name:
+            found, wanted = clean_text(names[clip.animation] or ""), clean_text(clip.name)
+            words = f"has '{found}' as animation {clip.animation}; the JSON has '{wanted}' there."
+            yield VerificationFault(glb.name, words, BOTH)
     nodes = {node.name for node in scene.nodes}
     for joint in document.joints:
         if joint.name not in nodes:
-            yield Fault(glb.name, f"has no joint '{shown(joint.name)}'.", BOTH)
+            yield VerificationFault(glb.name, f"has no joint '{clean_text(joint.name)}'.", BOTH)
     read_gltf_clips(glb)  # all of it can be read
 
 
@@ -330,13 +353,17 @@ def _sounds(path: Path, document: c.Export) -> VerifiedPart:
     faults = []
     for name in names:
         place = path.parent / name
-        if (why := reason(name)) is not None:
-            faults.append(Fault(shown(name), f"was not opened: {why}.", AGAIN))
+        if (why := explain_refusal(name)) is not None:
+            faults.append(VerificationFault(clean_text(name), f"was not opened: {why}.", AGAIN))
         elif not is_file(place):
-            faults.append(Fault(shown(name), "is missing.", "Export it again, and copy the sounds with it."))
+            faults.append(
+                VerificationFault(
+                    clean_text(name), "is missing.", "Export it again, and copy the sounds with it."
+                )
+            )
         else:
             try:
                 read_head(place)
             except FileError as error:
-                faults.append(fault_of(error, shown(name)))
-    return VerifiedPart("sounds", whole_of(len(names), faults, "are there"), tuple(faults))
+                faults.append(fault_of(error, clean_text(name)))
+    return VerifiedPart("sounds", describe_whole(len(names), faults, "are there"), tuple(faults))

@@ -21,7 +21,7 @@ from metagraph.common.files import read_file
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.edits import add_stance, added_actions, move_actions, place, update_actions
+from metagraph.graph.edits import add_stance, find_added_actions, move_actions, place_clips, update_actions
 from metagraph.graph.model import Kind, Layer, Limb, Project
 
 Name = Annotated[str, Meta(min_length=1, max_length=300)]
@@ -79,7 +79,7 @@ def read_labels(path: Path) -> tuple[LabelRow, ...]:
         ) from None
 
 
-def labelled(
+def apply_labels(
     project: Project, rows: Iterable[LabelRow], fresh: Mapping[str, str]
 ) -> tuple[Project, int, tuple[str, ...]]:
     """Return a project with rows applied, how many were, and why others were not, in words.
@@ -122,8 +122,8 @@ def _applied(project: Project, row: LabelRow, fresh: Mapping[str, str]) -> Proje
         known = next((a for a in alike if a.name == (row.name or row.clip)), None)
     ident = known.id if known is not None else ""
     if known is None:
-        before, project = project, place(project, [clip], layer, kind, stance, end)
-        ident = added_actions(before, project)[0]
+        before, project = project, place_clips(project, [clip], layer, kind, stance, end)
+        ident = find_added_actions(before, project)[0]
     elif (layer, kind, stance, end) != (known.layer, known.kind, known.stance, known.end_stance):
         project = move_actions(project, [ident], kind, stance, end)
     return update_actions(project, [ident], clip=clip, **_fields(row))

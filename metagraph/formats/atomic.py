@@ -16,7 +16,7 @@ from pathlib import Path
 from metagraph.errors import FileError
 from metagraph.formats.locking import mark_is_gone
 from metagraph.formats.new_file import Access
-from metagraph.formats.outputs import being_written, claim
+from metagraph.formats.outputs import claim, claim_output
 from metagraph.formats.replacing import replace_file, sync_folder
 
 FORSAKEN = 86_400.0  # seconds after which an unfinished file of a computer that cannot be asked is nobody's
@@ -46,7 +46,7 @@ def write_atomically(path: Path, content: bytes, like: Access | None = None) -> 
         if path.exists() and not os.access(path, os.W_OK):
             raise PermissionError(errno.EACCES, "it is read-only")
         later = _LATER.get()
-        with being_written(path, content):
+        with claim_output(path, content):
             replace_file(path, content, sync=later is None, like=like)
         if later is not None:
             later.append(path)
@@ -72,7 +72,7 @@ def _unwritable(path: Path, error: OSError) -> FileError:
 
 
 @contextmanager
-def synced_together() -> Iterator[None]:
+def sync_together() -> Iterator[None]:
     """Have what is written atomically inside wait for the disk at the end, several files at once: for folders
     that nobody looks into before. Raises FileError.
     """
@@ -125,14 +125,14 @@ def sweep(folder: Path) -> list[Path]:
     when it was not touched for a day.
     """
     swept: list[Path] = []
-    for path in forsaken(folder):
+    for path in find_forsaken_files(folder):
         with suppress(OSError):
             path.unlink()
             swept.append(path)
     return swept
 
 
-def forsaken(folder: Path) -> list[Path]:
+def find_forsaken_files(folder: Path) -> list[Path]:
     """Return what writers that are gone have left half-written in a folder."""
     found: list[Path] = []
     with suppress(OSError), os.scandir(folder) as entries:

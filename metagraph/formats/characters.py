@@ -16,7 +16,7 @@ from metagraph.formats.gltf.reader import has_skinned_mesh, read_character
 from metagraph.graph.edits import hide_meshes, set_character
 from metagraph.graph.face.rig import with_morphs
 from metagraph.graph.model import Project
-from metagraph.motion.character_mesh import Character, no_character
+from metagraph.motion.character_mesh import CharacterMesh, explain_no_character
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Skeleton
 
@@ -58,11 +58,11 @@ def look_at(name: str, folder: Path | None, skeleton: Skeleton | None) -> Charac
     return _described(name, read_character((folder or Path()) / name), skeleton)
 
 
-def _described(name: str, body: Character, skeleton: Skeleton | None) -> CharacterFile:
-    return CharacterFile(name, body.morphs, held_meshes(body), no_character(body, skeleton))
+def _described(name: str, body: CharacterMesh, skeleton: Skeleton | None) -> CharacterFile:
+    return CharacterFile(name, body.morphs, find_held_meshes(body), explain_no_character(body, skeleton))
 
 
-def held_meshes(body: Character) -> tuple[str, ...]:
+def find_held_meshes(body: CharacterMesh) -> tuple[str, ...]:
     """Return the meshes that hang in the hands, where one hand holds several: they cannot all be meant at
     once.
 

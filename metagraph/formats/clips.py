@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from metagraph.common.budgets import MOTION_FILE, SOUND_FILE
-from metagraph.common.files import guarded, opened, unforeseen
+from metagraph.common.files import guard_reader, open_file, unforeseen_error
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.clip_readers import (
@@ -23,7 +23,7 @@ from metagraph.formats.clip_readers import (
     reader_of,
 )
 from metagraph.formats.stray_poses import is_bind_pose
-from metagraph.formats.takes import NAME, ONE_FRAME, repaired
+from metagraph.formats.takes import NAME, ONE_FRAME, note_repair
 from metagraph.motion.clip import Clip, ClipError, Repair
 
 
@@ -42,8 +42,8 @@ class ImportReport:
     cancelled: bool = False
 
 
-@guarded
-def read_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
+@guard_reader
+def read_clip_file(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
     """Return all takes of a file, poses of one frame behind the others. A bind pose of one frame without a
     name of its own is skipped where other takes are longer, with a note on those.
 
@@ -98,7 +98,7 @@ def _without_junk(clips: list[Clip], as_is: Collection[str]) -> list[Clip]:
         for n, c in enumerate(junk, len(kept))
     )
     if not made:
-        return [*kept, *(repaired(clip, repair) for clip, repair in zip(junk, skipped, strict=True))]
+        return [*kept, *(note_repair(clip, repair) for clip, repair in zip(junk, skipped, strict=True))]
     told = f"skipped {', '.join(repr(clip.name) for clip in junk)}: a bind pose of one frame"
     kept[0] = replace(kept[0], notes=(*kept[0].notes, told))
     return [replace(clip, repairs=(*clip.repairs, *skipped)) for clip in kept]
@@ -113,7 +113,7 @@ def _reader(path: Path) -> ClipReader | str:
     """Return what reads a file by its content, or what else it is. Raises FileError when it cannot be
     read.
     """
-    with opened(path, MOTION_FILE) as file:
+    with open_file(path, MOTION_FILE) as file:
         head = file.read(HEAD)
     if not head:
         return phrase("an empty file")
@@ -164,12 +164,12 @@ def import_clips(
     Python's own, where threads gain nothing.
     """
     files = [Path(p) for p in paths]
-    with reading_together(files) as begun:
+    with read_together(files) as begun:
         return _import_clips(files, begun, progress, cancelled)
 
 
 @contextmanager
-def reading_together(paths: Iterable[Path]) -> Iterator[Mapping[Path, Future[list[Clip]]]]:
+def read_together(paths: Iterable[Path]) -> Iterator[Mapping[Path, Future[list[Clip]]]]:
     """Begin to read those of many files that another process reads, a few at a time; what is not wanted any
     more at the end is not read.
     """
@@ -182,7 +182,7 @@ def reading_together(paths: Iterable[Path]) -> Iterator[Mapping[Path, Future[lis
     with batch():
         pool = ThreadPoolExecutor(min(4, os.cpu_count() or 1))
         try:
-            yield {path: pool.submit(read_clips, path) for path in fbx}
+            yield {path: pool.submit(read_clip_file, path) for path in fbx}
         finally:
             pool.shutdown(cancel_futures=True)
 
@@ -205,9 +205,9 @@ def _import_clips(
         if progress is not None:
             progress(done, len(files), path)
         try:
-            takes = begun[path].result() if path in begun else read_clips(path)
+            takes = begun[path].result() if path in begun else read_clip_file(path)
         except Exception as error:  # no kind is trusted to be the only one
-            failures.append(unforeseen(path, error))
+            failures.append(unforeseen_error(path, error))
             continue
         for number, clip in enumerate(takes):
             known = skeletons.setdefault(clip.skeleton.fingerprint, clip)
@@ -226,5 +226,5 @@ def _import_clips(
 
 def digest(path: str | Path) -> str:
     """Return the SHA-256 of a file's content, hex. Raises FileError."""
-    with opened(path, SOUND_FILE) as file:
+    with open_file(path, SOUND_FILE) as file:
         return hashlib.file_digest(file, "sha256").hexdigest()

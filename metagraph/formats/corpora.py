@@ -21,9 +21,9 @@ from typing import Any, Literal
 
 from numpy.typing import NDArray
 
-from metagraph.common.files import unforeseen
+from metagraph.common.files import unforeseen_error
 from metagraph.errors import FileError
-from metagraph.formats.clips import find_clip_files, read_clips
+from metagraph.formats.clips import find_clip_files, read_clip_file
 from metagraph.formats.conversations.files import SOUNDS, read_conversation
 from metagraph.formats.transcripts.words import SUFFIXES as TRANSCRIPTS
 from metagraph.graph.conversation.model import Conversation
@@ -60,7 +60,7 @@ class Recorded:
 
 
 @dataclass(frozen=True, eq=False)
-class Corpus:
+class CorpusReading:
     """What was read of a folder. failures: conversations that could not be, and why, in words."""
 
     layout: Layout
@@ -87,7 +87,7 @@ def read_corpus(
     folder: str | Path,
     layout: Layout | None = None,
     progress: Callable[[int, int], None] | None = None,
-) -> Corpus:
+) -> CorpusReading:
     """Read every conversation of a folder and below; one that cannot be read fails alone. layout: as told
     above, else what most files look like. Raises FileError where there is no folder, or nothing in it can be
     read.
@@ -111,7 +111,7 @@ def read_corpus(
         except FileError as error:
             failures.append(f"{name}: {error}")
         except Exception as error:  # one bad conversation spoils no other
-            failures.append(str(unforeseen(next(iter(files.files)), error)))
+            failures.append(str(unforeseen_error(next(iter(files.files)), error)))
         else:
             recorded.append(one)
             notes += [f"{name}: {told}" for told in one.notes]
@@ -122,7 +122,7 @@ def read_corpus(
             f"{failures[0].rstrip('.')}",
             remedy="Each needs motion, sound beside it of the same name, and best its words.",
         )
-    return Corpus(layout, tuple(recorded), tuple(failures), tuple(dict.fromkeys(notes)))
+    return CorpusReading(layout, tuple(recorded), tuple(failures), tuple(dict.fromkeys(notes)))
 
 
 # --- where things are
@@ -244,7 +244,7 @@ def _read(name: str, files: _Found) -> Recorded:
         if path is None:
             notes.append(f"nobody knows how side {side + 1} moved")
             continue
-        clips[side] = max(read_clips(path), key=lambda c: c.frames)
+        clips[side] = max(read_clip_file(path), key=lambda c: c.frames)
     if not told:
         notes.append("no words are beside it: loudness tells clauses, hesitations are not found")
     return Recorded(name, (clips[0], clips[1]), read.conversation, None, (*notes, *read.notes), files.files)

@@ -13,10 +13,10 @@ from pathlib import Path
 from xml.parsers import expat
 
 from metagraph.common.budgets import MARKS, MARKS_FILE, NESTING
-from metagraph.common.files import guarded, read_file
+from metagraph.common.files import guard_reader, read_file
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
-from metagraph.playback.learning.annotation import Annotation, Interval, Tier
+from metagraph.playback.learning.annotation import Annotation, AnnotationInterval, AnnotationTier
 
 LONGEST = 1e7  # seconds, four months
 UNITS: Mapping[str, float] = {
@@ -221,7 +221,7 @@ class _Reader:
                 self.mark.text = text
 
 
-@guarded
+@guard_reader
 def read_elan(path: str | Path) -> Annotation:
     """Read an .eaf file (format 2.x or 3.0).
 
@@ -266,11 +266,11 @@ def _annotation(reader: _Reader) -> Annotation:
         for mark in tier.marks:
             start, end = spans[mark.ident]
             if start < end:
-                intervals.append(Interval(start, end, mark.text))
+                intervals.append(AnnotationInterval(start, end, mark.text))
             else:
                 lost[f"tier '{tier.name}'"] += 1
         intervals.sort(key=lambda i: (i.start, i.end))
-        tiers.append(Tier(tier.name, tuple(intervals), tier.participant, tier.parent))
+        tiers.append(AnnotationTier(tier.name, tuple(intervals), tier.participant, tier.parent))
     notes = [
         x
         if "refers" in x

@@ -56,7 +56,7 @@ def remedies(result: Imported) -> tuple[Remedy, ...]:
     return tuple(out)
 
 
-def head(result: Imported) -> str:
+def describe_imported(result: Imported) -> str:
     """Return what came in: "Imported 24 clips, 3 of them retargeted"."""
     count = len(result.loaded)
     if result.retargeted and count:
@@ -65,9 +65,9 @@ def head(result: Imported) -> str:
     return phrase("Imported {clips}", clips=_clips(count))
 
 
-def said(result: Imported, window: bool = True) -> str:
+def describe_import(result: Imported, window: bool = True) -> str:
     """Return all of it in one line. window: what is to be done is done with buttons."""
-    parts = [head(result)]
+    parts = [describe_imported(result)]
     right: dict[str, int] = {}
     for name, n in _repairs(result):
         right[name] = right.get(name, 0) + n
@@ -92,7 +92,7 @@ def said(result: Imported, window: bool = True) -> str:
     known = {repair.words for _, _, _, clip in result.loaded for repair in clip.repairs}
     hidden = result.character.notes if result.character is not None else ()
     notes = [n for n in result.notes if n.partition(": ")[2] not in known and n not in hidden]
-    if notes := counted(notes):
+    if notes := count_alike(notes):
         parts.append(phrase("1 note") if len(notes) == 1 else phrase("{count:,} notes", count=len(notes)))
     left = []
     if apart := _count(result.apart):
@@ -135,7 +135,7 @@ def _repairs(result: Imported) -> Iterable[tuple[str, int]]:
             yield repair.name, 1
 
 
-def counted(lines: Iterable[str]) -> list[str]:
+def count_alike(lines: Iterable[str]) -> list[str]:
     """Return lines on files, those that say the same of several as one with a count.
 
     They are the same where only numbers and what is in quotes differ; numbers are then told from the least to

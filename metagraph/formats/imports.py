@@ -9,15 +9,15 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from metagraph.common.files import unforeseen
+from metagraph.common.files import unforeseen_error
 from metagraph.common.wording import phrase
-from metagraph.errors import FileError, error_words
-from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clips
-from metagraph.formats.store import kept_path, relative
+from metagraph.errors import FileError, describe_error
+from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clip_file
+from metagraph.formats.store import path_for_project, relative
 from metagraph.graph.editing.retargeting import Bringing
 from metagraph.graph.edits import add_clips
-from metagraph.graph.face.curves import curves_told
-from metagraph.graph.face.takes import is_face_take, on_body
+from metagraph.graph.face.curves import describe_unused_curves
+from metagraph.graph.face.takes import is_face_take, put_on_body
 from metagraph.graph.model import Project
 from metagraph.motion.adopt import SkeletonMismatchError, adopt, bone_difference, difference
 from metagraph.motion.clip import Clip, ClipError
@@ -165,7 +165,7 @@ def import_files(
         try:
             if path not in digests:
                 digests[path] = digest(path)
-            name = kept_path(path, folder)
+            name = path_for_project(path, folder)
         except FileError as error:
             failures.append(error.words)
             continue
@@ -185,9 +185,9 @@ def import_files(
             reasons.setdefault(key, str(error))
     for name, take, content, clip in faces:
         try:
-            loaded.append((name, take, content, on_body(add_clips(project, loaded), clip)))
+            loaded.append((name, take, content, put_on_body(add_clips(project, loaded), clip)))
         except RetargetError as error:
-            failures.append(phrase("{file}: {why}", file=Path(name).name, why=error_words(error)))
+            failures.append(phrase("{file}: {why}", file=Path(name).name, why=describe_error(error)))
     character: CharacterFile | None = None
     stand_ins: tuple[CharacterFile, ...] = ()
     if project.character is None and skeleton is not None:
@@ -210,7 +210,7 @@ def import_files(
                 Strangers(tuple(clips), reasons[key], *_map(bringing, clips, remembered, contacts)),
                 retarget,
             )
-    curves = curves_told(result.into(project), [clip for *_, clip in result.loaded])
+    curves = describe_unused_curves(result.into(project), [clip for *_, clip in result.loaded])
     return replace(result, failures=tuple(dict.fromkeys(result.failures)), notes=(*result.notes, *curves))
 
 
@@ -279,17 +279,17 @@ def bring_over(
         try:
             loaded.append((path, take, content, bringing.bring(clip, joint_map)))
         except (RetargetError, ClipError) as error:
-            why = error_words(error)
+            why = describe_error(error)
             failures.append(phrase("{file}: {why}. {remedy}", file=Path(path).name, why=why, remedy=_ALONE))
         except Exception as error:  # one bad clip never spoils the others
-            failures.append(unforeseen(path, error).words)
+            failures.append(unforeseen_error(path, error).words)
     maps = {strangers.fingerprint: joint_map} if loaded else {}
     return Imported(
         tuple(loaded), tuple(failures), cancelled=stopped, joint_maps=maps, retargeted=len(loaded)
     )
 
 
-def strangers_of(project: Project, folder: Path | None, clips: Iterable[str] = ()) -> tuple[Strangers, ...]:
+def find_strangers(project: Project, folder: Path | None, clips: Iterable[str] = ()) -> tuple[Strangers, ...]:
     """Return the project's retargeted clips as they are in their files, by skeleton, with the joint maps they
     were brought by.
 
@@ -301,7 +301,7 @@ def strangers_of(project: Project, folder: Path | None, clips: Iterable[str] = (
     for entry in project.clips.values():
         if entry.brought_from in project.joint_maps and (not chosen - {""} or entry.brought_from in chosen):
             try:
-                takes = read_clips((folder or Path()) / entry.path, entry.as_is)
+                takes = read_clip_file((folder or Path()) / entry.path, entry.as_is)
             except FileError:
                 continue  # that it is missing or broken is told elsewhere
             if entry.take < len(takes) and fingerprint(takes[entry.take].skeleton) == entry.brought_from:
@@ -332,7 +332,7 @@ def _as_known(
         for take, as_is in kept.get(_name(path, folder), {}).items():
             try:
                 if as_is not in takes:
-                    takes[as_is] = read_clips(path, as_is)
+                    takes[as_is] = read_clip_file(path, as_is)
             except FileError:
                 break  # it is being written anew: what was read a moment ago stands
             if take < len(takes[as_is]):

@@ -7,12 +7,18 @@ from pathlib import Path
 
 import msgspec
 
-from metagraph.common.files import guarded
+from metagraph.common.files import guard_reader
 from metagraph.errors import FileError
-from metagraph.formats.project.text import TextError, parse
-from metagraph.formats.transcripts.words import text_of
-from metagraph.graph.requests import words_of
-from metagraph.speech.language_packs import Language, PackError, PackFile, language_of, languages
+from metagraph.formats.project.text import TextError, parse_yaml
+from metagraph.formats.transcripts.words import read_text_file
+from metagraph.graph.requests import explain_invalid_ask
+from metagraph.speech.language_packs import (
+    LanguagePack,
+    PackError,
+    PackFile,
+    language_of,
+    list_language_packs,
+)
 
 REMEDY = (
     "A pack is YAML or JSON with code, name, and lists of words: responses, hesitations, lexical, small. "
@@ -20,21 +26,21 @@ REMEDY = (
 )
 
 
-@guarded
-def read_pack(path: str | Path) -> Language:
+@guard_reader
+def read_pack(path: str | Path) -> LanguagePack:
     """Read a pack of words, YAML or JSON. Raises FileError naming the line and the field that is wrong."""
     path = Path(path)
     try:
-        data, lines = parse(text_of(path))
+        data, lines = parse_yaml(read_text_file(path))
     except TextError as error:
         where = f"line {error.line}" if error.line else ""
         raise FileError(path, f"is neither YAML nor JSON: {error}", where, REMEDY) from None
     if not isinstance(data, dict):
         raise FileError(path, "holds no fields", "its beginning", REMEDY)
     try:
-        return language_of(msgspec.convert(data, PackFile), languages())
+        return language_of(msgspec.convert(data, PackFile), list_language_packs())
     except msgspec.ValidationError as error:
-        field, _, cause = words_of(error).rpartition(": ")
+        field, _, cause = explain_invalid_ask(error).rpartition(": ")
         raise FileError(path, cause, _place(field, lines), REMEDY) from None
     except PackError as error:
         raise FileError(path, str(error), _place(error.where, lines), REMEDY) from None
@@ -46,11 +52,11 @@ def _place(field: str, lines: Mapping[str, int]) -> str:
     return f"line {lines[field]}, '{field}'" if field in lines else f"'{field}'"
 
 
-def packs_with(paths: Iterable[str | Path]) -> dict[str, Language]:
+def packs_with(paths: Iterable[str | Path]) -> dict[str, LanguagePack]:
     """Return the packs that come with the program and those of files, which take the place of one of the same
     code. Raises FileError.
     """
-    out = dict(languages())
+    out = dict(list_language_packs())
     for path in paths:
         pack = read_pack(path)
         out[pack.code] = pack

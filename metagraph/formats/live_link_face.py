@@ -20,8 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.budgets import CLIP_SECONDS, MOTION_FILE
-from metagraph.common.files import guarded, opened
-from metagraph.errors import FileError, shown
+from metagraph.common.files import guard_reader, open_file
+from metagraph.errors import FileError, clean_text
 from metagraph.graph.face.arkit import ARKIT
 from metagraph.graph.face.takes import FACE_SKELETON
 from metagraph.motion import rotation
@@ -49,7 +49,7 @@ def is_live_link(head: bytes) -> bool:
     return line.startswith(b"timecode,blendshapecount")
 
 
-@guarded
+@guard_reader
 def read_live_link(path: str | Path) -> Clip:
     """Return a recording as a clip at a constant rate, on `FACE_SKELETON`. Raises FileError."""
     path = Path(path)
@@ -60,7 +60,7 @@ def read_live_link(path: str | Path) -> Clip:
     rows: list[list[float]] = []
     empty = 0
     torn: FileError | None = None
-    with opened(path, MOTION_FILE) as file:
+    with open_file(path, MOTION_FILE) as file:
         number = 0
         while line := file.readline(_LONGEST):
             number += 1
@@ -99,7 +99,7 @@ def read_live_link(path: str | Path) -> Clip:
     if torn is not None:
         notes.append("its last line is cut off and was left out")
     if unknown:
-        notes.append(f"columns nobody knows were left out: {', '.join(map(shown, unknown[:6]))}")
+        notes.append(f"columns nobody knows were left out: {', '.join(map(clean_text, unknown[:6]))}")
     times, rate, told = _times(stamps)
     notes += told
     return _clip(path, [name for _, name in columns], times, np.array(rows), rate, notes, empty)
@@ -141,7 +141,7 @@ def _stamp(path: Path, text: str, number: int) -> tuple[int, int, float, bool]:
     if found is None:
         raise FileError(
             path,
-            f"'{shown(text[:40])}' is no timecode (hours:minutes:seconds:frame)",
+            f"'{clean_text(text[:40])}' is no timecode (hours:minutes:seconds:frame)",
             f"line {number}",
             _REMEDY,
         )
@@ -162,7 +162,7 @@ def _values(path: Path, cells: list[str], columns: list[tuple[int, str]], number
         if not abs(value) <= (1000 if name in TURNS else 10):
             raise FileError(
                 path,
-                f"'{shown(cells[n][:40])}' is no value of {name}",
+                f"'{clean_text(cells[n][:40])}' is no value of {name}",
                 f"line {number}, column {n + 1}",
                 _REMEDY,
             )
@@ -254,7 +254,7 @@ def _turned(of: dict[str, Array], turns: dict[str, Array]) -> tuple[Array, list[
             signs[way] = float(np.sign(agree))
         else:
             eyes = False
-    out = rotation.identity((len(next(iter(turns.values()))), 3))
+    out = rotation.identity_rotations((len(next(iter(turns.values()))), 3))
     for n, name in enumerate(("Head", "LeftEye", "RightEye")):
         if n and not eyes:
             break

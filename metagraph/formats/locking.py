@@ -23,7 +23,7 @@ from pathlib import Path
 
 import msgspec
 
-from metagraph.common.programs import run, system_program
+from metagraph.common.programs import run_program, system_program
 from metagraph.formats.new_file import Access, access_of, open_new
 
 REFRESH = 30.0  # seconds
@@ -98,7 +98,7 @@ def _started(pid: int) -> str:
     ps = system_program("ps")
     if ps is not None:
         with contextlib.suppress(OSError):  # TimeoutError is one
-            return run([ps, "-o", "lstart=", "-p", str(pid)], 5.0)[1].strip()
+            return run_program([ps, "-o", "lstart=", "-p", str(pid)], 5.0)[1].strip()
     return ""
 
 

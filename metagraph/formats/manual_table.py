@@ -16,13 +16,13 @@ from io import StringIO
 from pathlib import Path
 from typing import Any
 
-from metagraph.common.csv_text import csv_text, restored
-from metagraph.common.files import guarded, read_file
+from metagraph.common.csv_text import csv_text, restore_cell
+from metagraph.common.files import guard_reader, read_file
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.manual import groups as manual_groups
-from metagraph.graph.manual.edits import add_link, link_refusal, machine, name_of, update_links
+from metagraph.graph.manual.edits import add_link, get_machine, link_refusal, manual_name, update_links
 from metagraph.graph.manual.machine import ANY, WHENS, Alias, Link, Manual, State
 from metagraph.graph.model import Layer, Project
 
@@ -35,7 +35,7 @@ REMEDY = "The first row names the columns: from, to, and as wanted when, trigger
 
 
 @dataclass(frozen=True)
-class Row:
+class TableRow:
     """One row. number: of its line in the file, from 1. cells: by column, those that are not empty."""
 
     number: int
@@ -54,8 +54,8 @@ class Filled:
     problems: tuple[str, ...]
 
 
-@guarded
-def read_table(path: str | Path) -> list[Row]:
+@guard_reader
+def read_manual_table(path: str | Path) -> list[TableRow]:
     """Read a table from a file: UTF-8, UTF-16 with its mark, or western letters. Raises FileError."""
     data = read_file(path, MOST_BYTES)
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
@@ -66,12 +66,12 @@ def read_table(path: str | Path) -> list[Row]:
         except UnicodeDecodeError:
             text = data.decode("cp1252", "replace")
     try:
-        return rows_of(text)
+        return parse_manual_table(text)
     except ValueError as error:
         raise FileError(path, str(error), remedy=REMEDY) from None
 
 
-def rows_of(text: str) -> list[Row]:
+def parse_manual_table(text: str) -> list[TableRow]:
     """Return the rows of a table with commas, semicolons or tabs between its cells. Raises ValueError with
     words where it is none.
     """
@@ -79,7 +79,7 @@ def rows_of(text: str) -> list[Row]:
     separator = max(",;\t", key=first.count)
     lines = csv.reader(StringIO(text, newline=""), delimiter=separator, skipinitialspace=True)
     names: list[str] | None = None
-    out: list[Row] = []
+    out: list[TableRow] = []
     try:
         for cells in lines:
             if not any(c.strip() for c in cells):
@@ -91,9 +91,11 @@ def rows_of(text: str) -> list[Row]:
                 continue
             if len(out) >= MOST_ROWS:
                 raise ValueError(phrase("it has more than {most:,} rows", most=MOST_ROWS))
-            told_of = ((n, restored(c).strip()) for n, c in zip(names, cells, strict=False) if n in COLUMNS)
+            told_of = (
+                (n, restore_cell(c).strip()) for n, c in zip(names, cells, strict=False) if n in COLUMNS
+            )
             known = {n: c for n, c in told_of if c}
-            out.append(Row(lines.line_num, known))
+            out.append(TableRow(lines.line_num, known))
     except csv.Error as error:
         raise ValueError(
             phrase("line {line_num} is no row of a table: {error}", line_num=lines.line_num, error=error)
@@ -113,7 +115,7 @@ def check_names(names: Sequence[str]) -> None:
         raise ValueError(phrase("the first row names the column '{twice}' twice", twice=twice))
 
 
-def filled(project: Project, layer: Layer, rows: Sequence[Row]) -> Filled:
+def fill_machine(project: Project, layer: Layer, rows: Sequence[TableRow]) -> Filled:
     """Return the project with the links of a table drawn in a layer's machine. A link that is there between
     the same two is set as the row says; a row that cannot be read is left out and told.
     """
@@ -124,7 +126,7 @@ def filled(project: Project, layer: Layer, rows: Sequence[Row]) -> Filled:
             settings = _settings(row)
             after, sources = _nodes(project, layer, row, "from")
             after, targets = _nodes(after, layer, row, "to")
-            found = machine(after, layer)
+            found = get_machine(after, layer)
             if len(found.links) + len(sources) * len(targets) > MOST_LINKS:
                 raise ValueError(phrase("the machine would have more than {most:,} links", most=MOST_LINKS))
             # Links that patterns name lead from no state to itself, as drawn ones do.
@@ -144,24 +146,24 @@ def _linked(
     for a, b in pairs:
         if (why := link_refusal(project, layer, a, b)) is not None:
             raise EditError(why)
-    there = {(x.source, x.target): x.id for x in machine(project, layer).links.values()}
+    there = {(x.source, x.target): x.id for x in get_machine(project, layer).links.values()}
     new = 0
     idents: list[str] = []
     for pair in pairs:
         if pair not in there:
             project = add_link(project, layer, *pair)
-            there[pair] = [*machine(project, layer).links][-1]
+            there[pair] = [*get_machine(project, layer).links][-1]
             new += 1
         idents.append(there[pair])
     project = update_links(project, idents, **settings)
     return project, new, len(pairs) - new
 
 
-def _nodes(project: Project, layer: Layer, row: Row, column: str) -> tuple[Project, list[str]]:
+def _nodes(project: Project, layer: Layer, row: TableRow, column: str) -> tuple[Project, list[str]]:
     """Return what a cell names, and the project, with an alias more where several states are to be left."""
     if column not in row.cells:
         raise ValueError(phrase("'{column}' is empty", column=column))
-    found = machine(project, layer)
+    found = get_machine(project, layer)
     out: dict[str, None] = {}
     words = [w.strip() for w in row.cells[column].split("|")]
     for word in words:
@@ -182,7 +184,7 @@ def _nodes(project: Project, layer: Layer, row: Row, column: str) -> tuple[Proje
     same = next((a.id for a in found.aliases.values() if a.states == states), None)
     if same is None:
         project = manual_groups.add_alias(project, layer, states)
-        same = [*machine(project, layer).aliases][-1]
+        same = [*get_machine(project, layer).aliases][-1]
         if len(words) == 1 and words[0].strip("*?_- "):
             project = manual_groups.update_aliases(project, [same], name=words[0].strip("*?_- "))
     return project, [same, *(i for i in out if i not in states)]
@@ -202,7 +204,7 @@ def _named(found: Manual, word: str) -> list[str]:
     return [s.id for s in found.states.values() if fnmatchcase(s.name.casefold(), word.casefold())]
 
 
-def _settings(row: Row) -> dict[str, Any]:
+def _settings(row: TableRow) -> dict[str, Any]:
     """Return the fields of a link that a row sets. Raises ValueError."""
     cells, out = row.cells, dict[str, Any]()
     condition: dict[str, Any] = {}
@@ -245,11 +247,11 @@ def _number(word: str, column: str, least: float = 0.0) -> float:
     return value
 
 
-def table_of(manual: Manual) -> str:
+def machine_as_table(manual: Manual) -> str:
     """Return a machine's links as a table with commas, which `rows_of` reads."""
     rows: list[Sequence[str]] = [COLUMNS]
     for x in manual.links.values():
-        ends = ("any" if x.source == ANY else name_of(manual, x.source), name_of(manual, x.target))
+        ends = ("any" if x.source == ANY else manual_name(manual, x.source), manual_name(manual, x.target))
         c = x.condition
         numbers = (f"{c.weight:g}", _exit_word(x), f"{x.blend:g}")
         rows.append((*ends, c.when, c.trigger if c.when == "request" else "", *numbers))

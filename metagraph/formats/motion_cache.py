@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.disk_cache import DiskCache, cache_folder
-from metagraph.formats.clips import read_clips
+from metagraph.formats.clips import read_clip_file
 from metagraph.motion.clip import Clip, Repair
 from metagraph.motion.skeleton import Skeleton
 
@@ -76,12 +76,12 @@ def read_or_kept(path: Path, digest: str, as_is: Collection[str]) -> list[Clip]:
     """Return what `read_clips` does, from what is kept where that is of the same content. digest: of the
     file. Raises FileError as `read_clips` does.
     """
-    kept, key = _cache(kept_in()), _key(path, digest, as_is)
+    kept, key = _cache(motion_cache_folder()), _key(path, digest, as_is)
     content = kept.read(key)
     if content is not None:
         with suppress(Exception):  # whatever is wrong with it, the file itself is there
             return _decoded(content)
-    clips = read_clips(path, as_is)
+    clips = read_clip_file(path, as_is)
     if kept.folder is not None and _self_contained(path):
         _writer().submit(_keep, kept, key, clips)
     return clips
@@ -92,7 +92,7 @@ def _cache(folder: Path | None) -> DiskCache:
     return DiskCache(folder, MOST, ".motion")
 
 
-def kept_in() -> Path | None:
+def motion_cache_folder() -> Path | None:
     """Return the folder it is kept in, None where nothing is."""
     told = os.environ.get("METAGRAPH_MOTION_CACHE")
     return cache_folder("motion") if told is None else Path(told) if told else None

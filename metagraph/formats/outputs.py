@@ -227,7 +227,7 @@ def writing(outputs: Outputs) -> Iterator[Outputs]:
 
 
 @contextmanager
-def being_written(path: Path, content: bytes | None = None) -> Iterator[None]:
+def claim_output(path: Path, content: bytes | None = None) -> Iterator[None]:
     """Ask whether a file may be written, and remember that it was. content: see `Outputs.check`. Raises
     FileError.
     """
@@ -247,13 +247,13 @@ def claim(*paths: Path) -> None:
             _now.claim(path)
 
 
-def reads(*paths: Path) -> None:
+def declare_inputs(*paths: Path) -> None:
     """Say what the command that runs reads; see `Outputs.reads`."""
     if _now is not None:
         _now.reads(*paths)
 
 
-def keeps_up(*paths: Path) -> None:
+def declare_updates(*paths: Path) -> None:
     """Say what the command that runs changes in place; see `Outputs.keeps_up`."""
     if _now is not None:
         _now.keeps_up(*paths)
@@ -297,10 +297,10 @@ def _digest(path: Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-def all_paths(values: Iterable[object]) -> Iterator[Path]:
+def find_paths(values: Iterable[object]) -> Iterator[Path]:
     """Give the paths among values, and in lists of them."""
     for value in values:
         if isinstance(value, Path):
             yield value
         elif isinstance(value, (list, tuple)):
-            yield from all_paths(value)
+            yield from find_paths(value)

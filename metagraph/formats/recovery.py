@@ -22,9 +22,9 @@ from metagraph.formats.project.appended_file import Identity
 from metagraph.formats.project.canonical_text import canonical
 from metagraph.formats.project.data import FORMAT, from_data, to_data
 from metagraph.formats.project.fields import Data, DataError
-from metagraph.formats.project.journal_records import LostEdit, Record, Records, read_records
+from metagraph.formats.project.journal_records import JournalRecord, LostEdit, Records, read_records
 from metagraph.formats.project.replay import Replay
-from metagraph.formats.store import content_digest, file_digest, from_text, read_project
+from metagraph.formats.store import content_digest, file_digest, parse_project, read_project
 from metagraph.graph.model import Project
 
 JOURNAL = 1 << 33  # bytes of a journal that are read: as many as a person can fill
@@ -113,7 +113,7 @@ def read_journal(journal: Path, saved: Path | None) -> Left | None:
     base = head.get("base") if all_of_it else None
     unsaved = head.get("unsaved", 0)
     before = unsaved if isinstance(base, dict) and _is_number(unsaved) else 0
-    edits = [e.data for e in kept if isinstance(e, Record) and "mark" not in e.data]
+    edits = [e.data for e in kept if isinstance(e, JournalRecord) and "mark" not in e.data]
     lost = [e for e in kept if isinstance(e, LostEdit)]
     if all_of_it and records.foundation and not isinstance(base, dict) and _is_number(unsaved):
         lost = [LostEdit()] * unsaved + lost
@@ -140,7 +140,7 @@ def read_journal(journal: Path, saved: Path | None) -> Left | None:
         journal,
         project,
         before + max(1, sum(record.get("how") != "merged" for record in good)) if good else before,
-        owner_of(head),
+        journal_owner(head),
         written,
         head.get("saved") if behind else now,
         behind,
@@ -154,7 +154,7 @@ def read_journal(journal: Path, saved: Path | None) -> Left | None:
     )
 
 
-def _begun(records: Records, journal: Path) -> tuple[Data, tuple[Record | LostEdit, ...]] | None:
+def _begun(records: Records, journal: Path) -> tuple[Data, tuple[JournalRecord | LostEdit, ...]] | None:
     """Return what a journal begins with and what comes after it; None where that is no journal.
 
     Where the beginning is damaged it is pieced together: the file's digest is that of its text, and a text
@@ -163,12 +163,12 @@ def _begun(records: Records, journal: Path) -> tuple[Data, tuple[Record | LostEd
     entries = records.entries
     numbered = any(record.number is not None for record in records.whole)
     if not numbered:
-        if not entries or not isinstance(entries[0], Record) or "saved" not in entries[0].data:
+        if not entries or not isinstance(entries[0], JournalRecord) or "saved" not in entries[0].data:
             return None
         return entries[0].data, entries[1:]
     head: Data = {}
     for number in (0, 1):
-        if entries and isinstance(entries[0], Record) and entries[0].number == number:
+        if entries and isinstance(entries[0], JournalRecord) and entries[0].number == number:
             head |= entries[0].data
             entries = entries[1:]
     if records.foundation:
@@ -225,7 +225,7 @@ def _named(head: Data) -> Path | None:
 def _of_text(text: object, journal: Path) -> Data | None:
     """Return what a project file held whose text is in a journal."""
     with suppress(FileError):
-        return to_data(from_text(text, journal, [])) if isinstance(text, str) else None
+        return to_data(parse_project(text, journal, [])) if isinstance(text, str) else None
     return None
 
 
@@ -245,14 +245,14 @@ def _saved_data(saved: Path | None, as_opened: bool) -> Data:
     return to_data(read_project(saved, []))
 
 
-def _settled(entries: Sequence[Record | LostEdit], digest: str | None) -> int:
+def _settled(entries: Sequence[JournalRecord | LostEdit], digest: str | None) -> int:
     """Return the number of the first entry that the file of a digest does not have."""
-    settled = [e.data for e in entries if isinstance(e, Record) and "mark" in e.data]
+    settled = [e.data for e in entries if isinstance(e, JournalRecord) and "mark" in e.data]
     marks = [r["mark"] for r in settled if digest is not None and r.get("saved") == digest]
     if not marks:
         return 0
     for place, entry in enumerate(entries):
-        if isinstance(entry, Record):
+        if isinstance(entry, JournalRecord):
             if entry.number is None and entry.data.get("mark") == marks[-1] and "saved" not in entry.data:
                 return place + 1
             if entry.number is not None and _is_number(marks[-1]) and entry.number > marks[-1]:
@@ -260,10 +260,10 @@ def _settled(entries: Sequence[Record | LostEdit], digest: str | None) -> int:
     return 0
 
 
-def _lost_before(entries: Sequence[Record | LostEdit], most: int) -> int:
+def _lost_before(entries: Sequence[JournalRecord | LostEdit], most: int) -> int:
     """Return how many entries at the end are lost edits, `most` at most."""
     return next(
-        (n for n, entry in enumerate(entries[::-1][:most]) if isinstance(entry, Record)),
+        (n for n, entry in enumerate(entries[::-1][:most]) if isinstance(entry, JournalRecord)),
         min(most, len(entries)),
     )
 
@@ -272,7 +272,7 @@ def _is_number(value: object) -> bool:
     return isinstance(value, int)
 
 
-def owner_of(head: Data) -> Owner | None:
+def journal_owner(head: Data) -> Owner | None:
     """Return whose journal it is, by what it begins with; None where that does not tell."""
     try:
         return msgspec.convert(head.get("owner"), Owner)
@@ -293,14 +293,14 @@ def _replayed(base: Data, records: Sequence[Data]) -> Project | None:
 # --- which there are
 
 
-def left_journals(saved: Path) -> list[Path]:
+def find_left_journals(saved: Path) -> list[Path]:
     """Return the journals of a project file whose sittings are over, the latest last; those that were put
     aside at first, when the file had changed, among them.
     """
-    return journals_in(saved.parent, rf"{re.escape(f'.{saved.name}')}(\.[0-9a-f]+)?\.(journal|old)")
+    return find_journals_in(saved.parent, rf"{re.escape(f'.{saved.name}')}(\.[0-9a-f]+)?\.(journal|old)")
 
 
-def journals_in(folder: Path, names: str) -> list[Path]:
+def find_journals_in(folder: Path, names: str) -> list[Path]:
     """Return the journals in a folder whose names a regular expression matches and whose sittings are over,
     the latest last.
     """
@@ -308,10 +308,10 @@ def journals_in(folder: Path, names: str) -> list[Path]:
     found: list[Path] = []
     with suppress(OSError):  # what cannot be listed offers nothing
         found = [path for path in folder.iterdir() if wanted.fullmatch(path.name) and is_file(path)]
-    return in_order(path for path in found if is_left(path))
+    return order_journals(path for path in found if is_left(path))
 
 
-def in_order(journals: Iterable[Path]) -> list[Path]:
+def order_journals(journals: Iterable[Path]) -> list[Path]:
     """Return journals, each once whatever it is called, the latest last."""
     found: dict[Identity, tuple[float, Path]] = {}
     for path in journals:
@@ -325,7 +325,7 @@ def is_left(journal: Path) -> bool:
     """Return whether nobody writes to a journal any more; one that does not say whose it is was written
     before they did.
     """
-    owner = owner_of(head_of(journal))
+    owner = journal_owner(read_journal_head(journal))
     return owner is None or is_gone(owner, journal)
 
 
@@ -348,7 +348,7 @@ def is_damaged(journal: Path) -> bool:
     return bool(records.head or records.foundation) or len(records.whole) < len(records.entries)
 
 
-def head_of(journal: Path) -> Data:
+def read_journal_head(journal: Path) -> Data:
     """Return what a journal begins with, nothing where that cannot be read."""
     with suppress(OSError), journal.open("rb") as file:
         records = read_records(file.readline(1 << 28))

@@ -17,18 +17,18 @@ from typing import Any
 import msgspec
 
 from metagraph.common.budgets import TEXT_FILE
-from metagraph.common.files import is_file, is_text, read_file, unforeseen
+from metagraph.common.files import is_file, is_text, read_file, unforeseen_error
 from metagraph.common.network_paths import (
     ANOTHER,
+    explain_refusal,
     is_allowed,
     is_closed,
-    leads_away,
-    nowhere,
-    original,
-    reason,
+    make_escape_check,
+    original_path,
+    path_to_nowhere,
 )
 from metagraph.common.wording import phrase
-from metagraph.errors import FileError, shown
+from metagraph.errors import FileError, clean_text
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.clip_identity import with_clip_identity
 from metagraph.formats.clips import digest
@@ -37,11 +37,11 @@ from metagraph.formats.motion_cache import read_or_kept
 from metagraph.formats.new_file import Access
 from metagraph.formats.project.data import FORMAT, from_data, to_data
 from metagraph.formats.project.fields import Data, DataError
-from metagraph.formats.project.text import TextError, as_text, read, to_text
+from metagraph.formats.project.text import TextError, as_text, read_text_data, to_text
 from metagraph.graph.clip_source import source_of, with_source
 from metagraph.graph.conversation.model import Conversation, Side
 from metagraph.graph.editing.retargeting import Bringing
-from metagraph.graph.face.takes import FACE_TAKE, is_face_take, on_body
+from metagraph.graph.face.takes import FACE_TAKE, is_face_take, put_on_body
 from metagraph.graph.model import ClipEntry, Project
 from metagraph.graph.requests import Line
 from metagraph.motion.adopt import SkeletonMismatchError, adopt
@@ -73,14 +73,14 @@ class Opened:
 # --- text
 
 
-def from_text(text: str, path: Path, notes: list[str] | None = None) -> Project:
+def parse_project(text: str, path: Path, notes: list[str] | None = None) -> Project:
     """Return the project written in a file's text, its clips without motion. Raises FileError with the line
     and the field.
 
     notes: see `data.from_data`.
     """
     try:
-        data, lines = read(text)
+        data, lines = read_text_data(text)
     except TextError as error:
         if conflict := _CONFLICT.search(text):
             raise FileError(
@@ -148,12 +148,12 @@ def save_project(
     """
     path = Path(path)
     if was_at is not None:
-        project = moved(project, was_at, path)
-    write_atomically(path, encoded(project, path), like)
+        project = move_project(project, was_at, path)
+    write_atomically(path, encode_project(project, path), like)
     return project
 
 
-def encoded(project: Project, path: Path) -> bytes:
+def encode_project(project: Project, path: Path) -> bytes:
     """Return what a project's file at `path` holds; it has been read back. Raises FileError."""
     try:
         text = to_text(with_clip_identity(to_data(project)))
@@ -179,7 +179,7 @@ def encoded(project: Project, path: Path) -> bytes:
 
 def _parsed(text: str, path: Path) -> Data:
     try:
-        data: Data = read(text)[0]
+        data: Data = read_text_data(text)[0]
     except TextError as error:
         raise FileError(
             path,
@@ -219,7 +219,7 @@ def content_digest(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
-def moved(project: Project, old: Path | None, new: Path) -> Project:
+def move_project(project: Project, old: Path | None, new: Path) -> Project:
     """Return the project with paths relative to `old` made relative to `new`. Both are project files; None
     means absolute paths.
     """
@@ -241,14 +241,14 @@ def _closed_below(project: Project, folder: Path) -> Project:
     """Return the project with each path closed that leads from its folder to other computers."""
     if is_allowed():
         return project
-    away, found = leads_away(folder), False
+    away, found = make_escape_check(folder), False
 
     def close(name: str) -> str:
         nonlocal found
         if is_closed(name) or not away(name):
             return name
         found = True
-        return nowhere(name)
+        return path_to_nowhere(name)
 
     made = _each_path(project, close)
     return made if found else project
@@ -320,7 +320,7 @@ def absolute(project: Project, folder: Path) -> Project:
     return _with_paths(project, renew)
 
 
-def kept_path(path: Path, folder: Path | None) -> str:
+def path_for_project(path: Path, folder: Path | None) -> str:
     """Return a file's path as a project in `folder` keeps it; absolute where there is no folder. Raises
     FileError for one that is no text: it could not be written down.
     """
@@ -357,7 +357,7 @@ def _content(path: Path) -> bytes:
 
 def _decoded(content: bytes, path: Path, notes: list[str] | None = None) -> Project:
     try:
-        return from_text(content.decode("utf-8-sig"), path, notes)
+        return parse_project(content.decode("utf-8-sig"), path, notes)
     except UnicodeDecodeError as error:
         raise FileError(
             path,
@@ -383,12 +383,12 @@ def open_project(path: str | Path, progress: Callable[[int, int], None] | None =
     notes: list[str] = []
     project, found = read_with_digest(path, notes)
     opened = load_motions(project, path.resolve().parent, progress)  # a link names files from where it leads
-    if names := closed_paths(opened.project):
-        notes.append(closed_words(names))
+    if names := list_closed_paths(opened.project):
+        notes.append(describe_closed_paths(names))
     return replace(opened, notes=(*notes, *opened.notes), digest=found)
 
 
-def closed_paths(project: Project) -> tuple[str, ...]:
+def list_closed_paths(project: Project) -> tuple[str, ...]:
     """Return the files that a project names and that were not opened, as its file has them: those on other
     computers, and devices.
     """
@@ -396,26 +396,26 @@ def closed_paths(project: Project) -> tuple[str, ...]:
 
     def see(name: str) -> str:
         if is_closed(name):
-            found[original(name)] = None
+            found[original_path(name)] = None
         return name
 
     _each_path(project, see)
     return tuple(found)
 
 
-def reopened(project: Project) -> Project:
+def reopen_paths(project: Project) -> Project:
     """Return a project whose closed paths are as its file has them, to be opened."""
-    return _each_path(project, original)
+    return _each_path(project, original_path)
 
 
-def closed_words(names: Sequence[str]) -> str:
+def describe_closed_paths(names: Sequence[str]) -> str:
     """Say which files were not opened, and how they can be."""
     return phrase(
         "{count} of the files that it names were not opened, such as '{name}': {why}. If you trust where the "
         "project comes from, give the command --network; in the window choose File, Files on other computers",
         count=len(names),
-        name=shown(names[0])[:200],
-        why=reason(names[0]) or ANOTHER,
+        name=clean_text(names[0])[:200],
+        why=explain_refusal(names[0]) or ANOTHER,
     )
 
 
@@ -432,7 +432,7 @@ def load_motions(
     return _load(
         project,
         folder,
-        where_moved(missing_clips(project, folder), folder) if folder is not None else {},
+        find_moved_files(missing_clips(project, folder), folder) if folder is not None else {},
         progress,
     )
 
@@ -446,7 +446,7 @@ def relocate(
     are read there.
     """
     return _load(
-        project, folder, where_moved(missing_clips(project, folder), where, by_name=True), progress
+        project, folder, find_moved_files(missing_clips(project, folder), where, by_name=True), progress
     ).project
 
 
@@ -522,17 +522,17 @@ class _Loading:
         place = self.found.get(name) or clip_place(entries[0], self.folder)
         path = self._path(name, place)
         if name in self.found:
-            self.notes.append(f"'{original(name)}' has moved to '{path}'")
+            self.notes.append(f"'{original_path(name)}' has moved to '{path}'")
         if is_closed(name) and name not in self.found:
             return  # said once, for all of them
         if not is_file(place):
-            self.notes.append(f"'{shown(name)}' is missing")
+            self.notes.append(f"'{clean_text(name)}' is missing")
             return
         try:
             now = digest(place)
             read = {a: read_or_kept(place, now, a) for a in dict.fromkeys(e.as_is for e in entries)}
         except Exception as error:  # one bad file never spoils a project
-            self.notes.append(str(unforeseen(place, error)))
+            self.notes.append(str(unforeseen_error(place, error)))
             return
         if any(e.digest and now != e.digest for e in entries):
             self.notes.append(f"'{path}' has changed since it was imported")
@@ -580,7 +580,9 @@ def _brought(project: Project, strangers: Iterable[str], notes: list[str]) -> Pr
         joint_map = bringing.known(motion)
         if is_face_take(motion):
             try:
-                clips[ident] = with_source(replace(entry, brought_from=FACE_TAKE), on_body(project, motion))
+                clips[ident] = with_source(
+                    replace(entry, brought_from=FACE_TAKE), put_on_body(project, motion)
+                )
             except RetargetError as error:
                 notes.append(f"'{entry.path}': {error}")
             continue
@@ -601,7 +603,7 @@ def _brought(project: Project, strangers: Iterable[str], notes: list[str]) -> Pr
     return replace(project, clips=clips)
 
 
-def where_moved(
+def find_moved_files(
     lost: Mapping[str, Iterable[ClipEntry]], folder: Path, by_name: bool = False
 ) -> dict[str, Path]:
     """Look below a folder for files with the content of lost ones, those of the same name first.

@@ -74,14 +74,14 @@ def take_repair(raw: str, name: str, stem: str, as_is: Collection[str]) -> tuple
     return name if made else raw, Repair(NAME, words, made)
 
 
-def repaired(clip: Clip, repair: Repair | None) -> Clip:
+def note_repair(clip: Clip, repair: Repair | None) -> Clip:
     """Return the clip saying that a repair was made, or was not."""
     if repair is None:
         return clip
-    return replace(clip, notes=(*clip.notes, noted(repair)), repairs=(*clip.repairs, repair))
+    return replace(clip, notes=(*clip.notes, repair_note(repair)), repairs=(*clip.repairs, repair))
 
 
-def noted(repair: Repair) -> str:
+def repair_note(repair: Repair) -> str:
     """Return the note of a repair that was made, or was not."""
     return repair.words if repair.made else f"left as it is in the file, without this: {repair.words}"
 
@@ -113,7 +113,7 @@ def frame_rate(keys: Sequence[Array], wanted: float | None = None) -> float:
     return rate if even else 60.0 if rate > 45 else 30.0
 
 
-def without_stray_poses(
+def drop_stray_poses(
     clips: Sequence[Clip], as_is: Collection[str] = (), bound: Sequence[Pose] = ()
 ) -> list[Clip]:
     """Drop bind poses that a tool left at the clips' ends, mend frames unlike both their neighbours, and say
@@ -144,9 +144,9 @@ def _without(clip: Clip, found: StrayPoses, as_is: Collection[str]) -> Clip:
             else f"{len(found.lone)} frames (the first is {found.lone[0] + 1}) were unlike their neighbours "
             "and were made anew between them"
         )
-        clip = repaired(_mended(clip, found.lone) if mended else clip, Repair(LONE_FRAME, words, mended))
+        clip = note_repair(_mended(clip, found.lone) if mended else clip, Repair(LONE_FRAME, words, mended))
     if found.first or found.last:
-        clip = repaired(clip.trimmed(found.first, clip.frames - found.last) if made else clip, repair)
+        clip = note_repair(clip.trimmed(found.first, clip.frames - found.last) if made else clip, repair)
     return clip
 
 

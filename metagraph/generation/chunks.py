@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from metagraph.generation.layers import Layers
 from metagraph.generation.networks import MatchingSizes
 from metagraph.generation.transformer import Velocity
-from metagraph.generation.vae import spans
+from metagraph.generation.vae import list_spans
 
 Array = NDArray[Any]
 
@@ -24,11 +24,11 @@ GUIDANCE = 1.5  # 0 sees who speaks alone, 1 hears as in training, above follows
 
 def tokens_of(w: Layers, sizes: MatchingSizes, poses: Array) -> Array:
     """Return the whitened tokens `[T // frames, D]` of poses `[T, X]`, standardised."""
-    rows = spans(poses, sizes.frames)
+    rows = list_spans(poses, sizes.frames)
     return np.asarray((rows - w["tokens.mean"]) @ w["tokens.basis"].T / w["tokens.deviation"])
 
 
-def poses_of(w: Layers, sizes: MatchingSizes, tokens: Array) -> Array:
+def poses_from_tokens(w: Layers, sizes: MatchingSizes, tokens: Array) -> Array:
     """Return the poses `[n frames, X]`, standardised, of tokens `[n, D]`."""
     rows = (tokens * w["tokens.deviation"]) @ w["tokens.basis"] + w["tokens.mean"]
     return np.asarray(rows.reshape(-1, sizes.pose))
@@ -47,7 +47,7 @@ class Joining:
     def of(self, tokens: Array) -> Array:
         """Return the poses `[n, X]`, standardised, that `count` more tokens `[count, D]` tell."""
         if not self.delay:
-            return poses_of(self.w, self.sizes, tokens)
+            return poses_from_tokens(self.w, self.sizes, tokens)
         around, first = self.sizes.around, self._kept is None
         before = np.repeat(tokens[:1], 2 * around, 0) if self._kept is None else self._kept
         row = np.concatenate([before, tokens])
@@ -75,7 +75,7 @@ def neighbours(tokens: Array, around: int) -> Array:
     return np.concatenate([tokens[k : k + count] for k in range(2 * around + 1)], 1)
 
 
-def joined(rows: Iterable[tuple[Array, Array]], around: int) -> Array:
+def join_by_least_squares(rows: Iterable[tuple[Array, Array]], around: int) -> Array:
     """Return `tokens.joined` by least squares, float32. rows: of each take tokens `[n, D]` and their frames
     less the mean, flat `[n, frames X]`. A little of each token counts as chance: RIDGE.
     """
@@ -91,12 +91,12 @@ def joined(rows: Iterable[tuple[Array, Array]], around: int) -> Array:
     return np.linalg.solve(square + RIDGE**2 * count * np.eye(len(square)), outer).astype(np.float32)
 
 
-def still_tokens(w: Layers, sizes: MatchingSizes, pose: Array) -> Array:
+def tokens_of_still_pose(w: Layers, sizes: MatchingSizes, pose: Array) -> Array:
     """Return the past of somebody who holds a pose `[X]`, standardised: `[past, D]`."""
     return tokens_of(w, sizes, np.repeat(pose[None], sizes.past * sizes.frames, 0))
 
 
-class Drawing:
+class TokenDrawing:
     """New tokens from noise, by Euler's steps. guidance: as GUIDANCE, of the first GUIDED; 1 asks for no
     more than what is heard, which is less work. pieces: of how many `pieces` consists.
     """

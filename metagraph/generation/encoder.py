@@ -8,7 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.generation.layers import Layers, linear, relu
+from metagraph.generation.layers import Layers, apply_linear, relu
 from metagraph.generation.networks import Control, MatchingSizes
 from metagraph.generation.prepared import Dense
 
@@ -17,7 +17,7 @@ Array = NDArray[Any]
 BLOCK = 8  # frames that are heard at once, from multiples of it on
 
 
-class Convolutions:
+class EncoderConvolutions:
     """The layers over audio and activity. share: of what could be known ahead, 0..1."""
 
     def __init__(self, w: Layers, dilations: tuple[int, ...], share: float) -> None:
@@ -76,16 +76,16 @@ class Reader(Protocol):
         """Return what numbers `[m]` of one row, from number `first` on, add where they were 0."""
 
 
-class Hearing:
+class EncoderHearing:
     """What is heard of frame after frame, in products of the same shape at the same frames whenever they are
     known, so that the pieces that sound comes in change no bit. lookahead: frames ahead that are known.
     """
 
     def __init__(self, w: Layers, control: Control, lookahead: int, reader: Reader | None = None) -> None:
         self.control, self.lookahead, self._reader = control, lookahead, reader
-        self._layers: Convolutions | None = None
+        self._layers: EncoderConvolutions | None = None
         if control.kind == "encoder":
-            self._layers = Convolutions(w, control.dilations, _share(lookahead, control.ahead))
+            self._layers = EncoderConvolutions(w, control.dilations, _share(lookahead, control.ahead))
         # Convolutions share nothing unless they know all ahead; then a few frames cost hardly more than one.
         # The paper's windows are long: what all of a few frames know already is told at once.
         shared = lookahead == control.ahead if self._layers else control.before + lookahead >= BLOCK
@@ -96,7 +96,7 @@ class Hearing:
 
     def rows(self, windows: Array) -> Array:
         """Return what is heard in windows `[..., frames, inputs]`, each by itself: `[..., C]`."""
-        known = masked(windows, self.control.before + self.lookahead)
+        known = mask_after(windows, self.control.before + self.lookahead)
         if self._layers is None:
             return np.asarray(known.reshape(*known.shape[:-2], -1))
         return self._layers.window(known)
@@ -104,7 +104,9 @@ class Hearing:
     def whole(self, features: Array) -> Array:
         """Return `[T, C]` of frames that know all ahead. features: `[before + T + ahead, inputs]`."""
         if self._layers is None:
-            return windows(features, self.control.frames).reshape(len(features) - self.control.frames + 1, -1)
+            return list_windows(features, self.control.frames).reshape(
+                len(features) - self.control.frames + 1, -1
+            )
         return self._layers.whole(features)
 
     def of(self, frame: int, heard: Array) -> Array:
@@ -118,7 +120,7 @@ class Hearing:
             most = heard[: len(self._features) - at]
             self._features[at : at + len(most)] = most  # what is before or after is of no use, and not used
             if self._block > 1 and self._layers is None:
-                told = self.rows(windows(masked(self._features, first - 1), control.frames))
+                told = self.rows(list_windows(mask_after(self._features, first - 1), control.frames))
                 ready = self._block
             else:
                 told = self.whole(self._features) if self._block > 1 else self.rows(self._features[None])
@@ -135,14 +137,14 @@ def encode_window(w: Layers, control: Control, window: Array, lookahead: int) ->
     """Return what is heard of frames, each with its own window: `[..., width]`, or the window flat. window:
     `[..., frames, inputs]`, standardised. lookahead: how many frames ahead are known, 0..ahead.
     """
-    return Hearing(w, control, lookahead).rows(window)
+    return EncoderHearing(w, control, lookahead).rows(window)
 
 
 def encode_all(w: Layers, control: Control, features: Array) -> Array:
     """Return what is heard of frames that know all ahead: `[T, width]`. features: `[before + T + ahead,
     inputs]`, standardised, with what was before the first and comes after the last.
     """
-    return Hearing(w, control, control.ahead).whole(features)
+    return EncoderHearing(w, control, control.ahead).whole(features)
 
 
 def encode_past(w: Layers, control: Control, poses: Array) -> Array:
@@ -152,7 +154,7 @@ def encode_past(w: Layers, control: Control, poses: Array) -> Array:
     flat = poses.reshape(*poses.shape[:-2], -1)
     if control.kind == "window" or not control.past:
         return np.asarray(flat)
-    return linear(w, "past.2", relu(linear(w, "past.0", flat)))
+    return apply_linear(w, "past.2", relu(apply_linear(w, "past.0", flat)))
 
 
 class ChunkHearing:
@@ -160,7 +162,7 @@ class ChunkHearing:
 
     def __init__(self, w: Layers, sizes: MatchingSizes, lookahead: int) -> None:
         self.sizes, self.lookahead, self._w = sizes, lookahead, w
-        self._layers = Convolutions(w, sizes.dilations, _share(lookahead, sizes.most))
+        self._layers = EncoderConvolutions(w, sizes.dilations, _share(lookahead, sizes.most))
         self._token = Dense.named(w, "control.token")
 
     def of(self, features: Array) -> Array:
@@ -168,7 +170,7 @@ class ChunkHearing:
         `[tokens * frames, inputs]`, standardised.
         """
         s = self.sizes
-        known = masked(features, s.past * s.frames + self.lookahead)
+        known = mask_after(features, s.past * s.frames + self.lookahead)
         both = np.stack([known, known])
         both[1, :, : s.audio] = 0
         x = self._layers.input(both)
@@ -180,12 +182,12 @@ class ChunkHearing:
         return told
 
 
-def windows(features: Array, frames: int) -> Array:
+def list_windows(features: Array, frames: int) -> Array:
     """Return every `frames` rows in a row, `[T - frames + 1, frames, inputs]`; a view."""
     return np.moveaxis(np.lib.stride_tricks.sliding_window_view(features, frames, axis=0), -1, 1)
 
 
-def masked(window: Array, last: int) -> Array:
+def mask_after(window: Array, last: int) -> Array:
     """Return frames `[..., frames, inputs]` with those after number `last` at 0."""
     if last >= window.shape[-2] - 1:
         return window

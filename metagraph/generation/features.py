@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 
 from metagraph.generation.loudness import gain_of
 from metagraph.generation.networks import ACTIVITY, FPS
-from metagraph.generation.poses import Scale
+from metagraph.generation.poses import Standardisation
 from metagraph.graph.conversation.model import Conversation, others_of
 from metagraph.speech.activity import activity as spoken
 from metagraph.speech.pitch import pitch
-from metagraph.speech.sound import hear
-from metagraph.speech.soundtrack import resampled
+from metagraph.speech.sound import analyse_sound
+from metagraph.speech.soundtrack import resample_sound
 
 Array = NDArray[Any]
 
@@ -36,7 +36,7 @@ class FeatureError(ValueError):
     """What cannot be heard; the message says why."""
 
 
-def as_heard(features: Array, audio: Scale) -> Array:
+def as_heard(features: Array, audio: Standardisation) -> Array:
     """Return features `[..., A + 4]` as networks hear them, float32: audio standardised and at most
     STRANGEST, so that a voice or a room that was never learned from is a strange one and not nonsense;
     activity as it is.
@@ -185,7 +185,9 @@ class FeatureStream:
         return out
 
 
-def features(samples: Array, activity: Array, tracks: int = 1, gains: Sequence[float] | None = None) -> Array:
+def compute_features(
+    samples: Array, activity: Array, tracks: int = 1, gains: Sequence[float] | None = None
+) -> Array:
     """Return the frames `[T, audio + 4]` of a recording at RATE, `[C, N]`: what streaming it gives. gains:
     measured where None.
     """
@@ -196,9 +198,9 @@ def features(samples: Array, activity: Array, tracks: int = 1, gains: Sequence[f
     return np.concatenate([stream.push(samples, activity), stream.finish()])
 
 
-def at_rate(samples: Array, rate: int) -> Array:
+def resample_for_features(samples: Array, rate: int) -> Array:
     """Return samples `[C, N]` at RATE, float32."""
-    return np.stack([resampled(channel, rate, RATE) for channel in np.atleast_2d(samples)])
+    return np.stack([resample_sound(channel, rate, RATE) for channel in np.atleast_2d(samples)])
 
 
 def one_hot(own: Array, partner: Array) -> Array:
@@ -236,7 +238,7 @@ def voice_activity(own: Array, partner: Array | None, rate: int, frames: int) ->
     """Return activity `[T, 4]` by loudness alone. own, partner: samples `[N]`; without a partner nobody
     answers.
     """
-    heard = [hear(np.asarray(v, np.float64), rate) for v in (own, partner) if v is not None]
+    heard = [analyse_sound(np.asarray(v, np.float64), rate) for v in (own, partner) if v is not None]
     tones = [pitch(np.asarray(v, np.float64), rate) for v in (own, partner) if v is not None]
     found = []
     for n in range(2):

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.generation.layers import Layers, State, linear, lstm, lstm_state, sigmoid
+from metagraph.generation.layers import Layers, State, apply_linear, apply_lstm, lstm_state, sigmoid
 from metagraph.generation.networks import FlowSizes
 from metagraph.generation.prepared import Cells, Dense
 
@@ -18,7 +18,7 @@ FlowState = list[State]  # one for each step
 LEAST = 1e-6  # what a coupling scales by at least
 
 
-class Flow:
+class FlowWeights:
     """A flow's weights, ready for both directions. dtype: what is reckoned in."""
 
     def __init__(self, weights: Layers, sizes: FlowSizes, dtype: Any = np.float32) -> None:
@@ -61,7 +61,7 @@ class Flow:
             z = (z + w[f"{step}.actnorm.bias"]) * np.exp(w[f"{step}.actnorm.logs"])
             z = z @ self._matrices[k].T
             a, b = z[..., : self.half], z[..., self.half :]
-            hidden, next_state = lstm(w, f"{step}.lstm", np.concatenate([a, context], -1), before[k])
+            hidden, next_state = apply_lstm(w, f"{step}.lstm", np.concatenate([a, context], -1), before[k])
             shift, scale = self._coupling(step, hidden)
             z = np.concatenate([a, (b + shift) * scale], -1)
             total = total + np.log(scale).sum(-1)
@@ -80,7 +80,7 @@ class Flow:
         after: FlowState = []
         for k in reversed(range(len(self.steps))):
             a = z[..., : self.half]
-            hidden, next_state = lstm(
+            hidden, next_state = apply_lstm(
                 self.weights, f"{self.steps[k]}.lstm", np.concatenate([a, context], -1), before[k]
             )
             z = self._undone(k, z, hidden)
@@ -94,7 +94,7 @@ class Flow:
 
     def _coupling(self, step: str, hidden: Array) -> tuple[Array, Array]:
         """Return what the second half is shifted and scaled by, `[..., D - D // 2]` each."""
-        told = linear(self.weights, f"{step}.out", hidden)
+        told = apply_linear(self.weights, f"{step}.out", hidden)
         count = self.dims - self.half
         return told[..., :count], sigmoid(told[..., count:] + 2) + np.asarray(LEAST, self.dtype)
 
@@ -106,7 +106,7 @@ class Flow:
         return np.asarray(z * np.exp(-w[f"{step}.actnorm.logs"]) - w[f"{step}.actnorm.bias"])
 
 
-class Drawing:
+class FlowDrawing:
     """A flow from noise to codes, moment by moment. The context is in two parts: of the past poses, and of
     what is heard, which can be reckoned beforehand.
     """

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.generation import chunks, cvae, vae
-from metagraph.generation.encoder import BLOCK, ChunkHearing, Hearing
-from metagraph.generation.flow import Drawing
+from metagraph.generation.encoder import BLOCK, ChunkHearing, EncoderHearing
+from metagraph.generation.flow import FlowDrawing
 from metagraph.generation.networks import Control, CvaeSizes, FlowSizes, MatchingSizes, Sizes, Weights
 from metagraph.generation.noise import Noise, noise
 from metagraph.generation.poses import FURTHEST
@@ -70,8 +70,8 @@ class FlowGenerator(Generator):
         control = sizes.control
         self._hears(control, lookahead)
         self.made, self.temperature = sizes.span, np.float32(temperature)
-        self.flow, self.decoder, self.noise = Drawing(w, sizes), vae.Decoder(w, sizes), Noise(sizes.dims)
-        self.hearing = Hearing(w, control, self.needed, self.flow)
+        self.flow, self.decoder, self.noise = FlowDrawing(w, sizes), vae.Decoder(w, sizes), Noise(sizes.dims)
+        self.hearing = EncoderHearing(w, control, self.needed, self.flow)
         self.past = np.repeat(first[None].astype(np.float32), control.past, 0)
         self.summary: list[Dense] = []  # what is known of the past poses
         if control.kind == "encoder" and control.past:
@@ -101,8 +101,8 @@ class CvaeGenerator(Generator):
 
     def __init__(self, w: Weights, sizes: CvaeSizes, temperature: float, lookahead: int | None) -> None:
         self._hears(sizes.control, lookahead)
-        self.decoder, self.noise = cvae.Drawing(w, sizes), Noise(sizes.dims)
-        self.hearing = Hearing(w, sizes.control, self.needed, self.decoder)
+        self.decoder, self.noise = cvae.CvaeDrawing(w, sizes), Noise(sizes.dims)
+        self.hearing = EncoderHearing(w, sizes.control, self.needed, self.decoder)
         self.temperature = np.float32(temperature)
 
     def step(self, heard: Array, seed: int, take: int, frame: int) -> Array:
@@ -134,9 +134,12 @@ class MatchingGenerator(Generator):
         self.kept, self.made = kept, kept * sizes.frames
         self.before, self.ahead = sizes.past * sizes.frames, sizes.most
         self.most = self.before + 1 + self.ahead
-        self.hearing, self.drawing = ChunkHearing(w, sizes, self.needed), chunks.Drawing(w, sizes, guidance)
+        self.hearing, self.drawing = (
+            ChunkHearing(w, sizes, self.needed),
+            chunks.TokenDrawing(w, sizes, guidance),
+        )
         self.pieces = self.drawing.pieces + 2
-        self.past = chunks.still_tokens(w, sizes, first)
+        self.past = chunks.tokens_of_still_pose(w, sizes, first)
         self._joining = chunks.Joining(w, sizes, kept)
         self.delay = self._joining.delay
 

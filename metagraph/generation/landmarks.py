@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.generation.poses import PoseError, PoseRig, decode
+from metagraph.generation.poses import PoseError, PoseRig, decode_poses
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose, Skeleton
 
@@ -64,7 +64,7 @@ def _small(rig: PoseRig) -> _Small:
     length = float(np.linalg.norm(before))
     if length < 1e-9:
         raise PoseError("the head is not above the arms in the base pose: nobody can tell what is before it")
-    nose = rotation.rotate(rotation.conjugate(turns[role["head"]]), before / length * BEFORE)
+    nose = rotation.rotate_vectors(rotation.conjugate(turns[role["head"]]), before / length * BEFORE)
     return _Small(
         small,
         Pose(rig.base[keep], whole.rest_translations[keep]),
@@ -83,11 +83,11 @@ def landmarks_of(rig: PoseRig, poses: Array) -> Array:
     for first in range(0, len(poses), _AT_ONCE):
         some = poses[first : first + _AT_ONCE]
         rotations = np.repeat(small.base.rotations[None], len(some), 0)
-        rotations[:, places] = decode(rig, some)[:, used]
+        rotations[:, places] = decode_poses(rig, some)[:, used]
         still = np.repeat(small.base.translations[None], len(some), 0)
         turns, points = small.skeleton.globals(Pose(rotations, still))
         for n, name in enumerate(LANDMARKS):
             out[first : first + len(some), n] = points[:, list(small.at[name])].mean(1)
         head = small.at["head"][0]
-        out[first : first + len(some), NOSE] += rotation.rotate(turns[:, head], small.nose)
+        out[first : first + len(some), NOSE] += rotation.rotate_vectors(turns[:, head], small.nose)
     return out

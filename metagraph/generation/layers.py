@@ -29,7 +29,7 @@ def silu(x: Array) -> Array:
     return np.asarray(x * sigmoid(x))
 
 
-def linear(w: Layers, name: str, x: Array) -> Array:
+def apply_linear(w: Layers, name: str, x: Array) -> Array:
     """Return `[..., out]` of `[..., in]`."""
     weight = w[f"{name}.weight"]
     flat = x.reshape(-1, x.shape[-1]) if x.ndim > 2 else x  # one product, not one for each of a batch
@@ -46,7 +46,7 @@ def lstm_state(w: Layers, name: str, layers: int, batch: tuple[int, ...] = ()) -
     return out
 
 
-def lstm(w: Layers, name: str, x: Array, state: State) -> tuple[Array, State]:
+def apply_lstm(w: Layers, name: str, x: Array, state: State) -> tuple[Array, State]:
     """Return `[..., T, N]` for a sequence `[..., T, in]`, and the state after it."""
     after: State = []
     for n, (hidden, cell) in enumerate(state):

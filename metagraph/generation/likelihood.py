@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.generation import vae
-from metagraph.generation.encoder import encode_all, encode_past, encode_window, windows
+from metagraph.generation.encoder import encode_all, encode_past, encode_window, list_windows
 from metagraph.generation.features import with_edges
-from metagraph.generation.flow import Flow
+from metagraph.generation.flow import FlowWeights
 from metagraph.generation.networks import FlowSizes
 from metagraph.generation.stored import Model
 
@@ -28,13 +28,13 @@ def contexts(
     if lookahead is None or lookahead >= control.ahead:
         told = encode_all(model.weights, control, heard)
     else:
-        told = encode_window(model.weights, control, windows(heard, control.frames), max(0, lookahead))
+        told = encode_window(model.weights, control, list_windows(heard, control.frames), max(0, lookahead))
     count = len(poses) // sizes.span
     told = told[: count * sizes.span : sizes.span]
     if not control.past:
         return told
     padded = np.concatenate([np.zeros((control.past, poses.shape[1]), poses.dtype), poses])
-    before = windows(padded, control.past)[: count * sizes.span : sizes.span]
+    before = list_windows(padded, control.past)[: count * sizes.span : sizes.span]
     return np.concatenate([encode_past(model.weights, control, before), told], -1)
 
 
@@ -51,7 +51,7 @@ def noise_of(
     if len(poses) != len(features):
         raise ValueError(f"{len(poses)} poses cannot go with {len(features)} frames of sound")
     standard = model.poses.apply(poses)
-    codes = vae.encode(model.weights, sizes, vae.spans(standard, sizes.span))
+    codes = vae.encode_spans(model.weights, sizes, vae.list_spans(standard, sizes.span))
     context = contexts(model, sizes, standard, features, lookahead)
-    z, logs, _ = Flow(model.weights, sizes).forward(codes, context)
+    z, logs, _ = FlowWeights(model.weights, sizes).forward(codes, context)
     return z, np.asarray(logs - 0.5 * (z * z + np.log(2 * np.pi)).sum(-1))

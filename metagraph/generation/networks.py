@@ -280,11 +280,11 @@ def parameters(sizes: Sizes) -> int:
     return out
 
 
-def linear(name: str, inputs: int, outputs: int) -> Shapes:
+def linear_shapes(name: str, inputs: int, outputs: int) -> Shapes:
     return {f"{name}.weight": (outputs, inputs), f"{name}.bias": (outputs,)}
 
 
-def lstm(name: str, inputs: int, units: int, layers: int) -> Shapes:
+def lstm_shapes(name: str, inputs: int, units: int, layers: int) -> Shapes:
     out: Shapes = {}
     for n in range(layers):
         out[f"{name}.weight_ih_l{n}"] = (4 * units, units if n else inputs)
@@ -306,8 +306,8 @@ def _control(control: Control, pose: int) -> Shapes:
         return {}
     out = _convolutions(control.inputs + 1, control.width, control.dilations)
     if control.past:
-        out |= linear("past.0", control.past * pose, control.width)
-        out |= linear("past.2", control.width, control.width)
+        out |= linear_shapes("past.0", control.past * pose, control.width)
+        out |= linear_shapes("past.2", control.width, control.width)
     return out
 
 
@@ -315,8 +315,8 @@ def _flow(s: FlowSizes) -> Shapes:
     whole = s.pose * s.span
     out: Shapes = {}
     if s.code == "autoencoder":
-        out |= linear("encode.0", whole, s.between) | linear("encode.2", s.between, s.dims)
-        out |= linear("decode.0", s.dims, s.between) | linear("decode.2", s.between, whole)
+        out |= linear_shapes("encode.0", whole, s.between) | linear_shapes("encode.2", s.between, s.dims)
+        out |= linear_shapes("decode.0", s.dims, s.between) | linear_shapes("decode.2", s.between, whole)
         out |= {"code.mean": (s.dims,), "code.deviation": (s.dims,)}
     elif s.code == "pca":
         out |= {"code.mean": (whole,), "code.basis": (s.dims, whole), "code.deviation": (s.dims,)}
@@ -327,8 +327,8 @@ def _flow(s: FlowSizes) -> Shapes:
         out |= {f"{step}.actnorm.bias": (s.dims,), f"{step}.actnorm.logs": (s.dims,)}
         out |= {f"{step}.linear.{m}": (s.dims, s.dims) for m in ("p", "lower", "upper")}
         out |= {f"{step}.linear.{m}": (s.dims,) for m in ("sign", "log_s")}
-        out |= lstm(f"{step}.lstm", half + s.control.context(s.pose), s.units, s.layers)
-        out |= linear(f"{step}.out", s.units, 2 * (s.dims - half))
+        out |= lstm_shapes(f"{step}.lstm", half + s.control.context(s.pose), s.units, s.layers)
+        out |= linear_shapes(f"{step}.out", s.units, 2 * (s.dims - half))
     return out
 
 
@@ -336,10 +336,10 @@ def _cvae(s: CvaeSizes) -> Shapes:
     context = s.control.context(s.pose)
     return {
         **_control(s.control, s.pose),
-        **lstm("encoder", s.pose + context, s.units, s.layers),
-        **linear("encoder_out", s.units, 2 * s.dims),
-        **lstm("decoder", s.dims + context, s.units, s.layers),
-        **linear("decoder_out", s.units, s.pose),
+        **lstm_shapes("encoder", s.pose + context, s.units, s.layers),
+        **linear_shapes("encoder_out", s.units, 2 * s.dims),
+        **lstm_shapes("decoder", s.dims + context, s.units, s.layers),
+        **linear_shapes("decoder_out", s.units, s.pose),
     }
 
 
@@ -352,14 +352,20 @@ def _matching(s: MatchingSizes) -> Shapes:
     if s.around:
         out["tokens.joined"] = ((2 * s.around + 1) * s.dims, s.frames * s.pose)
     out |= _convolutions(s.audio + ACTIVITY + 1, s.width, s.dilations)
-    out |= linear("control.token", s.frames * s.width, s.hidden)
-    out |= linear("embed_past", s.dims, s.hidden) | linear("embed_new", s.dims, s.hidden)
+    out |= linear_shapes("control.token", s.frames * s.width, s.hidden)
+    out |= linear_shapes("embed_past", s.dims, s.hidden) | linear_shapes("embed_new", s.dims, s.hidden)
     out |= {"place": (s.tokens, s.hidden), "no_past": (s.hidden,), "no_sound": (s.hidden,)}
-    out |= linear("time.0", s.time, s.time) | linear("time.2", s.time, s.time)
+    out |= linear_shapes("time.0", s.time, s.time) | linear_shapes("time.2", s.time, s.time)
     for n in range(s.layers):
         block = f"blocks.{n}"
-        out |= linear(f"{block}.modulation", s.time, 4 * s.hidden)
-        out |= linear(f"{block}.qkv", s.hidden, 3 * s.hidden) | linear(f"{block}.proj", s.hidden, s.hidden)
-        out |= linear(f"{block}.mlp.0", s.hidden, s.ratio * s.hidden)
-        out |= linear(f"{block}.mlp.2", s.ratio * s.hidden, s.hidden)
-    return out | linear("final.modulation", s.time, 2 * s.hidden) | linear("final.out", s.hidden, s.dims)
+        out |= linear_shapes(f"{block}.modulation", s.time, 4 * s.hidden)
+        out |= linear_shapes(f"{block}.qkv", s.hidden, 3 * s.hidden) | linear_shapes(
+            f"{block}.proj", s.hidden, s.hidden
+        )
+        out |= linear_shapes(f"{block}.mlp.0", s.hidden, s.ratio * s.hidden)
+        out |= linear_shapes(f"{block}.mlp.2", s.ratio * s.hidden, s.hidden)
+    return (
+        out
+        | linear_shapes("final.modulation", s.time, 2 * s.hidden)
+        | linear_shapes("final.out", s.hidden, s.dims)
+    )

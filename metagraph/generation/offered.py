@@ -12,7 +12,7 @@ FOLDER = "models"  # beside the project file
 SHIPPED = Path(__file__).resolve().parents[2] / "sample_clips" / "models" / f"{OWN}{SUFFIX}"
 
 
-def offered(folder: Path | None) -> dict[str, Path]:
+def list_models(folder: Path | None) -> dict[str, Path]:
     """Return models by name: the program's own, where it is installed, then those in a project's folder and
     in its FOLDER, by name. None is read.
     """
@@ -24,6 +24,6 @@ def offered(folder: Path | None) -> dict[str, Path]:
     return out
 
 
-def words_of(name: str) -> str:
+def model_title(name: str) -> str:
     """Return a model's name as people read it."""
     return OWN_WORDS if name == OWN else name

@@ -18,13 +18,13 @@ from metagraph.generation.chunks import GUIDANCE
 from metagraph.generation.features import RATE as SOUND_RATE
 from metagraph.generation.features import (
     FeatureError,
-    at_rate,
     conversation_activity,
     frames_of,
+    resample_for_features,
 )
 from metagraph.generation.loudness import gain_of
-from metagraph.generation.poses import PoseError, PoseRig, rig_of
-from metagraph.generation.sampler import Sampler, clip_of, heard_activity
+from metagraph.generation.poses import PoseError, PoseRig, find_rig
+from metagraph.generation.sampler import TakeSampler, clip_of, hear_activity
 from metagraph.generation.stored import Model
 from metagraph.graph import anatomy
 from metagraph.graph.conversation.model import Conversation, others_of, side_name
@@ -60,22 +60,22 @@ def project_rig(project: Project) -> PoseRig:
     if project.skeleton is None:
         raise PoseError("the project has no clips, so there is nobody to move: import some first")
     base = anatomy.base_pose(project).rotations
-    return rig_of(project.skeleton, anatomy.roles(project), base)
+    return find_rig(project.skeleton, anatomy.project_roles(project), base)
 
 
-def fits(model: Model, project: Project) -> bool:
+def moves_skeleton(model: Model, project: Project) -> bool:
     """Whether a model moves the project's own skeleton."""
     return project.skeleton is not None and model.rig.skeleton == project.skeleton
 
 
-def first_of(model: Model, project: Project) -> Array | None:
+def find_first_pose(model: Model, project: Project) -> Array | None:
     """Return the pose `[J, 4]` that a model goes on from: the project's base pose, None on another
     skeleton.
     """
-    return anatomy.base_pose(project).rotations.astype(np.float64) if fits(model, project) else None
+    return anatomy.base_pose(project).rotations.astype(np.float64) if moves_skeleton(model, project) else None
 
 
-def on_project(project: Project, clip: Clip) -> tuple[Clip, tuple[str, ...]]:
+def as_project_clip(project: Project, clip: Clip) -> tuple[Clip, tuple[str, ...]]:
     """Return what a model made as a clip of a project's figure: what no model moves is in the base pose; and
     what there is to know of it, in words. A clip of another skeleton is retargeted, by the project's joint
     map where it has one. Raises PoseError and RetargetError.
@@ -126,13 +126,13 @@ def side_sound(conversation: Conversation, side: int, folder: Path) -> tuple[Arr
         recording = read_recording(folder / of.audio, LONGEST)
         samples = recording.samples
         one = samples.mean(0) if of.channel is None else samples[min(of.channel, len(samples) - 1)]
-        voice = at_rate(one[None], recording.rate)[0][:count]
+        voice = resample_for_features(one[None], recording.rate)[0][:count]
         out[int(n != side), : len(voice)] += voice
     return out, tuple(notes)
 
 
 @dataclass(frozen=True, eq=False)
-class Heard:
+class HeardSpeech:
     """What motion is made to. samples: `[C, N]` at `features.RATE`, own voice first. activity: who speaks,
     `[T, 4]`. notes: what is missing, or there is to know, in words.
     """
@@ -142,25 +142,25 @@ class Heard:
     notes: tuple[str, ...] = ()
 
 
-def heard_side(project: Project, ident: str, side: int, folder: Path) -> Heard:
+def hear_side(project: Project, ident: str, side: int, folder: Path) -> HeardSpeech:
     """Return what is heard in a conversation, as `side_sound` does. Raises FileError."""
     samples, notes = side_sound(project.conversations[ident], side, folder)
     count = frames_of(samples.shape[1])
-    return Heard(samples, conversation_activity(project.conversations[ident], side, count), notes)
+    return HeardSpeech(samples, conversation_activity(project.conversations[ident], side, count), notes)
 
 
-def heard_file(path: Path) -> Heard:
+def hear_file(path: Path) -> HeardSpeech:
     """Return what is heard in a sound file: at most two channels, the first one's own voice; loudness tells
     who speaks. Raises FileError.
     """
     recording = read_recording(path, LONGEST)
-    samples = at_rate(recording.samples, recording.rate)[:2]
-    return Heard(samples, heard_activity(samples), ("Loudness tells who speaks.",))
+    samples = resample_for_features(recording.samples, recording.rate)[:2]
+    return HeardSpeech(samples, hear_activity(samples), ("Loudness tells who speaks.",))
 
 
-def spoken(
+def generate_motion(
     model: Model,
-    heard: Heard,
+    heard: HeardSpeech,
     chance: Chance,
     name: str,
     first: Array | None = None,
@@ -175,7 +175,7 @@ def spoken(
     size = samples.shape[1]
     if not size:
         raise FeatureError("there is no sound to move to")
-    sampler = Sampler(
+    sampler = TakeSampler(
         model,
         chance.seed,
         chance.temperature,
@@ -200,7 +200,7 @@ def spoken(
 def side_clip(
     model: Model,
     project: Project,
-    heard: Heard,
+    heard: HeardSpeech,
     chance: Chance,
     name: str,
     progress: Progress | None = None,
@@ -209,16 +209,16 @@ def side_clip(
     """Return what moves one side of a project's conversation, and what there is to know of it, in words.
     heard: `heard_side`. Raises PoseError, RetargetError, FeatureError and CancelledError.
     """
-    first = first_of(model, project)
-    clip = spoken(model, heard, chance, name, first, progress, cancelled)
-    clip, told = on_project(project, clip)
+    first = find_first_pose(model, project)
+    clip = generate_motion(model, heard, chance, name, first, progress, cancelled)
+    clip, told = as_project_clip(project, clip)
     return clip, (*heard.notes, *told)
 
 
-def long_takes(
+def generate_long_takes(
     model: Model,
     project: Project,
-    heard: Heard,
+    heard: HeardSpeech,
     seconds: float,
     chance: Chance,
     name: str,
@@ -245,9 +245,9 @@ def long_takes(
                 progress(min(total, done + n), total)
 
         drawn = replace(chance, take=chance.take + len(out))
-        some = Heard(samples[:, :part], heard.activity)
-        clip = spoken(model, some, drawn, name, first_of(model, project), tell, cancelled)
-        clip, notes = on_project(project, clip)
+        some = HeardSpeech(samples[:, :part], heard.activity)
+        clip = generate_motion(model, some, drawn, name, find_first_pose(model, project), tell, cancelled)
+        clip, notes = as_project_clip(project, clip)
         out.append(clip)
         left -= part
     return out, notes

@@ -58,7 +58,9 @@ class PoseRig:
         return NUMBERS * len(self.joints)
 
 
-def rig_of(skeleton: Skeleton, roles: Mapping[str, int] | None = None, base: Array | None = None) -> PoseRig:
+def find_rig(
+    skeleton: Skeleton, roles: Mapping[str, int] | None = None, base: Array | None = None
+) -> PoseRig:
     """Return the joints that count of a skeleton. roles: as found unless given. base: local rotations `[J,
     4]`, the rest pose unless given. Raises PoseError where a joint is missing without which nobody gestures.
     """
@@ -83,7 +85,7 @@ def rig_of(skeleton: Skeleton, roles: Mapping[str, int] | None = None, base: Arr
     return PoseRig(skeleton, tuple(chosen), tuple(chosen.values()), tuple(lines), rotation.normalize(held))
 
 
-def encode(rig: PoseRig, rotations: Array) -> Array:
+def encode_rotations(rig: PoseRig, rotations: Array) -> Array:
     """Return poses `[..., 6 n]`, float32, of local rotations `[..., J, 4]`."""
     rotations = np.asarray(rotations, np.float64)
     turns = np.stack([_line(rotations, line) for line in rig.lines], -2)
@@ -92,7 +94,7 @@ def encode(rig: PoseRig, rotations: Array) -> Array:
     return np.asarray(rows.reshape(*rows.shape[:-3], rig.numbers), np.float32)
 
 
-def decode(rig: PoseRig, poses: Array) -> Array:
+def decode_poses(rig: PoseRig, poses: Array) -> Array:
     """Return the local rotations `[..., n, 4]` of the rig's joints, float64, of poses `[..., 6 n]`: what lies
     between them is in the base pose. Rows need neither be of length 1 nor at a right angle.
     """
@@ -141,7 +143,7 @@ def _unit(v: Array, otherwise: Callable[[], Array]) -> Array:
     return np.asarray(np.where(fine, v / np.maximum(length, 1e-6), otherwise()))
 
 
-def resampled(clip: Clip, fps: float, joints: tuple[int, ...] | None = None) -> Array:
+def resample_rotations(clip: Clip, fps: float, joints: tuple[int, ...] | None = None) -> Array:
     """Return the local rotations `[T, n, 4]` of a clip's joints, or of all, at another rate, by slerp,
     float64. T: as many frames as its duration has.
     """
@@ -152,15 +154,15 @@ def resampled(clip: Clip, fps: float, joints: tuple[int, ...] | None = None) -> 
     return rotation.normalize(rotation.slerp(every[low], every[high], part[:, None].astype(np.float64)))
 
 
-def poses_of(rig: PoseRig, clip: Clip, fps: float) -> Array:
+def encode_clip(rig: PoseRig, clip: Clip, fps: float) -> Array:
     """Return a clip's poses `[T, 6 n]`, float32, at a rate. Raises PoseError for another skeleton's clip."""
     if clip.skeleton != rig.skeleton:
         raise PoseError(f"'{clip.name}' has another skeleton: retarget it, or leave it out")
-    return encode(rig, resampled(clip, fps))
+    return encode_rotations(rig, resample_rotations(clip, fps))
 
 
 @dataclass(frozen=True, eq=False)
-class Scale:
+class Standardisation:
     """What standardises numbers: their means and deviations `[X]`, float32."""
 
     mean: Array
@@ -175,10 +177,10 @@ class Scale:
         return np.asarray(np.clip(numbers, -FURTHEST, FURTHEST) * self.deviation + self.mean, np.float32)
 
 
-def scale_of(rows: Array, least: float = LEAST) -> Scale:
+def scale_of(rows: Array, least: float = LEAST) -> Standardisation:
     """Return means and deviations of rows `[T, X]`; deviations are at least `least`."""
     if not len(rows):
         raise PoseError("there is nothing to take means of")
     rows = np.asarray(rows, np.float64)
     deviation = np.maximum(rows.std(0), least)
-    return Scale(rows.mean(0).astype(np.float32), deviation.astype(np.float32))
+    return Standardisation(rows.mean(0).astype(np.float32), deviation.astype(np.float32))

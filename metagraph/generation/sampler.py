@@ -24,7 +24,7 @@ from metagraph.generation.features import (
 from metagraph.generation.generators import generator
 from metagraph.generation.loudness import gain_of
 from metagraph.generation.networks import FPS, MatchingSizes
-from metagraph.generation.poses import PoseError, decode, encode
+from metagraph.generation.poses import PoseError, decode_poses, encode_rotations
 from metagraph.generation.stored import Model
 from metagraph.graph.conversation.model import Conversation
 from metagraph.motion import rotation
@@ -36,7 +36,7 @@ Array = NDArray[Any]
 WARMEST = 1.2  # temperature at most
 
 
-class Sampler:
+class TakeSampler:
     """One take of a model, from its first frame on.
 
     seed, take: 0..2^64 - 1; start: number of the first frame, 0 or more, so that what begins later has the
@@ -78,7 +78,7 @@ class Sampler:
             rotations = np.asarray(first, np.float64)
             if rotations.shape != (len(model.rig.skeleton), 4) or not np.isfinite(rotations).all():
                 raise PoseError("the first pose is one of another skeleton")
-            before = model.poses.apply(encode(model.rig, rotations))
+            before = model.poses.apply(encode_rotations(model.rig, rotations))
         self._made = generator(model.weights, sizes, before, temperature, lookahead, guidance)
         adaptive = smooth is None and isinstance(sizes, MatchingSizes)
         self._averaging = Averaging() if adaptive else Averaging(smooth or 0.0, None)
@@ -125,7 +125,7 @@ class Sampler:
         return self._turns(self._averaged(np.concatenate([self._out, new]), False))
 
     def _turns(self, poses: Array) -> Array:
-        return decode(self.model.rig, poses)
+        return decode_poses(self.model.rig, poses)
 
     def _take(self, frames: Array) -> None:
         self._known += len(frames)
@@ -178,11 +178,11 @@ def poses_to(model: Model, features: Array, seed: int = 1, temperature: float = 
     """Return the poses `[T, X]`, not standardised, to a whole recording's features `[T, audio + 4]`. options:
     as for `Sampler`.
     """
-    sampler = Sampler(model, seed, temperature, **options)
+    sampler = TakeSampler(model, seed, temperature, **options)
     return sampler.numbers(features, True)
 
 
-def whole(
+def sample_whole(
     model: Model,
     samples: Array,
     activity: Array,
@@ -203,7 +203,7 @@ def whole(
     samples = np.atleast_2d(samples)
     if not samples.shape[1]:
         raise ValueError("there is no sound to move to")
-    sampler = Sampler(
+    sampler = TakeSampler(
         model,
         seed,
         temperature,
@@ -228,10 +228,10 @@ def conversation_motion(
     count = frames_of(np.atleast_2d(samples).shape[1])
     activity = conversation_activity(conversation, side, count)
     name = conversation.sides[side].name or f"{conversation.name}, side {side + 1}"
-    return whole(model, samples, activity, seed=seed, **{"name": name, **options})
+    return sample_whole(model, samples, activity, seed=seed, **{"name": name, **options})
 
 
-def heard_activity(samples: Array) -> Array:
+def hear_activity(samples: Array) -> Array:
     """Return activity `[T, 4]` of a recording without words: samples `[C, N]` at `features.RATE`."""
     samples = np.atleast_2d(samples)
     partner = samples[1] if len(samples) > 1 else None

@@ -16,7 +16,7 @@ from msgspec import Struct
 from metagraph.errors import FileError
 from metagraph.formats.project.kernel_lock import try_hold
 from metagraph.generation.stored import SUFFIX
-from metagraph.generation.train_plan import FOLDER, PLAN, TrainingPlan, read_plan
+from metagraph.generation.train_plan import FOLDER, PLAN, TrainingPlan, read_training_plan
 
 FORMAT = 1  # of checkpoints
 TOLD = "told"
@@ -25,7 +25,7 @@ LOCK = "lock"
 UNREADABLE = (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, msgspec.DecodeError)
 
 
-class Told(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class CheckpointNote(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What a checkpoint keeps beside arrays. plan: fingerprint of the plan that it belongs to. seconds: of
     the processor, minutes: of the clock that were used so far. numbers: last ones shown.
     """
@@ -54,16 +54,16 @@ class Standing:
 
     @property
     def share(self) -> float:
-        return share_of(self.plan, self.step, self.seconds, self.minutes)
+        return training_share(self.plan, self.step, self.seconds, self.minutes)
 
 
-def share_of(plan: TrainingPlan, step: int, seconds: float, minutes: float) -> float:
+def training_share(plan: TrainingPlan, step: int, seconds: float, minutes: float) -> float:
     """Return how much of a training is over, 0..1."""
     used = ((seconds, plan.seconds), (minutes, plan.minutes), (float(step), plan.steps))
     return min(1.0, max((value / most for value, most in used if most), default=0.0))
 
 
-def begun(folder: Path) -> list[Standing]:
+def find_begun_trainings(folder: Path) -> list[Standing]:
     """Return the trainings in a folder of models, those that are not over first, each by name. What cannot be
     gone on with is left out; nothing is raised.
     """
@@ -78,15 +78,15 @@ def begun(folder: Path) -> list[Standing]:
 def standing_of(training: Path) -> Standing | None:
     """Return how far the training in a folder got, None where there is none that can be gone on with."""
     try:
-        plan = read_plan(training)
+        plan = read_training_plan(training)
     except FileError:
         return None
     out, name = training.with_name(training.name.removesuffix(FOLDER)), plan.fingerprint()
-    last = Told(plan=name, step=0, seconds=0.0, minutes=0.0)
+    last = CheckpointNote(plan=name, step=0, seconds=0.0, minutes=0.0)
     for path in training.glob(CHECKPOINTS):
         try:
             with path.open("rb") as content, np.load(content, allow_pickle=False) as file:
-                told = told_of(file[TOLD])
+                told = read_checkpoint_note(file[TOLD])
         except UNREADABLE:
             continue  # the other one is whole
         if told.plan == name and told.step > last.step:
@@ -94,9 +94,9 @@ def standing_of(training: Path) -> Standing | None:
     return Standing(out, out.is_file(), plan, last.step, last.seconds, last.minutes)
 
 
-def told_of(array: np.ndarray) -> Told:
+def read_checkpoint_note(array: np.ndarray) -> CheckpointNote:
     """Return what a checkpoint's member TOLD says. Raises ValueError, msgspec.DecodeError."""
-    told = msgspec.json.decode(array.tobytes(), type=Told)
+    told = msgspec.json.decode(array.tobytes(), type=CheckpointNote)
     if told.format != FORMAT:
         raise ValueError(f"it has format {told.format}, this version reads {FORMAT}")
     return told
@@ -109,7 +109,7 @@ def hold(training: Path) -> IO[bytes] | None:
     return try_hold(training / LOCK)
 
 
-def busy(training: Path) -> bool:
+def is_busy(training: Path) -> bool:
     """Whether some process works in a training's folder."""
     if not (training / PLAN).is_file():
         return False

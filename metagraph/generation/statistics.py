@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from metagraph.generation.features import PARTNER, SELF
 from metagraph.generation.landmarks import HEAD, NOSE, WRISTS, landmarks_of
 from metagraph.generation.networks import FPS
-from metagraph.generation.poses import PoseRig, Scale, scale_of
-from metagraph.generation.takes import NO_MARKS, Marks, Take
+from metagraph.generation.poses import PoseRig, Standardisation, scale_of
+from metagraph.generation.takes import NO_MARKS, Take, TakeMarks
 from metagraph.generation.vae import principal
 
 Array = NDArray[Any]
@@ -40,7 +40,7 @@ MEASURES = (
 
 
 @dataclass(frozen=True, eq=False)
-class Performance:
+class MotionSample:
     """Motion, with what is heard beside it. landmarks: `[T, 9, 3]` metres; poses: `[T, X]`, not standardised;
     activity: `[T, 4]`; marks: when something is said.
     """
@@ -48,28 +48,28 @@ class Performance:
     landmarks: Array
     poses: Array
     activity: Array
-    marks: Marks = NO_MARKS
+    marks: TakeMarks = NO_MARKS
 
     def __len__(self) -> int:
         return len(self.poses)
 
-    def part(self, first: int, last: int) -> Performance:
+    def part(self, first: int, last: int) -> MotionSample:
         """Return frames first to last, excluded."""
         marks = self.marks.shifted(first / FPS, last / FPS)
         cut = slice(first, last)
-        return Performance(self.landmarks[cut], self.poses[cut], self.activity[cut], marks)
+        return MotionSample(self.landmarks[cut], self.poses[cut], self.activity[cut], marks)
 
 
-def performance(rig: PoseRig, poses: Array, take: Take) -> Performance:
+def make_motion_sample(rig: PoseRig, poses: Array, take: Take) -> MotionSample:
     """Return motion as though it were a take's: poses `[T, X]`, not standardised, with what that take
     hears.
     """
     count = min(len(poses), len(take.features))
     poses = np.asarray(poses[:count], np.float64)
-    return Performance(landmarks_of(rig, poses), poses, take.activity[:count], take.marks)
+    return MotionSample(landmarks_of(rig, poses), poses, take.activity[:count], take.marks)
 
 
-def blocks(motion: Sequence[Performance], seconds: float = BLOCK) -> list[Performance]:
+def cut_blocks(motion: Sequence[MotionSample], seconds: float = BLOCK) -> list[MotionSample]:
     """Return motion cut into blocks; what is over at an end is a block of its own where it lasts half as
     long.
     """
@@ -84,7 +84,7 @@ def blocks(motion: Sequence[Performance], seconds: float = BLOCK) -> list[Perfor
     return out
 
 
-def mean_landmarks(motion: Sequence[Performance]) -> Array:
+def mean_landmarks(motion: Sequence[MotionSample]) -> Array:
     """Return the mean place of each landmark `[9, 3]`."""
     return np.asarray(np.concatenate([m.landmarks for m in motion]).mean(0))
 
@@ -115,13 +115,13 @@ class _Truth:
     """What is known of recorded motion, once for all comparisons."""
 
     mean: Array  # of landmarks
-    scale: Scale  # of poses
+    scale: Standardisation  # of poses
     centre: Array
     basis: Array
 
 
 @lru_cache(maxsize=2)  # every row of a table is beside the same
-def _truth(motion: tuple[Performance, ...]) -> _Truth:
+def _truth(motion: tuple[MotionSample, ...]) -> _Truth:
     poses = np.concatenate([m.poses for m in motion])
     scale = scale_of(poses)
     parts = principal(scale.apply(poses), min(SCORES, poses.shape[1]), "scores")
@@ -150,7 +150,7 @@ class _Parts:
     windows: Array  # mean, deviation and mean step of the scores of each second `[n, 3 SCORES]`
 
 
-def _parts(m: Performance, truth: _Truth) -> _Parts:
+def _parts(m: MotionSample, truth: _Truth) -> _Parts:
     steps = np.diff(m.landmarks, axis=0) * (FPS * 100)
     far = np.linalg.norm(m.landmarks - truth.mean, axis=-1) * 100
     growing = np.diff(far, axis=0) * FPS
@@ -187,7 +187,7 @@ def _together(parts: Sequence[_Parts]) -> _Parts:
     return _Parts(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(_Parts)))
 
 
-def measures(generated: Sequence[Performance], true: Sequence[Performance]) -> dict[str, float]:
+def compute_measures(generated: Sequence[MotionSample], true: Sequence[MotionSample]) -> dict[str, float]:
     """Return all MEASURES of generated motion beside what was recorded; nan where what it is made of does not
     occur. distance, frechet: the smaller the better, down to the floor. speed, acceleration, wrist_range,
     still (how often hands rest), trembling (their acceleration while they do), profile: 1 is perfect;
@@ -285,7 +285,7 @@ def _root(matrix: Array) -> Array:
     return np.asarray((vectors * np.sqrt(np.maximum(values, 0))) @ vectors.T)
 
 
-def diversity(performances: Sequence[Sequence[Performance]]) -> float:
+def diversity(performances: Sequence[Sequence[MotionSample]]) -> float:
     """Return how far landmarks are apart between two of several takes to the same speech, cm: the mean over
     pairs and frames; nan for fewer than two.
     """
@@ -302,7 +302,7 @@ def diversity(performances: Sequence[Sequence[Performance]]) -> float:
 # --- what stands beside
 
 
-def mean_pose(true: Sequence[Performance]) -> list[Performance]:
+def mean_pose(true: Sequence[MotionSample]) -> list[MotionSample]:
     """Return somebody who holds the mean pose."""
     landmarks, poses = mean_landmarks(true), np.concatenate([m.poses for m in true]).mean(0)
     return [
@@ -311,7 +311,7 @@ def mean_pose(true: Sequence[Performance]) -> list[Performance]:
     ]
 
 
-def mismatched(true: Sequence[Performance]) -> list[Performance]:
+def mismatch_speech(true: Sequence[MotionSample]) -> list[MotionSample]:
     """Return recorded motion to other speech: the next take's, half of its length later, since the next may
     be the other side of the same conversation.
     """
@@ -324,7 +324,7 @@ def mismatched(true: Sequence[Performance]) -> list[Performance]:
 
 
 @dataclass(frozen=True)
-class Row:
+class MeasureRow:
     """A system's measures. spread: of each the interval that LEVEL of the draws of blocks fall into."""
 
     name: str
@@ -334,20 +334,20 @@ class Row:
 
 def row(
     name: str,
-    generated: Sequence[Sequence[Performance]],
-    true: Sequence[Performance],
+    generated: Sequence[Sequence[MotionSample]],
+    true: Sequence[MotionSample],
     seed: int = 1,
     draws: int = DRAWS,
-) -> Row:
+) -> MeasureRow:
     """Return a system's row. generated: of each seed, motion to all that `true` holds, in its order. Values
     are means over seeds; the spread is by drawing blocks of BLOCK seconds, and seeds, with replacement.
     """
-    whole = [measures(each, true) for each in generated]
+    whole = [compute_measures(each, true) for each in generated]
     values = {m: float(np.mean([w[m] for w in whole])) for m in MEASURES}
     values["diversity"] = diversity(generated)
     truth = _truth(tuple(true))
-    pieces = [[_parts(b, truth) for b in blocks(each)] for each in generated]
-    recorded = [_parts(b, truth) for b in blocks(true)]
+    pieces = [[_parts(b, truth) for b in cut_blocks(each)] for each in generated]
+    recorded = [_parts(b, truth) for b in cut_blocks(true)]
     chance = np.random.default_rng(seed)
     drawn: list[dict[str, float]] = []
     for _ in range(draws):
@@ -363,15 +363,15 @@ def row(
         if len(found):
             low, high = np.quantile(found, (tail, 1 - tail)).tolist()
             spread[m] = (low, high)
-    return Row(name, values, spread)
+    return MeasureRow(name, values, spread)
 
 
-def table(
-    systems: Mapping[str, Sequence[Sequence[Performance]]],
-    true: Sequence[Performance],
-    floor: Sequence[Performance] | None = None,
+def tabulate_measures(
+    systems: Mapping[str, Sequence[Sequence[MotionSample]]],
+    true: Sequence[MotionSample],
+    floor: Sequence[MotionSample] | None = None,
     draws: int = DRAWS,
-) -> list[Row]:
+) -> list[MeasureRow]:
     """Return a row of each system, below what stands beside them. systems: as `row`'s `generated`. floor:
     other true motion to the same speech; None: the first half of the recorded blocks is measured against the
     other.
@@ -379,10 +379,10 @@ def table(
     if floor is not None:
         rows = [row("floor", [floor], true, draws=draws)]
     else:
-        halves = blocks(true)
+        halves = cut_blocks(true)
         rows = []
         if len(halves) > 1:
-            rows = [Row("floor", measures(halves[::2], halves[1::2]), {})]
-    rows.append(row("mismatched", [mismatched(true)], true, draws=draws))
+            rows = [MeasureRow("floor", compute_measures(halves[::2], halves[1::2]), {})]
+    rows.append(row("mismatched", [mismatch_speech(true)], true, draws=draws))
     rows.append(row("mean pose", [mean_pose(true)], true, draws=draws))
     return rows + [row(name, made, true, draws=draws) for name, made in systems.items()]

@@ -25,7 +25,7 @@ from msgspec import Meta, Struct
 from numpy.typing import NDArray
 
 from metagraph.common.budgets import ARRAYS
-from metagraph.common.files import check_file, guarded
+from metagraph.common.files import check_file, guard_reader
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.generation.features import MELS, as_heard
@@ -38,7 +38,7 @@ from metagraph.generation.networks import (
     Weights,
     shapes_of,
 )
-from metagraph.generation.poses import NUMBERS, PoseError, PoseRig, Scale, rig_of
+from metagraph.generation.poses import NUMBERS, PoseError, PoseRig, Standardisation, find_rig
 from metagraph.motion.skeleton import Skeleton
 
 Array = NDArray[Any]
@@ -87,7 +87,7 @@ class SkeletonCard(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
             np.array(self.rotations, np.float64),
             np.array(self.translations, np.float64),
         )
-        return rig_of(skeleton, self.roles, np.array(self.base, np.float64))
+        return find_rig(skeleton, self.roles, np.array(self.base, np.float64))
 
 
 class ModelCard(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -129,12 +129,12 @@ class Model:
         return self.card.skeleton.rig()
 
     @cached_property
-    def poses(self) -> Scale:
+    def poses(self) -> Standardisation:
         """What standardises poses."""
         return _scale(self.card.pose_mean, self.card.pose_deviation)
 
     @cached_property
-    def audio(self) -> Scale:
+    def audio(self) -> Standardisation:
         """What standardises mels."""
         return _scale(self.card.audio_mean, self.card.audio_deviation)
 
@@ -143,8 +143,8 @@ class Model:
         return as_heard(features, self.audio)
 
 
-def _scale(mean: _Numbers, deviation: _Numbers) -> Scale:
-    return Scale(np.array(mean, np.float32), np.array(deviation, np.float32))
+def _scale(mean: _Numbers, deviation: _Numbers) -> Standardisation:
+    return Standardisation(np.array(mean, np.float32), np.array(deviation, np.float32))
 
 
 def skeleton_card(rig: PoseRig) -> SkeletonCard:
@@ -167,7 +167,7 @@ def versions() -> dict[str, str]:
     return {"python": platform.python_version(), "numpy": np.__version__}
 
 
-def checked(model: Model) -> Model:
+def check_model(model: Model) -> Model:
     """Return the model. Raises ValueError, in words, where its card and weights do not fit together."""
     card, weights = model.card, model.weights
     _check_card(card)
@@ -220,7 +220,7 @@ def write_model(model: Model, path: str | Path, half: bool = False) -> None:
     """
     path = Path(path)
     try:
-        checked(model)
+        check_model(model)
         kept = np.dtype("<f2" if half else "<f4")
         size = sum(w.size for w in model.weights.values()) * kept.itemsize
         if size > MOST:
@@ -255,7 +255,7 @@ def _member(name: str) -> zipfile.ZipInfo:
 # --- reading
 
 
-@guarded
+@guard_reader
 def read_model(path: str | Path) -> Model:
     """Read a model. Raises FileError for whatever is not one."""
     path = check_file(path, ARRAYS)
@@ -264,7 +264,7 @@ def read_model(path: str | Path) -> Model:
         return Model(card, _weights(path, archive, card))
 
 
-@guarded
+@guard_reader
 def read_card(path: str | Path) -> ModelCard:
     """Read what is told of a model, without its weights. Raises FileError."""
     path = check_file(path, ARRAYS)

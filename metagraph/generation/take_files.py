@@ -19,15 +19,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.budgets import CONVERSATION_SECONDS as LONGEST
-from metagraph.common.files import unforeseen
+from metagraph.common.files import unforeseen_error
 from metagraph.errors import FileError
-from metagraph.formats.clips import digest, find_clip_files, read_clips
+from metagraph.formats.clips import digest, find_clip_files, read_clip_file
 from metagraph.formats.conversations.files import SOUNDS, read_conversation
 from metagraph.formats.conversations.languages import Speaking
 from metagraph.formats.transcripts.words import SUFFIXES as TRANSCRIPTS
-from metagraph.generation.features import RATE, at_rate
-from metagraph.generation.poses import PoseError, PoseRig, rig_of
-from metagraph.generation.takes import Source, Take, TakeError, TakeSound, take_of
+from metagraph.generation.features import RATE, resample_for_features
+from metagraph.generation.poses import PoseError, PoseRig, find_rig
+from metagraph.generation.takes import Take, TakeError, TakeSound, TakeSource, make_take
 from metagraph.graph.conversation.model import Conversation
 from metagraph.motion.clip import Clip
 from metagraph.speech.sound import read_recording
@@ -53,7 +53,7 @@ class TakeFiles:
 
 
 @dataclass(frozen=True, eq=False)
-class Speech:
+class TakeSpeech:
     """What is heard with a take: samples `[C, N]` at RATE, own voice first; the share of each channel that
     was cut off at full scale; the conversation where its words are known; what there is to know, in words.
     """
@@ -65,7 +65,7 @@ class Speech:
 
 
 @dataclass(frozen=True, eq=False)
-class Batch:
+class TakeBatch:
     """What came of reading many takes. clips: of each take, to make its twin. failures: in words, each naming
     its file; they spoil nothing else.
     """
@@ -124,7 +124,7 @@ def _files(folder: Path) -> list[Path]:
     return sorted(p for p in folder.rglob("*") if p.is_file())
 
 
-def read_takes(
+def read_take_batch(
     files: Iterable[TakeFiles],
     rig: PoseRig | None = None,
     roles: Mapping[str, int] | None = None,
@@ -132,7 +132,7 @@ def read_takes(
     progress: Callable[[int, Path], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
     speaking: Speaking | None = None,
-) -> Batch:
+) -> TakeBatch:
     """Read takes; a bad one fails alone. rig: whose joints count; None: of the skeleton that most of them
     have. roles: of that skeleton, as found unless given. progress: called before each with how many are
     done. speaking: what their words are read in; None for what they tell. Raises CancelledError once
@@ -145,9 +145,9 @@ def read_takes(
         if cancelled is not None and cancelled():
             raise CancelledError
         try:
-            there = read_clips(each.clip)
+            there = read_clip_file(each.clip)
         except Exception as error:  # one bad file spoils no other
-            failures.append(str(unforeseen(each.clip, error)))
+            failures.append(str(unforeseen_error(each.clip, error)))
             continue
         clip = max(there, key=lambda c: c.frames)
         read.append((each, clip))
@@ -159,9 +159,9 @@ def read_takes(
     if rig is None and read:
         counts = {c.skeleton: sum(o.skeleton == c.skeleton for _, o in read) for _, c in read}
         try:
-            rig = rig_of(max(counts, key=lambda s: counts[s]), roles)
+            rig = find_rig(max(counts, key=lambda s: counts[s]), roles)
         except PoseError as error:
-            return Batch(None, (), (), (*failures, str(error)), ())
+            return TakeBatch(None, (), (), (*failures, str(error)), ())
     takes, clips, notes = [], [], []
     licences: dict[Path, str] = {}
     for done, (each, clip) in enumerate(read):
@@ -176,13 +176,13 @@ def read_takes(
             failures.append(str(error))
             continue
         except Exception as error:
-            failures.append(str(unforeseen(each.clip, error)))
+            failures.append(str(unforeseen_error(each.clip, error)))
             continue
         takes.append(take)
         clips.append(clip)
         told = (*([several[each.clip]] if each.clip in several else ()), *clip.notes)
         notes += [*(f"{each.clip.name}: {note}" for note in told), *take.notes]
-    return Batch(rig, tuple(takes), tuple(clips), tuple(failures), tuple(dict.fromkeys(notes)))
+    return TakeBatch(rig, tuple(takes), tuple(clips), tuple(failures), tuple(dict.fromkeys(notes)))
 
 
 def _take(
@@ -198,13 +198,13 @@ def _take(
     folder = files.clip.parent
     if folder not in licences:
         licences[folder] = licence_of(folder)
-    source = Source(files.clip.stem, digests, licences[folder])
+    source = TakeSource(files.clip.stem, digests, licences[folder])
     heard = TakeSound(speech.samples, RATE, speech.clipped)
-    take = take_of(rig, clip, heard, source, speech.conversation, files.side, tracks)
+    take = make_take(rig, clip, heard, source, speech.conversation, files.side, tracks)
     return replace(take, notes=(*speech.notes, *take.notes))
 
 
-def read_speech(files: TakeFiles, speaking: Speaking | None = None) -> Speech:
+def read_speech(files: TakeFiles, speaking: Speaking | None = None) -> TakeSpeech:
     """Return what is heard with a take. speaking: what its words are read in; None for what they tell. Raises
     FileError.
     """
@@ -221,7 +221,7 @@ def _speech(
     transcripts: tuple[Path, ...],
     stamps: tuple[int, ...],
     speaking: Speaking | None,
-) -> Speech:
+) -> TakeSpeech:
     """stamps: when the files were written."""
     conversation: Conversation | None = None
     notes: tuple[str, ...] = ()
@@ -230,19 +230,22 @@ def _speech(
         conversation, notes = read.conversation, read.notes
     recordings = [read_recording(p, LONGEST) for p in sounds]
     if len(recordings) > 1:
-        voices = [at_rate(r.samples.mean(0)[None], r.rate)[0] for r in recordings[:2]]
+        voices = [resample_for_features(r.samples.mean(0)[None], r.rate)[0] for r in recordings[:2]]
         longest = max(map(len, voices))
         samples = np.stack([np.pad(v, (0, longest - len(v))) for v in voices])
         clipped = tuple(max(r.clipped) for r in recordings[:2])
     else:
-        samples, clipped = at_rate(recordings[0].samples, recordings[0].rate), recordings[0].clipped
+        samples, clipped = (
+            resample_for_features(recordings[0].samples, recordings[0].rate),
+            recordings[0].clipped,
+        )
     if len(samples) > 2:
         raise FileError(
             sounds[0],
             f"has {len(samples)} channels, a conversation of two has one for each",
             remedy="Save the two speakers' channels as one file.",
         )
-    return Speech(samples, clipped, conversation, notes)
+    return TakeSpeech(samples, clipped, conversation, notes)
 
 
 def licence_of(folder: Path) -> str:

@@ -16,16 +16,23 @@ from metagraph.generation.features import (
     PARTNER,
     RATE,
     SELF,
-    at_rate,
+    compute_features,
     conversation_activity,
-    features,
     frames_of,
+    resample_for_features,
     voice_activity,
 )
-from metagraph.generation.loudness import gain_of, loudness
+from metagraph.generation.loudness import gain_of, integrated_loudness
 from metagraph.generation.networks import ACTIVITY, FPS
-from metagraph.generation.poses import PoseError, PoseRig, Scale, gram_schmidt, poses_of, scale_of
-from metagraph.graph.conversation.model import Conversation, heard_by
+from metagraph.generation.poses import (
+    PoseError,
+    PoseRig,
+    Standardisation,
+    encode_clip,
+    gram_schmidt,
+    scale_of,
+)
+from metagraph.graph.conversation.model import Conversation, segments_heard_by
 from metagraph.motion.clip import Clip
 from metagraph.motion.mirror import mirror, pairs_of
 
@@ -50,7 +57,7 @@ class SplitError(ValueError):
 
 
 @dataclass(frozen=True)
-class Source:
+class TakeSource:
     """Where a take is from. name: as people know it. digests: sha256 of its files, motion first. licence: a
     line. start: seconds of the source before its first frame. mirrored: left and right are exchanged.
     """
@@ -63,7 +70,7 @@ class Source:
 
 
 @dataclass(frozen=True)
-class Marks:
+class TakeMarks:
     """Moments of a take, seconds from its first frame. peaks: stresses of own clauses. responses: where own
     responses begin. hesitations: where the partner hesitates and oneself says nothing.
     """
@@ -72,16 +79,16 @@ class Marks:
     responses: tuple[float, ...] = ()
     hesitations: tuple[float, ...] = ()
 
-    def shifted(self, start: float, end: float) -> Marks:
+    def shifted(self, start: float, end: float) -> TakeMarks:
         """Return those from start to end, counted from start."""
 
         def cut(moments: tuple[float, ...]) -> tuple[float, ...]:
             return tuple(t - start for t in moments if start <= t < end)
 
-        return Marks(cut(self.peaks), cut(self.responses), cut(self.hesitations))
+        return TakeMarks(cut(self.peaks), cut(self.responses), cut(self.hesitations))
 
 
-NO_MARKS = Marks()
+NO_MARKS = TakeMarks()
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,10 +97,10 @@ class Take:
     notes: what there is to know about how it was read, in words.
     """
 
-    source: Source
+    source: TakeSource
     poses: Array
     features: Array
-    marks: Marks = NO_MARKS
+    marks: TakeMarks = NO_MARKS
     notes: tuple[str, ...] = ()
 
     @property
@@ -127,11 +134,11 @@ class TakeSound:
     clipped: Sequence[float] = ()
 
 
-def take_of(
+def make_take(
     rig: PoseRig,
     clip: Clip,
     heard: TakeSound,
-    source: Source,
+    source: TakeSource,
     conversation: Conversation | None = None,
     side: int = 0,
     tracks: int = 1,
@@ -142,13 +149,13 @@ def take_of(
     notes: list[str] = []
     who = f"'{source.name}'"
     try:
-        poses = poses_of(rig, clip, FPS)
+        poses = encode_clip(rig, clip, FPS)
     except PoseError as error:
         raise TakeError(f"{who}: {error}") from None
     sound = np.atleast_2d(np.asarray(heard.samples, np.float32))
     if not np.isfinite(sound).all() or not np.isfinite(poses).all():
         raise TakeError(f"{who} holds a value that is not a number: export it anew")
-    sound = at_rate(sound, heard.rate)[:2]
+    sound = resample_for_features(sound, heard.rate)[:2]
     count = min(len(poses), frames_of(sound.shape[1]))
     if count < SHORTEST * FPS:
         shorter = "motion" if len(poses) <= frames_of(sound.shape[1]) else "sound"
@@ -175,7 +182,7 @@ def take_of(
             phrase("{who} has no words: loudness tells who speaks, and strokes cannot be judged.", who=who)
         )
         partner = sound[1] if len(sound) > 1 else None
-        activity, marks = voice_activity(sound[0], partner, RATE, count), Marks()
+        activity, marks = voice_activity(sound[0], partner, RATE, count), TakeMarks()
     else:
         activity, marks = conversation_activity(conversation, side, count), _marks(conversation, side)
     own = activity[:, SELF].sum() / FPS
@@ -186,7 +193,7 @@ def take_of(
     elif not activity[:, PARTNER].any():
         notes.append(phrase("{who}: the partner never speaks: it teaches speaking alone.", who=who))
     gains = [gain_of(channel, RATE) for channel in sound]
-    audio = features(sound, activity, tracks, gains)[:count]
+    audio = compute_features(sound, activity, tracks, gains)[:count]
     if float(poses[:count].std(0).max()) < 1e-3:
         raise TakeError(f"{who} does not move above the hips: there is nothing to learn")
     marks = marks.shifted(0.0, count / FPS)
@@ -195,7 +202,7 @@ def take_of(
 
 def _check_sound(who: str, sound: Array, clipped: Sequence[float], shared: bool, notes: list[str]) -> None:
     """shared: one channel has both voices, and the words tell whose each is."""
-    silent = [not np.isfinite(loudness(channel, RATE)) for channel in sound]
+    silent = [not np.isfinite(integrated_loudness(channel, RATE)) for channel in sound]
     if all(silent):
         raise TakeError(f"{who}: its sound is silent. Check the microphone, or which channel is its own")
     if len(sound) == 1 and not shared:
@@ -227,21 +234,21 @@ def _check_sound(who: str, sound: Array, clipped: Sequence[float], shared: bool,
         )
 
 
-def _marks(conversation: Conversation, side: int) -> Marks:
-    segments = heard_by(conversation, side)
-    return Marks(
+def _marks(conversation: Conversation, side: int) -> TakeMarks:
+    segments = segments_heard_by(conversation, side)
+    return TakeMarks(
         tuple(s.peak for s in segments if s.kind == "clause" and s.peak is not None),
         tuple(s.start for s in segments if s.kind == "response"),
         tuple(s.start for s in segments if s.kind == "hesitation"),
     )
 
 
-def mirrored(rig: PoseRig, clip: Clip, take: Take) -> Take:
+def mirror_take(rig: PoseRig, clip: Clip, take: Take) -> Take:
     """Return a take's twin: left and right of its clip exchanged, what is heard as it was. Raises TakeError
     where the skeleton is not the same on both sides.
     """
     try:
-        poses = poses_of(rig, mirror(clip, pairs_of(clip.skeleton)), FPS)
+        poses = encode_clip(rig, mirror(clip, pairs_of(clip.skeleton)), FPS)
     except ValueError as error:
         raise TakeError(str(error)) from None
     first = round(take.source.start * FPS)
@@ -250,7 +257,7 @@ def mirrored(rig: PoseRig, clip: Clip, take: Take) -> Take:
     )
 
 
-def scales_of(takes: Sequence[Take]) -> tuple[Scale, Scale]:
+def scales_of(takes: Sequence[Take]) -> tuple[Standardisation, Standardisation]:
     """Return what standardises poses, and audio, of takes."""
     audio = np.concatenate([t.features[:, :-ACTIVITY] for t in takes])
     return scale_of(np.concatenate([t.poses for t in takes])), scale_of(audio, LEAST_SOUND)
@@ -259,7 +266,7 @@ def scales_of(takes: Sequence[Take]) -> tuple[Scale, Scale]:
 # --- splits
 
 
-def split(
+def split_takes(
     takes: Sequence[Take], share: float = HELD, seed: int = 1
 ) -> tuple[tuple[Take, ...], tuple[Take, ...]]:
     """Return takes to learn from and takes held out: whole ones, with all that share a file with them. Where

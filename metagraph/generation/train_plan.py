@@ -15,14 +15,14 @@ import msgspec
 import numpy as np
 from msgspec import Meta, Struct
 
-from metagraph.common.network_paths import refused
+from metagraph.common.network_paths import find_refusal
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.generation.features import MELS
 from metagraph.generation.networks import Kind, Size, Sizes, sizes_of
 from metagraph.generation.poses import PoseRig
 from metagraph.generation.stored import SkeletonCard, TakeCard, skeleton_card
-from metagraph.generation.takes import Marks, Source, Take, check_split
+from metagraph.generation.takes import Take, TakeMarks, TakeSource, check_split
 
 Loss = Literal["paper", "whitened", "finished", "matching", "evidence"]
 PLAN, TAKES, STOP = "plan.json", "takes.npz", "stop"
@@ -34,7 +34,7 @@ _Positive = Annotated[float, Meta(gt=0)]
 _Weight = Annotated[float, Meta(ge=0)]
 
 
-class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class TrainingSettings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """How a model is trained.
 
     loss: `paper`, as in the paper; `whitened`, without its two faults; `finished`, the likelihood alone of
@@ -73,11 +73,11 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     turns: Annotated[float, Meta(ge=0, le=8)] = 1.5
 
 
-def settings_for(loss: Loss | None) -> Settings:
+def settings_for(loss: Loss | None) -> TrainingSettings:
     """Return the settings of a training by a loss: by the paper's nothing is done that the paper does not."""
     if loss == "paper":
-        return Settings(loss=loss, head=0.0, known=1.0, voices=0.0, noise=0.0, turns=0.0)
-    return Settings(loss=loss)
+        return TrainingSettings(loss=loss, head=0.0, known=1.0, voices=0.0, noise=0.0, turns=0.0)
+    return TrainingSettings(loss=loss)
 
 
 class TrainingPlan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -91,7 +91,7 @@ class TrainingPlan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     kind: Kind = "matching"
     size: Size = "small"
     sizes: Sizes
-    settings: Settings = Settings()
+    settings: TrainingSettings = TrainingSettings()
     seed: Annotated[int, Meta(ge=0, le=0xFFFFFFFF)] = 1
     minutes: _Weight = 15.0
     seconds: _Weight = 0.0
@@ -173,7 +173,7 @@ def write_training(folder: Path, plan: TrainingPlan, takes: Sequence[Take], held
     write_plan(folder, plan)  # the last one: a folder with a plan is whole
 
 
-def read_plan(folder: Path) -> TrainingPlan:
+def read_training_plan(folder: Path) -> TrainingPlan:
     """Read a training's plan. Raises FileError."""
     path = folder / PLAN
     try:
@@ -184,20 +184,20 @@ def read_plan(folder: Path) -> TrainingPlan:
         ) from None
     except (OSError, msgspec.DecodeError, ValueError) as error:
         raise FileError(path, f"is no training's plan ({error})", remedy=_REMEDY) from None
-    if (why := refused(plan.out, folder)) is not None:
+    if (why := find_refusal(plan.out, folder)) is not None:
         raise FileError(path, f"its model's file is not written: {why}", plan.out[:200], _REMEDY)
     return plan
 
 
-def read_takes(folder: Path, plan: TrainingPlan) -> tuple[tuple[Take, ...], tuple[Take, ...]]:
+def read_planned_takes(folder: Path, plan: TrainingPlan) -> tuple[tuple[Take, ...], tuple[Take, ...]]:
     """Read the takes to learn from, and those held out. Raises FileError."""
     path, out = folder / TAKES, []
     try:
         # The file is opened here: NumPy leaves open what it cannot read.
         with path.open("rb") as content, np.load(content, allow_pickle=False) as arrays:
             for n, card in enumerate((*plan.takes, *plan.held)):
-                marks = Marks(*(tuple(arrays[f"{n}.{mark}"].tolist()) for mark in _MARKS))
-                source = Source(
+                marks = TakeMarks(*(tuple(arrays[f"{n}.{mark}"].tolist()) for mark in _MARKS))
+                source = TakeSource(
                     card.name, card.sha256, card.licence, float(arrays[f"{n}.start"]), card.mirrored
                 )
                 take = Take(source, arrays[f"{n}.poses"], arrays[f"{n}.features"], marks)

@@ -16,7 +16,7 @@ from time import monotonic
 import msgspec
 from msgspec import Struct
 
-from metagraph.common.programs import python, start
+from metagraph.common.programs import python_command, start
 from metagraph.generation.train_plan import STOP, folder_of
 
 TORCH = (
@@ -31,7 +31,7 @@ class TrainingFailedError(RuntimeError):
     """A training that did not lead to a model; the message says why. What was learned is in its folder."""
 
 
-class Event(Struct, frozen=True, kw_only=True):
+class TrainingEvent(Struct, frozen=True, kw_only=True):
     """What happened. event: `begin`, `step`, `checkpoint`, `statistics`, `poses`, `finish`, `note`, `error`
     or `end`. seconds: of the processor; minutes: of the clock; share: of the training, 0..1. numbers: `loss`,
     `likelihood` (natural logarithm), `reconstruction`, `matching`, `speeds`, `deviation`, `rate`: those that
@@ -55,7 +55,7 @@ class Event(Struct, frozen=True, kw_only=True):
     stopped: bool = False
 
 
-def missing() -> str | None:
+def find_missing_tools() -> str | None:
     """Return what to do before anything can be trained, in words; None where torch is installed."""
     return TORCH if importlib.util.find_spec("torch") is None else None
 
@@ -69,22 +69,22 @@ class TrainingProcess:
     def __init__(
         self,
         out: Path,
-        heard: Callable[[Event], None] = lambda event: None,
+        heard: Callable[[TrainingEvent], None] = lambda event: None,
         *,
         resume: bool = True,
         export: bool = False,
     ) -> None:
-        if told := missing():
+        if told := find_missing_tools():
             raise TrainingFailedError(told)
         self.folder = folder_of(out)
         (self.folder / STOP).unlink(missing_ok=True)
         words = [str(self.folder.resolve()), "--watched"]
         words += [] if resume else ["--afresh"]
         words += ["--export"] if export else []
-        self._heard, self._said, self.last = heard, list[str](), Event(event="none")
+        self._heard, self._said, self.last = heard, list[str](), TrainingEvent(event="none")
         self.error, self.path = "", ""
         self._process = start(
-            python("metagraph.generation.training", *words),
+            python_command("metagraph.generation.training", *words),
             stdin=subprocess.PIPE,  # closed when this process ends, however that comes about
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -144,7 +144,7 @@ class TrainingProcess:
         with self._process.stdout as lines:
             for line in lines:
                 try:
-                    event = msgspec.json.decode(line, type=Event)
+                    event = msgspec.json.decode(line, type=TrainingEvent)
                 except msgspec.DecodeError:
                     continue  # what a library says on its own
                 self.last = event

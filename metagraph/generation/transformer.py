@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.generation.layers import Layers, linear, silu
+from metagraph.generation.layers import Layers, apply_linear, silu
 from metagraph.generation.networks import MatchingSizes
 from metagraph.generation.prepared import Dense
 
@@ -25,7 +25,7 @@ class Velocity:
         self._embed_past, self._embed_new = Dense.named(w, "embed_past"), Dense.named(w, "embed_new")
         condition = silu(_moments(w, sizes, np.asarray(moments, self._place.dtype)))
         self._blocks = [_Block(w, f"blocks.{n}", condition, sizes.heads) for n in range(sizes.layers)]
-        scale, shift = np.split(linear(w, "final.modulation", condition), 2, -1)
+        scale, shift = np.split(apply_linear(w, "final.modulation", condition), 2, -1)
         self._final = _Shifted(Dense.named(w, "final.out"), scale, shift)
 
     def of(self, n: int, noisy: Array, past: Array | None, heard: Array) -> Array:
@@ -72,7 +72,7 @@ class _Block:
     """A layer. condition: what the moments scale and shift by, after silu `[M, F]`."""
 
     def __init__(self, w: Layers, name: str, condition: Array, heads: int) -> None:
-        s1, b1, s2, b2 = np.split(linear(w, f"{name}.modulation", condition), 4, -1)
+        s1, b1, s2, b2 = np.split(apply_linear(w, f"{name}.modulation", condition), 4, -1)
         self.heads = heads
         each = s1.shape[-1] // heads
         both, inner, outer = (Dense.named(w, f"{name}.{part}") for part in ("qkv", "mlp.0", "mlp.2"))
@@ -122,4 +122,4 @@ def _moments(w: Layers, sizes: MatchingSizes, moments: Array) -> Array:
     speed = 1000.0 * 10000.0 ** (-np.arange(half) / half)
     angle = moments[:, None] * speed.astype(moments.dtype)
     told = np.concatenate([np.sin(angle), np.cos(angle)], -1)
-    return linear(w, "time.2", silu(linear(w, "time.0", told)))
+    return apply_linear(w, "time.2", silu(apply_linear(w, "time.0", told)))

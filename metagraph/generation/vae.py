@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.generation.layers import Layers, linear, relu
+from metagraph.generation.layers import Layers, apply_linear, relu
 from metagraph.generation.networks import FlowSizes, Weights
 from metagraph.generation.prepared import Dense
 
@@ -15,24 +15,24 @@ Array = NDArray[Any]
 FLOOR = 1e-6  # deviation of a component at least
 
 
-def encode(w: Layers, sizes: FlowSizes, poses: Array) -> Array:
+def encode_spans(w: Layers, sizes: FlowSizes, poses: Array) -> Array:
     """Return codes `[..., D]` as the flow sees them. poses: `[..., span X]`, standardised."""
     if sizes.code == "none":
         return poses
     if sizes.code == "pca":
         return np.asarray((poses - w["code.mean"]) @ w["code.basis"].T / w["code.deviation"])
-    code = linear(w, "encode.2", relu(linear(w, "encode.0", poses)))
+    code = apply_linear(w, "encode.2", relu(apply_linear(w, "encode.0", poses)))
     return np.asarray((code - w["code.mean"]) / w["code.deviation"])
 
 
-def decode(w: Layers, sizes: FlowSizes, codes: Array) -> Array:
+def decode_spans(w: Layers, sizes: FlowSizes, codes: Array) -> Array:
     """Return poses `[..., span X]`, standardised, of codes `[..., D]` as the flow gives them."""
     if sizes.code == "none":
         return codes
     code = codes * w["code.deviation"]
     if sizes.code == "pca":
         return np.asarray(code @ w["code.basis"] + w["code.mean"])
-    return linear(w, "decode.2", relu(linear(w, "decode.0", code + w["code.mean"])))
+    return apply_linear(w, "decode.2", relu(apply_linear(w, "decode.0", code + w["code.mean"])))
 
 
 class Decoder:
@@ -54,7 +54,7 @@ class Decoder:
         return code
 
 
-def spans(poses: Array, span: int) -> Array:
+def list_spans(poses: Array, span: int) -> Array:
     """Return `[T // span, span X]`: every `span` frames in a row, flat; what is over at the end is left
     out.
     """

@@ -46,12 +46,12 @@ def _sides(skeleton: Skeleton, roles: tuple[tuple[str, str], ...]) -> tuple[str,
     return tuple(joint_sides(skeleton, dict(_roles(skeleton, roles))))
 
 
-def roles(project: Project) -> Mapping[str, int]:
+def project_roles(project: Project) -> Mapping[str, int]:
     """Return role -> joint: found from names and hierarchy, corrected by the user."""
     return _roles(project.skeleton, tuple(sorted(project.roles.items()))) if project.skeleton else {}
 
 
-def parts(project: Project) -> tuple[Part, ...]:
+def project_parts(project: Project) -> tuple[Part, ...]:
     """Return each joint's body part."""
     if project.skeleton is None:
         return ()
@@ -60,12 +60,12 @@ def parts(project: Project) -> tuple[Part, ...]:
     )
 
 
-def sides(project: Project) -> tuple[str, ...]:
+def project_sides(project: Project) -> tuple[str, ...]:
     """Return each joint's side: left, right or centre."""
     return _sides(project.skeleton, tuple(sorted(project.roles.items()))) if project.skeleton else ()
 
 
-def mask(project: Project, action: Action) -> Array | None:
+def action_mask(project: Project, action: Action) -> Array | None:
     """Return `[J]` float32, 1 where the action moves a joint, 0 where its stance shows, and between where it
     moves it in part; None when it moves all of all.
 
@@ -75,15 +75,15 @@ def mask(project: Project, action: Action) -> Array | None:
         return None
     return _mask(
         project.skeleton,
-        parts(project),
-        sides(project),
+        project_parts(project),
+        project_sides(project),
         action.limb,
         action.joints,
         action.joint_weights,
     )
 
 
-def masked_by(skeleton: Skeleton, weights: Mapping[str, float]) -> dict[str, Any]:
+def as_joint_mask(skeleton: Skeleton, weights: Mapping[str, float]) -> dict[str, Any]:
     """Return an action's `joints` and `joint_weights` for weights 0..1 of joints by name, 1 for those not
     named; both empty where it moves all of all.
     """

@@ -10,7 +10,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from metagraph.common.network_paths import ANOTHER, original, reason
+from metagraph.common.network_paths import ANOTHER, explain_refusal, original_path
 from metagraph.common.wording import phrase
 from metagraph.graph import anatomy
 from metagraph.graph.checks import end_gaps
@@ -23,7 +23,7 @@ from metagraph.graph.problem import Problem, Severity
 Array = NDArray[Any]
 
 
-def check(project: Project) -> list[Problem]:
+def check_project(project: Project) -> list[Problem]:
     """Return every problem, errors first, otherwise in the order of the project."""
     found = [*_clips(project), *check_base(project), *_character(project)]
     for layer in LAYERS:
@@ -56,11 +56,11 @@ def grave(problems: Iterable[Problem], strict: bool = False) -> list[Problem]:
 
 def _why_missing(entry: ClipEntry) -> tuple[str, str]:
     """Return why a clip has no motion, and what to do about it."""
-    path = original(entry.path)
+    path = original_path(entry.path)
     if path != entry.path:
         return (
             phrase("the file of clip '{name}' is not opened: {why} ({path})",
-                 name=entry.name, why=reason(path) or ANOTHER, path=path),
+                 name=entry.name, why=explain_refusal(path) or ANOTHER, path=path),
             phrase("If you trust the project, choose 'Files on other computers' or give --network."),
         )  # fmt: skip
     return (
@@ -97,7 +97,7 @@ def _clips(project: Project) -> Iterator[Problem]:
 def _character(project: Project) -> Iterator[Problem]:
     if project.skeleton is None or not any(project.graphs[layer].actions for layer in LAYERS):
         return
-    found = anatomy.parts(project)
+    found = anatomy.project_parts(project)
     for part in ("arms", "head", "legs", "spine"):
         if part not in found:
             yield Problem(
@@ -347,7 +347,7 @@ class _ActionCheck:
         """Compare its clip's ends with the stances it leaves and enters, on the joints its layer moves."""
         project, graph, action = self.project, self.graph, self.action
         if action.kind == "stance":
-            gap = end_gaps.seam(project, graph, action)
+            gap = end_gaps.measure_seam(project, graph, action)
             if gap is not None and gap.far and action.timing.blend_in <= 0:
                 yield self.at(
                     "warning",
@@ -356,12 +356,12 @@ class _ActionCheck:
                     phrase("Blend its seam (blend in), or trim it to a loop."),
                 )
             return
-        for gap in end_gaps.gaps(project, graph, action):
+        for gap in end_gaps.find_end_gaps(project, graph, action):
             if gap.far:
                 yield self.at(
                     "warning",
                     "far-start" if gap.edge == "begins" else "far-end",
-                    end_gaps.gap_words(gap, stance_name(project, gap.stance)),
+                    end_gaps.describe_gap(gap, stance_name(project, gap.stance)),
                     phrase("Trim it, lengthen the blend, or place it on the stance it fits."),
                 )
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from metagraph.graph.model import ClipEntry
 from metagraph.motion.clip import Clip
-from metagraph.motion.retime import Course, retimed
+from metagraph.motion.retime import Course, apply_retiming
 
 
 def source_of(entry: ClipEntry) -> Clip | None:
@@ -22,7 +22,7 @@ def course_of(entry: ClipEntry) -> Course | None:
 
 def with_source(entry: ClipEntry, source: Clip) -> ClipEntry:
     """Return an entry whose clip was read, with its retiming made."""
-    motion = retimed(source, entry.retime)
+    motion = apply_retiming(source, entry.retime)
     return replace(
         entry,
         frames=motion.frames,

@@ -17,7 +17,7 @@ from metagraph.graph import ids
 from metagraph.graph.clip_source import with_source
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.face.takes import FACE_TAKE, face_joints
-from metagraph.graph.manual.machine import without_clips
+from metagraph.graph.manual.machine import remove_clips_from_machines
 from metagraph.graph.model import (
     PARTS,
     Action,
@@ -44,7 +44,7 @@ _LIMB_WORDS: tuple[tuple[Limb, str], ...] = (
 )
 
 
-def limb_of(name: str) -> Limb:
+def guess_limb(name: str) -> Limb:
     """Guess the limb from a clip's name: `_lf`, `_rt`, `_bt`, `Left`, `Right` and their like; both when it
     does not say.
     """
@@ -105,7 +105,7 @@ def remove_clips(project: Project, clips: Collection[str]) -> Project:
     project = remove_actions(project, gone)
     left = {i: e for i, e in project.clips.items() if i not in clips}
     base = BasePose() if project.base.clip in clips else project.base
-    manual = without_clips(project.manual, clips)
+    manual = remove_clips_from_machines(project.manual, clips)
     marks = {i: m for i, m in project.marks.items() if i in left} if project.marks else project.marks
     skeleton = project.skeleton if left else None
     return replace(project, clips=left, base=base, skeleton=skeleton, manual=manual, marks=marks)
@@ -117,11 +117,11 @@ def remove_clips(project: Project, clips: Collection[str]) -> Project:
 def add_stance(project: Project, layer: Layer, name: str, clips: Sequence[str] = ()) -> Project:
     """Make a stance, with `clips` as its loops. The first stance of a layer is where a performance starts."""
     graph = project.graphs[layer]
-    name = free_name(_clean(name), {s.name for s in graph.stances.values()})
+    name = find_free_name(_clean(name), {s.name for s in graph.stances.values()})
     stance = Stance(ids.new_id(project, "s", layer, name), layer, name)
     graph = graph.but(stances={**graph.stances, stance.id: stance}, start=graph.start or stance.id)
     project = project.with_graph(graph)
-    return place(project, clips, layer, "stance", stance.id) if clips else project
+    return place_clips(project, clips, layer, "stance", stance.id) if clips else project
 
 
 def rename_stance(project: Project, stance: str, name: str) -> Project:
@@ -141,7 +141,7 @@ def remove_stance(project: Project, stance: str) -> Project:
     return project.with_graph(graph.but(stances=stances, start=start))
 
 
-def set_start(project: Project, stance: str) -> Project:
+def set_start_stance(project: Project, stance: str) -> Project:
     """Let performances begin in this stance."""
     found = _stance(project, stance)
     return project.with_graph(project.graphs[found.layer].but(start=stance))
@@ -150,7 +150,7 @@ def set_start(project: Project, stance: str) -> Project:
 # --- actions
 
 
-def refusal(
+def find_placing_refusal(
     project: Project,
     clips: Sequence[str],
     layer: Layer,
@@ -189,7 +189,7 @@ def refusal(
     return None
 
 
-def place(
+def place_clips(
     project: Project,
     clips: Sequence[str],
     layer: Layer,
@@ -202,7 +202,7 @@ def place(
     The first loop of the whole project also gives the base pose, unless one was chosen: offsets taken against
     an arms-out rest pose are what twists a character. Raises EditError with the words of `refusal`.
     """
-    why = refusal(project, clips, layer, kind, stance, end_stance)
+    why = find_placing_refusal(project, clips, layer, kind, stance, end_stance)
     if why is not None:
         raise EditError(why)
     if stance is None:
@@ -223,7 +223,7 @@ def place(
             end_stance=end_stance if kind == "transition" else None,
             timing=default_timing(entry, kind),
             joints=face_joints(project) if entry.brought_from == FACE_TAKE and kind != "stance" else (),
-            limb=limb_of(entry.name) if layer == "arms" and kind in ("gesture", "fidget") else "both",
+            limb=guess_limb(entry.name) if layer == "arms" and kind in ("gesture", "fidget") else "both",
         )
     first = (
         kind == "stance"
@@ -234,7 +234,7 @@ def place(
     return project.with_graph(graph.with_actions(changes), base=base)
 
 
-def added_actions(before: Project, after: Project) -> tuple[str, ...]:
+def find_added_actions(before: Project, after: Project) -> tuple[str, ...]:
     """Return the ids of the actions that `after` has and `before` does not, in the order of `after`."""
     return tuple(a.id for a in after.actions() if before.action(a.id) is None)
 
@@ -286,7 +286,7 @@ def move_actions(
     """Put actions on another meta node or stance, also across layers, keeping their settings."""
     target = _stance(project, stance)
     moved = [a for i in actions if (a := project.action(i)) is not None]
-    why = refusal(project, [a.clip for a in moved], target.layer, kind, stance, end_stance)
+    why = find_placing_refusal(project, [a.clip for a in moved], target.layer, kind, stance, end_stance)
     if why is not None:
         raise EditError(why)
     project = remove_actions(project, [a.id for a in moved if a.layer != target.layer])
@@ -421,7 +421,7 @@ def _clean(name: str) -> str:
     return name
 
 
-def free_name(name: str, taken: Collection[str]) -> str:
+def find_free_name(name: str, taken: Collection[str]) -> str:
     candidate, n = name, 1
     while candidate in taken:
         n += 1

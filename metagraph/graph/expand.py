@@ -35,12 +35,12 @@ class Size:
     connections: int
 
 
-def ends_in(action: Action) -> str | None:
+def find_end_stance(action: Action) -> str | None:
     """Return the stance an action leaves the layer in."""
     return action.end_stance if action.kind == "transition" else action.stance
 
 
-def size(project: Project, layer: Layer | None = None, stance: str | None = None) -> Size:
+def count_machine_size(project: Project, layer: Layer | None = None, stance: str | None = None) -> Size:
     """Count states and connections without listing them; for one layer, or for what starts or ends in one
     stance.
     """
@@ -53,13 +53,15 @@ def size(project: Project, layer: Layer | None = None, stance: str | None = None
         # Whole nodes are counted rather than their actions: the window asks after each edit.
         for (start, kind), bucket in graph.index.items():
             if kind == "transition" or stance is not None:
-                bucket = tuple(a for a in bucket if stance is None or stance in (a.stance, ends_in(a)))
+                bucket = tuple(
+                    a for a in bucket if stance is None or stance in (a.stance, find_end_stance(a))
+                )
             if stance is not None:
                 clips.update(a.clip for a in bucket)
             states += len(bucket)
             leaving[start] += len(bucket)
             ends = (
-                Counter(e for a in bucket if (e := ends_in(a)) is not None)
+                Counter(e for a in bucket if (e := find_end_stance(a)) is not None)
                 if kind == "transition"
                 else Counter({start: len(bucket)})
             )
@@ -74,7 +76,7 @@ def size(project: Project, layer: Layer | None = None, stance: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
-class Node:
+class ExpandedNode:
     """What an action that ends in a stance leads to: loops first. targets: places in `MetaGraph.actions`.
     blends: seconds in which each comes in; the first `loops` of them blend as their source goes out. at:
     target -> its place among them.
@@ -94,20 +96,20 @@ class Fan(NamedTuple):
     """
 
     source: int
-    node: Node
+    node: ExpandedNode
     itself: int
     leave: float
     blend: float
 
 
-def fans(project: Project, graph: MetaGraph) -> Iterator[Fan]:
+def list_fans(project: Project, graph: MetaGraph) -> Iterator[Fan]:
     """Yield every action of a layer that leads to others, in the order they were placed. Connections are not
     gone through one by one: of those there may be millions.
     """
     place = {ident: n for n, ident in enumerate(graph.actions)}
-    nodes: dict[str, Node] = {}
+    nodes: dict[str, ExpandedNode] = {}
     for number, source in enumerate(graph.actions.values()):
-        end = ends_in(source)
+        end = find_end_stance(source)
         if end is None or end not in graph.stances:
             continue
         node = nodes.get(end)
@@ -121,10 +123,10 @@ def fans(project: Project, graph: MetaGraph) -> Iterator[Fan]:
         yield Fan(number, node, itself, leave, source.timing.blend_out)
 
 
-def _node(graph: MetaGraph, stance: str, place: Mapping[str, int]) -> Node:
+def _node(graph: MetaGraph, stance: str, place: Mapping[str, int]) -> ExpandedNode:
     actions = [action for kind in KINDS for action in graph.of(stance, kind)]
     targets = tuple(place[action.id] for action in actions)
-    return Node(
+    return ExpandedNode(
         stance,
         targets,
         tuple(action.timing.blend_in for action in actions),
@@ -133,10 +135,10 @@ def _node(graph: MetaGraph, stance: str, place: Mapping[str, int]) -> Node:
     )
 
 
-def connections(project: Project, graph: MetaGraph) -> Iterator[Connection]:
+def list_connections(project: Project, graph: MetaGraph) -> Iterator[Connection]:
     """Yield every connection of a layer: sources in the order they were placed, each with its targets."""
     idents = list(graph.actions)
-    for fan in fans(project, graph):
+    for fan in list_fans(project, graph):
         node, source, leave = fan.node, idents[fan.source], None if fan.leave < 0 else fan.leave
         for n, target in enumerate(node.targets):
             if n != fan.itself:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 
-def fits(words: str, name: str) -> bool:
+def matches_search(words: str, name: str) -> bool:
     """Whether a name fits what is searched for: it holds all words of one of the parts between |, and none of
     those that begin with -. Capitals do not matter. Nothing fits no words.
     """

@@ -22,7 +22,7 @@ _NEVER = ("do", "told")  # fields of requests that are no matter of an agent's
 _AFTER = {"type": "number", "minimum": 0, "maximum": 1e6, "description": "seconds from now; wins over `at`"}
 
 
-def offered(
+def offered_requests(
     project: Project, words: Sequence[str] = ENGINES, most: Mapping[str, int] = EVERYTHING
 ) -> dict[str, Any]:
     """Return what may be asked for, as plain data. words: of requests that are understood. most: of actions
@@ -33,7 +33,7 @@ def offered(
     and `tags` where there are any) and `tags` with the number of actions; `lines` (id, text), by id; `points`
     by name, metres.
     """
-    skeleton, parts = project.skeleton, anatomy.parts(project) if project.skeleton is not None else ()
+    skeleton, parts = project.skeleton, anatomy.project_parts(project) if project.skeleton is not None else ()
     return {
         "project": project.name,
         "words": list(words),

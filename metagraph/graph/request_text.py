@@ -15,7 +15,7 @@ import msgspec
 from metagraph.common.wording import phrase
 from metagraph.graph import requests as a
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.editing.performances import asked_at, change_performance, move_requests
+from metagraph.graph.editing.performances import ask_time, change_performance, move_requests
 from metagraph.graph.model import LAYERS, Project
 
 KIND, VERSION = "requests", 1
@@ -80,7 +80,7 @@ def paste_requests(project: Project, performance: str, text: str, at: float) -> 
     project = change_performance(project, performance, asks=(*before, *kept))
     made = tuple(x.id for x in project.performances[performance].asks[len(before) :])
     if made:
-        project = move_requests(project, performance, made, at - min(map(asked_at, kept)))
+        project = move_requests(project, performance, made, at - min(map(ask_time, kept)))
     return Pasted(project, made, tuple(dict.fromkeys(left_out)))
 
 

@@ -279,7 +279,7 @@ def read_request(text: bytes | str) -> AnyRequest:
     try:
         return _decoder.decode(text)
     except (msgspec.ValidationError, msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise RequestError(words_of(error)) from None
+        raise RequestError(explain_invalid_ask(error)) from None
 
 
 def request_from(data: Any) -> AnyRequest:
@@ -288,10 +288,10 @@ def request_from(data: Any) -> AnyRequest:
         out: AnyRequest = msgspec.convert(data, AnyRequest)
         return out
     except (msgspec.ValidationError, RecursionError) as error:
-        raise RequestError(words_of(error)) from None
+        raise RequestError(explain_invalid_ask(error)) from None
 
 
-def words_of(error: Exception) -> str:
+def explain_invalid_ask(error: Exception) -> str:
     """Return a reader's complaint for people: the field, then what is wrong."""
     text = str(error)
     if isinstance(error, msgspec.ValidationError):
@@ -306,7 +306,7 @@ def words_of(error: Exception) -> str:
 WORDS: tuple[str, ...] = tuple(str(kind.__struct_config__.tag) for kind in get_args(AnyRequest))
 
 
-def schema() -> dict[str, Any]:
+def ask_schema() -> dict[str, Any]:
     """Return the JSON Schema (draft 2020-12) of an ask."""
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",

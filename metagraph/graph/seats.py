@@ -8,7 +8,7 @@ import numpy as np
 
 from metagraph.graph import anatomy
 from metagraph.graph.checks.end_gaps import motion_of
-from metagraph.graph.face.rig import made_of
+from metagraph.graph.face.rig import parts_for_face
 from metagraph.graph.model import Action, Project
 from metagraph.graph.remembered import Remembered
 
@@ -26,7 +26,7 @@ class Seat:
     radius: float
 
 
-_known: Remembered[Seat | None] = Remembered(made_of)
+_known: Remembered[Seat | None] = Remembered(parts_for_face)
 
 
 def seat_of(project: Project) -> Seat | None:
@@ -38,7 +38,7 @@ def seat_of(project: Project) -> Seat | None:
 
 
 def _found(project: Project, loops: list[Action]) -> Seat | None:
-    roles, skeleton = anatomy.roles(project), project.skeleton
+    roles, skeleton = anatomy.project_roles(project), project.skeleton
     names = [f"{side}_{part}" for part in ("upper_leg", "lower_leg") for side in ("left", "right")]
     if skeleton is None or not {"hips", *names} <= roles.keys():
         return None

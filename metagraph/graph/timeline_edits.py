@@ -65,14 +65,14 @@ def remove_markers(project: Project, key: str, idents: Collection[str]) -> Proje
     return change_timeline(project, key, markers=markers)
 
 
-def without_timeline(project: Project, key: str) -> Project:
+def remove_timeline(project: Project, key: str) -> Project:
     """Forget what is noted of something that goes."""
     if key not in project.timelines:
         return project
     return replace(project, timelines={k: t for k, t in project.timelines.items() if k != key})
 
 
-def only_noted(before: Project, after: Project) -> bool:
+def differs_only_in_timeline(before: Project, after: Project) -> bool:
     """Return whether two states of a project are apart in nothing but what is noted on timelines."""
     same = (f.name for f in fields(before) if f.name != "timelines")
     return before.timelines is not after.timelines and all(

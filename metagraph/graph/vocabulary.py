@@ -23,7 +23,7 @@ _LONGEST = 200  # letters that are looked at as phrases alone
 
 
 @lru_cache(maxsize=1 << 15)
-def tokens(text: str) -> tuple[str, ...]:
+def split_tokens(text: str) -> tuple[str, ...]:
     """Return what a text's words are compared by; marks of vowels (Devanagari) belong to their letters."""
     text = text.translate(_APOSTROPHES)
     if text.isascii():
@@ -55,7 +55,7 @@ def is_unspaced(c: str) -> bool:
     )
 
 
-def joined(texts: Iterable[str]) -> str:
+def join_tokens(texts: Iterable[str]) -> str:
     """Return words as one text: blanks between them, but where writing has none."""
     out = ""
     for text in texts:
@@ -84,10 +84,10 @@ class Vocabulary:
 
     def __init__(self, phrases: Iterable[str], without: Iterable[str] = ()) -> None:
         self._keys: dict[str, bool] = {}  # letters -> whether several tokens may make them
-        others = {key_of(tokens(p)) for p in without}
+        others = {token_key(split_tokens(p)) for p in without}
         for phrase in phrases:
-            words = tokens(phrase)
-            key = key_of(words)
+            words = split_tokens(phrase)
+            key = token_key(words)
             several = len(words) > 1 or "'" in phrase.translate(_APOSTROPHES) or any(map(is_unspaced, key))
             bare = _bare(key)
             for form in (key, *([bare] if len(bare) > 1 and bare not in others else [])):  # "é" is no "e"
@@ -96,11 +96,11 @@ class Vocabulary:
         self._most = max(map(len, self._keys), default=0)
 
     def __contains__(self, words: tuple[str, ...]) -> bool:
-        return self._has(key_of(words), len(words))
+        return self._has(token_key(words), len(words))
 
     def is_plainly(self, words: tuple[str, ...]) -> bool:
         """Whether tokens are a phrase, not drawn out: あの, not あのー."""
-        return key_of(words) in self._keys
+        return token_key(words) in self._keys
 
     def _has(self, key: str, count: int) -> bool:
         """Whether the letters of so many tokens are a phrase, as they are or drawn out. "E R" is no "er"."""
@@ -116,7 +116,7 @@ class Vocabulary:
         """
         found, key, count = 0, "", 0
         for m in range(n, len(words)):
-            key += key_of(words[m])
+            key += token_key(words[m])
             count += len(words[m])
             if len(_RUN.sub(r"\1", key)) > self._most:
                 break
@@ -128,7 +128,7 @@ class Vocabulary:
         """Whether words, each in its tokens, are phrases and nothing else. Where writing has no blanks, a
         word may hold several.
         """
-        key = "".join(map(key_of, words))
+        key = "".join(map(token_key, words))
         if not key or len(key) > _LONGEST:
             return False
         ends = dict(_ends(words))
@@ -141,7 +141,7 @@ class Vocabulary:
         return len(key) in reached
 
 
-def key_of(words: tuple[str, ...]) -> str:
+def token_key(words: tuple[str, ...]) -> str:
     """Return the letters of tokens as they are compared with phrases."""
     return "".join(map(_key, words))
 
@@ -166,5 +166,5 @@ def kinds_of_words(
     its accents none becomes one of the others.
     """
     answers, pauses = Vocabulary(responses, hesitations), Vocabulary(hesitations, responses)
-    both = Vocabulary(r for r in responses if tokens(r) in pauses)
+    both = Vocabulary(r for r in responses if split_tokens(r) in pauses)
     return answers, pauses, Vocabulary((*responses, *hesitations)), both

@@ -10,7 +10,7 @@ from math import inf
 
 from metagraph.playback.life.track import Item, LookAt, Speech
 from metagraph.playback.plan import MetaAction, Plan, Report
-from metagraph.playback.planning.extend_performance import served_by
+from metagraph.playback.planning.extend_performance import find_served
 
 ENDLESS = 1e8  # seconds; what ends later than this ends when something else begins
 
@@ -71,10 +71,10 @@ def find(plan: Plan, wanted: Collection[str], since: float = -inf) -> dict[str, 
     out: dict[str, FoundAnswer] = {}
 
     def of(ident: str) -> FoundAnswer | None:
-        owner = owner_of(ident, wanted)
+        owner = find_owning_ask(ident, wanted)
         return None if owner is None else out.setdefault(owner, FoundAnswer())
 
-    served = served_by(plan)
+    served = find_served(plan)
     for layer, lane in plan.layers.items():
         for cue in reversed(lane.cues):
             if cue.end < since:
@@ -106,7 +106,7 @@ def find(plan: Plan, wanted: Collection[str], since: float = -inf) -> dict[str, 
     return out
 
 
-def owner_of(ident: str, wanted: Collection[str]) -> str | None:
+def find_owning_ask(ident: str, wanted: Collection[str]) -> str | None:
     """Return which of the wanted asks a request belongs to: its own, or that of which it is a part (`ask.1`,
     `ask.1.2`).
     """

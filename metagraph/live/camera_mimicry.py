@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(slots=True)
-class Camera:
+class ClientCamera:
     """One client's person. wish: how they are mimicked; a change of it begins anew."""
 
     mimic: Mimic
@@ -24,8 +24,8 @@ class Camera:
 
 
 def see(
-    camera: Camera | None, message: Keypoints, project: Project, plan: Plan, now: float, prefix: str
-) -> tuple[Camera, list[AnyRequest], dict[Layer, str]]:
+    camera: ClientCamera | None, message: Keypoints, project: Project, plan: Plan, now: float, prefix: str
+) -> tuple[ClientCamera, list[AnyRequest], dict[Layer, str]]:
     """Take a frame in; return the camera, what is asked for because of it, and layer -> name of the stance
     the person is in.
 
@@ -38,7 +38,7 @@ def see(
     wish = (message.mirror, message.gaze, message.layers)
     if camera is None or camera.wish != wish or camera.project is not project:
         count = camera.mimic.count if camera is not None else 0
-        camera = Camera(
+        camera = ClientCamera(
             Mimic(project, message.mirror, message.layers, message.gaze, message.priority), wish, project
         )
         camera.mimic.count = count  # ids are not used twice

@@ -9,7 +9,7 @@ import msgspec
 
 from metagraph import __version__
 from metagraph.graph.model import LAYERS, Project
-from metagraph.graph.offered import offered
+from metagraph.graph.offered import offered_requests
 from metagraph.live import limits, messages
 from metagraph.live.generating import Generating
 from metagraph.live.ledger import Ledger
@@ -35,7 +35,7 @@ class DescribedSession(Protocol):
 MOST = {"lines": 2000, "points": 500, "actions": 20000}  # described at most
 
 
-def named(data: bytes, ident: str) -> bytes:
+def with_id(data: bytes, ident: str) -> bytes:
     """Return a JSON object with an id."""
     return b'{"id":' + messages.encode(ident) + b"," + data[1:] if ident else data
 
@@ -61,7 +61,7 @@ def greeting(session: DescribedSession, stream: Stream | None, ident: str) -> by
             "joints": stream.names,
             "morphs": stream.morphs,
         }
-    return named(messages.encode(out), ident)
+    return with_id(messages.encode(out), ident)
 
 
 def status(session: DescribedSession) -> bytes:
@@ -100,7 +100,7 @@ def describe(project: Project, models: Sequence[str] = (), graphs: Sequence[str]
     """
     out = {
         "state": "done",
-        **offered(project, messages.WORDS),
+        **offered_requests(project, messages.WORDS),
         "models": list(models),
         "graphs": list(graphs),
     }

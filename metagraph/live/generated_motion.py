@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
 from metagraph.graph.model import Project
-from metagraph.live.laid_motion import LaidMotion, voices_of
+from metagraph.live.laid_motion import LaidMotion, read_voice_samples
 from metagraph.live.messages import Generate, Hear
 from metagraph.live.voice_detector import VoiceDetector
 from metagraph.motion import rotation
@@ -41,10 +41,10 @@ class GeneratedMotion(LaidMotion):
     def __init__(self, client: int, name: str, model: Model, wish: Generate, project: Project, now: float):
         from metagraph.generation.features import HOP, RATE
         from metagraph.generation.networks import FPS, parameters
-        from metagraph.generation.performing import first_of, fits
-        from metagraph.generation.sampler import Sampler
+        from metagraph.generation.performing import find_first_pose, moves_skeleton
+        from metagraph.generation.sampler import TakeSampler
 
-        if not fits(model, project):
+        if not moves_skeleton(model, project):
             raise ValueError(
                 f"the model '{name}' moves another skeleton than this character's; live it can only be used "
                 "with its own. Train one from this character's clips"
@@ -57,14 +57,14 @@ class GeneratedMotion(LaidMotion):
         self.model = model
         super().__init__(client, name, wish, project, now)
         self._fps, self._hop = FPS, HOP
-        self.sampler = Sampler(
+        self.sampler = TakeSampler(
             model,
             wish.seed,
             wish.temperature,
             lookahead=round(wish.ahead * FPS),
             channels=2,
             gains=(1.0, 1.0),
-            first=first_of(model, project),
+            first=find_first_pose(model, project),
         )
         # Frames that are made at once come together, and those that take many ticks come later still.
         self._slack = self.sampler.made * (1 if self.sampler.pieces == 1 else 2)
@@ -97,7 +97,7 @@ class GeneratedMotion(LaidMotion):
         """Take in what is heard; return why not, "" when it is."""
         if message.comes:
             return "comes: a learned model moves to the sound; only motion graphs are told what comes"
-        voices = voices_of(message, self.wish.side)
+        voices = read_voice_samples(message, self.wish.side)
         if isinstance(voices, str):
             return voices
         if self._sound.shape[1] + len(voices[0]) > self._most:

@@ -11,7 +11,7 @@ from metagraph.graph.model import Project
 from metagraph.live.generated_motion import GeneratedMotion
 from metagraph.live.graph_motion import MOST_TOLD, GraphMotion, KeptMotion, LiveGraph
 from metagraph.live.laid_motion import LaidMotion
-from metagraph.live.messages import Generate, Hear, Reply, rounded
+from metagraph.live.messages import Generate, Hear, Reply, round_seconds
 from metagraph.playback.plan import Plan
 from metagraph.playback.posing.overlay import Overlay
 
@@ -68,7 +68,11 @@ class Generating:
             motion.follow(self.motion)
         self._put(motion)
         return Reply(
-            id=ident, state="planned", at=rounded(now + motion.shows), layer="arms", notes=(motion.note,)
+            id=ident,
+            state="planned",
+            at=round_seconds(now + motion.shows),
+            layer="arms",
+            notes=(motion.note,),
         )
 
     def _put(self, motion: LaidMotion | None) -> None:

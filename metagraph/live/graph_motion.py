@@ -17,21 +17,21 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from metagraph.graph.conversation.model import Segment, heard_by
+from metagraph.graph.conversation.model import Segment, segments_heard_by
 from metagraph.graph.model import Project
 from metagraph.live.heard_voice import RATE as SAMPLES
 from metagraph.live.heard_voice import SIZE, HeardVoice
-from metagraph.live.laid_motion import LaidMotion, voices_of
+from metagraph.live.laid_motion import LaidMotion, read_voice_samples
 from metagraph.live.messages import Comes, Generate, Hear
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.playback.life.track import Speech
-from metagraph.playback.life.voice import voice_of
+from metagraph.playback.life.voice import voice_for_speech
 from metagraph.playback.plan import Plan
 from metagraph.playback.posing.composer import Reach, find_composer
-from metagraph.playback.posing.layers import sample
-from metagraph.playback.posing.overlay import reached
-from metagraph.suggest.tracks import RATE, times_of
+from metagraph.playback.posing.layers import sample_offsets
+from metagraph.playback.posing.overlay import find_overlaid_joints
+from metagraph.suggest.tracks import RATE, track_seconds
 from metagraph.synthesis.extending.path import FADE, DriverGraph, PathExtender, Told, driver_graph
 from metagraph.synthesis.extending.speech_so_far import SpeechNews
 
@@ -93,12 +93,12 @@ class LiveGraph:
         float32; worked out once.
         """
         frame = find_composer(project)
-        joints = reached(project)
+        joints = find_overlaid_joints(project)
         ground = frame.ground.base.rotations
         known = self._turns
         if known is None or not (np.array_equal(known[0], joints) and np.array_equal(known[1], ground)):
             reach = Reach(joints, None)
-            parts = [sample(frame.ground, reach, clip, times_of(clip))[0] for clip in self.takes]
+            parts = [sample_offsets(frame.ground, reach, clip, track_seconds(clip))[0] for clip in self.takes]
             known = self._turns = joints, ground, np.concatenate(parts).astype(np.float32)
         return known[2]
 
@@ -114,20 +114,20 @@ def live_graph(
     """Return the graph of takes, made ready to drive. Arguments as for `graph.threshold`, `states.key_states`
     and `graph.build`. Raises SynthesisError.
     """
-    from metagraph.synthesis.constraints import changes, heard
-    from metagraph.synthesis.graph import build, threshold
-    from metagraph.synthesis.states import KEYS, LEVEL, STEP, key_states, states_of
+    from metagraph.synthesis.constraints import find_change_states, find_heard_at
+    from metagraph.synthesis.graph import build_graph, threshold
+    from metagraph.synthesis.states import KEYS, LEVEL, STEP, key_states, read_states
 
-    states = states_of(takes)
+    states = read_states(takes)
     pairs = [(c, s) for c, s in zip(takes, speech, strict=True) if c.frames >= 2]
     told = [s for _, s in pairs]
     limit = threshold(states, STEP if k is None else k, LEVEL if level is None else level)
-    places = key_states(states, KEYS if keys is None else keys, changes(states, told))
-    graph = build(states, limit, places, most)
-    return LiveGraph(tuple(c for c, _ in pairs), driver_graph(graph, heard(states, told)))
+    places = key_states(states, KEYS if keys is None else keys, find_change_states(states, told))
+    graph = build_graph(states, limit, places, most)
+    return LiveGraph(tuple(c for c, _ in pairs), driver_graph(graph, find_heard_at(states, told)))
 
 
-def recorded_takes(project: Project) -> tuple[list[Clip], list[tuple[Segment, ...]]]:
+def list_recorded_takes(project: Project) -> tuple[list[Clip], list[tuple[Segment, ...]]]:
     """Return the project's own takes, those that were recorded along with a side of a conversation, and what
     was heard during each; of the project's skeleton.
     """
@@ -139,7 +139,7 @@ def recorded_takes(project: Project) -> tuple[list[Clip], list[tuple[Segment, ..
             clip = None if entry is None else entry.motion
             if clip is None or clip.skeleton != project.skeleton or clip.frames < 2:
                 continue
-            said = [s for s in heard_by(conversation, number) if s.start < clip.duration]
+            said = [s for s in segments_heard_by(conversation, number) if s.start < clip.duration]
             if said:
                 clips.append(clip)
                 speech.append(tuple(said))
@@ -195,7 +195,7 @@ class GraphMotion(LaidMotion):
 
     def hear(self, message: Hear, now: float) -> str:
         """Take in what is heard; return why not, "" when it is."""
-        voices = voices_of(message, self.wish.side)
+        voices = read_voice_samples(message, self.wish.side)
         if isinstance(voices, str):
             return voices
         if len(self._sound) + len(voices[0]) > WAITS * SAMPLES:
@@ -257,7 +257,7 @@ class GraphMotion(LaidMotion):
         for speech in plan.track.speeches:
             if speech.id not in self._said and now - 0.1 <= speech.start <= now + AHEAD:
                 self._said[speech.id] = speech.end
-                self._news += said(speech, self.project, self.begun)
+                self._news += as_clauses(speech, self.project, self.begun)
 
     # --- what is made
 
@@ -305,7 +305,7 @@ class GraphMotion(LaidMotion):
     def _pose(self, frame: int) -> Array:
         if frame not in self._poses:
             states = self.path.states(frame - FADE - 1, frame + 1)
-            self._poses[frame] = faded(self.graph.turns(self.project), states, self.graph.driver)
+            self._poses[frame] = fade_turns(self.graph.turns(self.project), states, self.graph.driver)
         return self._poses[frame]
 
     def _place(self, project: Project) -> None:
@@ -315,9 +315,9 @@ class GraphMotion(LaidMotion):
         self._poses = {}
 
 
-def said(speech: Speech, project: Project, begun: float) -> list[SpeechNews]:
+def as_clauses(speech: Speech, project: Project, begun: float) -> list[SpeechNews]:
     """Return a speech of the character as clauses that come, one round each of its accents."""
-    accents = [speech.start + float(x) for x in voice_of(project.voices, speech).accents]
+    accents = [speech.start + float(x) for x in voice_for_speech(project.voices, speech).accents]
     accents = [x for x in accents if speech.start < x < speech.end]
     edges = [speech.start, *((a + b) / 2 for a, b in pairwise(accents)), speech.end]
     peaks: list[float | None] = [*accents] or [None]
@@ -328,7 +328,7 @@ def said(speech: Speech, project: Project, begun: float) -> list[SpeechNews]:
     ]
 
 
-def faded(turns: Array, states: Sequence[int], graph: DriverGraph) -> Array:
+def fade_turns(turns: Array, states: Sequence[int], graph: DriverGraph) -> Array:
     """Return the last of these states' turns `[n, 4]`, as what was shown before a transition fades into what
     comes after it. states: those of the frames before it, FADE of them at least where there were as many.
     """

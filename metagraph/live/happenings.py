@@ -9,7 +9,7 @@ from msgspec.structs import replace
 
 from metagraph.graph.model import LAYERS
 from metagraph.live.ledger import Ledger
-from metagraph.live.messages import Event, rounded
+from metagraph.live.messages import Event, round_seconds
 from metagraph.playback.plan import Plan
 
 HAPPENED: tuple[Literal["started", "ended"], ...] = ("started", "ended")
@@ -23,7 +23,7 @@ class Listener(Protocol):
     events: str
 
 
-def happenings(
+def list_happenings(
     plan: Plan, ledger: Ledger, before: float, now: float, clients: Collection[Listener]
 ) -> Iterator[tuple[int, Event]]:
     """Yield whom to tell what: actions and speeches that started or ended after `before`, until `now`."""
@@ -39,20 +39,20 @@ def happenings(
 
 def _changes(plan: Plan, before: float, now: float) -> Iterator[tuple[str, Event]]:
     """Yield of what request something has started or ended, and the event."""
-    t = rounded(now)
+    t = round_seconds(now)
     for layer in LAYERS:
         lane = plan.layers[layer]
         for word in reversed(HAPPENED):
             times = lane.starts if word == "started" else lane.ends
             low, high = times.searchsorted((before, now), "right")
             for cue in lane.cues[int(low) : int(high)]:
-                at, until = rounded(cue.start), rounded(cue.end)
+                at, until = round_seconds(cue.start), round_seconds(cue.end)
                 event = Event(event=word, t=t, layer=layer, action=cue.action.name, at=at, until=until)
                 yield cue.meta.partition("+")[0], event
     for speech in reversed(plan.track.speeches):
         if speech.start < before - LONGEST and speech.end < before:
             break
-        at, until = rounded(speech.start), rounded(speech.end)
+        at, until = round_seconds(speech.start), round_seconds(speech.end)
         for word, seconds in zip(HAPPENED, (speech.start, speech.end), strict=True):
             if before < seconds <= now:
                 said = speech.text or None

@@ -14,8 +14,8 @@ from typing import Protocol
 import msgspec
 
 from metagraph.graph.requests import RequestError
-from metagraph.live.messages import HeardMessage, Hello, Reply, encode, read, split
-from metagraph.live.wire import Batch, Result
+from metagraph.live.messages import HeardMessage, Hello, Reply, encode, read_live_request, split_message
+from metagraph.live.wire import BatchResult, RequestBatch
 
 CLIENTS = 64  # at most
 BACKLOG = 4 * 1024 * 1024  # bytes a client may leave unread
@@ -34,7 +34,7 @@ SLOW, TOO_FAST, STRANGER = (
 POLICY, GOING, TRY_LATER = 1008, 1001, 1013  # reasons of closing, as WebSocket numbers them
 
 
-class Line(Protocol):
+class ClientLine(Protocol):
     """The way to one client."""
 
     @property
@@ -56,7 +56,7 @@ class Line(Protocol):
 
 @dataclass(slots=True)
 class _Client:
-    line: Line
+    line: ClientLine
     proven: bool
     since: float
     waiting: int = 0
@@ -89,7 +89,7 @@ class Hub:
     _slots: list[_Slot] = field(default_factory=list)
     _flying: tuple[int, list[_Slot]] | None = None
 
-    def open(self, line: Line, now: float, proven: bool = False) -> int:
+    def open(self, line: ClientLine, now: float, proven: bool = False) -> int:
         """Let a client in; return its number, 0 when there are too many. proven: it is known or has shown the
         token.
         """
@@ -120,7 +120,7 @@ class Hub:
         if client is None:
             return
         try:
-            requests, listed = split(data)
+            requests, listed = split_message(data)
         except RequestError as error:
             client.waiting += 1
             self._slots.append(_Slot(number, [encode(Reply(error=str(error)))], False))
@@ -128,7 +128,7 @@ class Hub:
             return
         slot = _Slot(number, [], listed)
         for request in requests:
-            item = read(request)
+            item = read_live_request(request)
             if not client.proven:
                 client.proven = self._proves(item)
             if not client.proven:
@@ -151,7 +151,7 @@ class Hub:
             self.token is not None
             and isinstance(item, HeardMessage)
             and isinstance(item.message, Hello)
-            and same(item.message.token, self.token)
+            and is_right_token(item.message.token, self.token)
         )
 
     def _request(self, number: int, client: _Client, item: HeardMessage | Reply) -> bytes | None:
@@ -174,19 +174,19 @@ class Hub:
         self._asked.append((number, item))
         return None
 
-    def take(self) -> Batch | None:
+    def take(self) -> RequestBatch | None:
         """Return what came in since the last batch, None while that is not answered or nothing came."""
         if self._flying is not None or not (self._joined or self._left or self._slots):
             return None
         self._number += 1
-        batch = Batch(self._number, tuple(self._joined), tuple(self._left), tuple(self._asked))
+        batch = RequestBatch(self._number, tuple(self._joined), tuple(self._left), tuple(self._asked))
         self._flying = self._number, self._slots
         self._joined, self._left, self._asked, self._slots = [], [], [], []
         for client in self.clients.values():
             client.taken = 0
         return batch
 
-    def give(self, result: Result) -> None:
+    def give(self, result: BatchResult) -> None:
         """Pass a result on to those it is for."""
         out: dict[int, list[tuple[bytes, bool]]] = {}
         if self._flying is not None and result.number == self._flying[0]:
@@ -232,6 +232,6 @@ class Hub:
             self.drop(number, GOING, "the session has ended")
 
 
-def same(given: str, token: str) -> bool:
+def is_right_token(given: str, token: str) -> bool:
     """Whether a token is right, in a time that does not tell how much of it is."""
     return hmac.compare_digest(given.encode("utf-8", "replace"), token.encode("utf-8", "replace"))

@@ -55,12 +55,12 @@ def read_kept(path: Path) -> tuple[KeptMotion, ...]:
     return read.motions
 
 
-def made_again(graph: LiveGraph, kept: KeptMotion, name: str) -> Clip:
+def remake_motion(graph: LiveGraph, kept: KeptMotion, name: str) -> Clip:
     """Return the motion of a session again, as a clip. Raises ValueError where the takes are others than
     those it was made of.
     """
     from metagraph.synthesis.assemble import assemble
-    from metagraph.synthesis.extending.path import replayed
+    from metagraph.synthesis.extending.path import replay_path
 
     size = graph.size
     if kept.size != size:
@@ -68,5 +68,5 @@ def made_again(graph: LiveGraph, kept: KeptMotion, name: str) -> Clip:
             f"it was made of a graph of {kept.size[0]:,} states and {kept.size[1]:,} transitions, these "
             f"takes have {size[0]:,} and {size[1]:,}: give the takes and the speech that the session had"
         )
-    path = replayed(graph.driver, kept.told, kept.frames, kept.seed)
+    path = replay_path(graph.driver, kept.told, kept.frames, kept.seed)
     return assemble(graph.driver.states, graph.takes, path, name, onward=True)

@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.model import Project
-from metagraph.live.ledger import asked_by_client
+from metagraph.live.ledger import is_asked_by_client
 from metagraph.live.messages import Generate, Hear
 from metagraph.motion import rotation
 from metagraph.playback.plan import LayerPlan, Plan
-from metagraph.playback.posing.layers import ease
-from metagraph.playback.posing.overlay import BLEND, Overlay, reached
+from metagraph.playback.posing.layers import ease_blend
+from metagraph.playback.posing.overlay import BLEND, Overlay, find_overlaid_joints
 
 Array = NDArray[Any]
 
@@ -33,7 +33,7 @@ class LaidMotion(ABC):
         self.client, self.name, self.wish = client, name, wish
         self.begun = self.last = now
         self.delay = self.shows = 0.0
-        self.project, self.joints = project, reached(project)
+        self.project, self.joints = project, find_overlaid_joints(project)
         self._shown: float | None = None  # since when
         self._ends: float | None = None
         self._before: Array | None = None
@@ -69,7 +69,7 @@ class LaidMotion(ABC):
 
     def _place(self, project: Project) -> None:
         """Take note of another project, whose character is moved from now on."""
-        self.project, self.joints = project, reached(project)
+        self.project, self.joints = project, find_overlaid_joints(project)
 
     # --- coming and going
 
@@ -95,7 +95,7 @@ class LaidMotion(ABC):
         own = self.offsets(now)
         if self._before is None or own is None:
             return self._before if own is None else own
-        back = float(ease(np.array([(now - self.begun - self.shows) / BLEND]))[0])
+        back = float(ease_blend(np.array([(now - self.begun - self.shows) / BLEND]))[0])
         return np.asarray(rotation.nlerp(self._before, own, np.full(len(own), back)))
 
     def overlay(self, plan: Plan, project: Project, now: float) -> Overlay | None:
@@ -108,10 +108,10 @@ class LaidMotion(ABC):
             return None
         if self._shown is None:
             self._shown = now
-        weight = float(ease(np.array([(now - self._shown) / BLEND]))[0])
+        weight = float(ease_blend(np.array([(now - self._shown) / BLEND]))[0])
         if self._ends is not None:
-            weight *= 1 - float(ease(np.array([(now - self._ends) / BLEND]))[0])
-        shown = (np.array([asked(plan.layers[layer], now)]) for layer in ("arms", "head"))
+            weight *= 1 - float(ease_blend(np.array([(now - self._ends) / BLEND]))[0])
+        shown = (np.array([asked_weight(plan.layers[layer], now)]) for layer in ("arms", "head"))
         return Overlay(self.joints, offsets[None].astype(np.float32), np.array([weight]), *shown)
 
     def status(self) -> dict[str, Any]:
@@ -124,7 +124,7 @@ class LaidMotion(ABC):
         }
 
 
-def asked(lane: LayerPlan, now: float) -> float:
+def asked_weight(lane: LayerPlan, now: float) -> float:
     """Return how much of what clients asked of a layer shows at a time, 0..1; between two actions that follow
     each other it does not dip.
     """
@@ -133,17 +133,17 @@ def asked(lane: LayerPlan, now: float) -> float:
     near = int(lane.starts.searchsorted(now, "right"))
     spans: list[list[float]] = []
     for cue in lane.cues[max(0, near - 6) : near + 4]:
-        if not asked_by_client(cue.meta):
+        if not is_asked_by_client(cue.meta):
             continue
         if spans and cue.start - spans[-1][1] <= 2 * GIVES_WAY:
             spans[-1][1] = cue.end
         else:
             spans.append([cue.start, cue.end])
     edges = np.array([min(now - start, end - now) / GIVES_WAY for start, end in spans])
-    return float(ease(edges).max()) if len(edges) else 0.0
+    return float(ease_blend(edges).max()) if len(edges) else 0.0
 
 
-def voices_of(message: Hear, side: str) -> list[Array] | str:
+def read_voice_samples(message: Hear, side: str) -> list[Array] | str:
     """Return the samples of the character's own voice and the partner's, as long as each other, -1..1; or why
     they cannot be read. side: the character's.
     """

@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from metagraph.live.answers import FoundAnswer, owner_of
+from metagraph.live.answers import FoundAnswer, find_owning_ask
 from metagraph.live.limits import Limits
 
 OVER = 2.0  # seconds for which an ask that has ended is remembered
@@ -19,7 +19,7 @@ _CLIENTS = re.compile(r"c\d+/")
 _NAMED = re.compile(r"'c(\d+)/([^']*)'")
 
 
-def key_of(client: int, ident: str) -> str:
+def plan_key(client: int, ident: str) -> str:
     """Return what a client's id is called in the plan: apart from other clients', and free of what has a
     meaning there.
     """
@@ -28,12 +28,12 @@ def key_of(client: int, ident: str) -> str:
     return f"c{client}/~{hashlib.blake2s(ident.encode('utf-8', 'surrogatepass'), digest_size=12).hexdigest()}"
 
 
-def asked_by_client(meta: str) -> bool:
+def is_asked_by_client(meta: str) -> bool:
     """Whether what plays in the plan was asked for, and not written by a model or the character's own."""
     return _CLIENTS.match(meta) is not None
 
 
-def told(why: str, client: int) -> str:
+def reword_for_client(why: str, client: int) -> str:
     """Return words about requests as a client may read them: its own ids as it says them, other clients' not
     at all.
     """
@@ -43,7 +43,7 @@ def told(why: str, client: int) -> str:
 
 
 @dataclass(slots=True)
-class Known:
+class OpenAsk:
     """An ask that has not ended. ident: its id as its client says it. at: when it begins, as far as known.
     missed: seconds by which it was asked for too late. settled: whether it was answered.
     """
@@ -91,16 +91,16 @@ class Ledger:
     """known: key -> ask. blocks: key of a block of BML -> keys of its parts."""
 
     limits: Limits = field(default_factory=Limits)
-    known: dict[str, Known] = field(default_factory=dict)
+    known: dict[str, OpenAsk] = field(default_factory=dict)
     blocks: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
-    def add(self, key: str, ask: Known) -> None:
+    def add(self, key: str, ask: OpenAsk) -> None:
         """Take an ask in, in the place of any other of its key."""
         self.drop(key)
         self.known[key] = ask
         self._wait(key, ask, True)
 
-    def drop(self, key: str) -> list[tuple[str, Known]]:
+    def drop(self, key: str) -> list[tuple[str, OpenAsk]]:
         """Forget an ask, or all parts of a block; return what was known of them."""
         out = []
         for each in (key, *self.blocks.pop(key, ())):
@@ -117,7 +117,7 @@ class Ledger:
         ask.settle(found)
         self._wait(key, ask, True)
 
-    def _wait(self, key: str, ask: Known, waits: bool) -> None:
+    def _wait(self, key: str, ask: OpenAsk, waits: bool) -> None:
         lane = self.limits.lanes.get(ask.lane)
         if lane is not None:
             (lane.add if waits else lane.remove)(ask.at, ask.priority, key)
@@ -132,7 +132,7 @@ class Ledger:
 
     def owner(self, request: str) -> str | None:
         """Return which ask a request of the plan belongs to."""
-        return owner_of(request, self.known)
+        return find_owning_ask(request, self.known)
 
     def pending(self, now: float) -> int:
         """How many have not begun."""

@@ -278,7 +278,7 @@ class Timed:
     why: str = ""
 
 
-def timed(ask: Any, now: float, wait: float) -> Timed:
+def set_start_now(ask: Any, now: float, wait: float) -> Timed:
     """Return an ask without a start that is over. wait: how long the project lets asks wait."""
     stroke, late, missed = getattr(ask, "stroke", None), getattr(ask, "late", None), 0.0
     if ask.at is not None and ask.at < now:

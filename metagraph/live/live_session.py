@@ -19,12 +19,12 @@ import msgspec
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.live import describe
-from metagraph.live.answers import FoundAnswer, find, owner_of
+from metagraph.live.answers import FoundAnswer, find, find_owning_ask
 from metagraph.live.camera_mimicry import see
 from metagraph.live.generating import Generating
 from metagraph.live.graph_motion import LiveGraph
-from metagraph.live.happenings import happenings
-from metagraph.live.ledger import Known, Ledger, key_of, told
+from metagraph.live.happenings import list_happenings
+from metagraph.live.ledger import Ledger, OpenAsk, plan_key, reword_for_client
 from metagraph.live.limits import (
     ADDED,
     BML_PER_TICK,
@@ -36,7 +36,7 @@ from metagraph.live.limits import (
     TAG,
     RequestWords,
     beyond,
-    timed,
+    set_start_now,
     unknown,
 )
 from metagraph.live.messages import (
@@ -52,17 +52,17 @@ from metagraph.live.messages import (
     Partner,
     Reply,
     Status,
-    read,
-    rounded,
-    split,
+    read_live_request,
+    round_seconds,
+    split_message,
 )
 from metagraph.live.partner_mood import LAUGH, MOOD, partner_feel
 from metagraph.live.pose_stream import Stream, due
-from metagraph.live.said_sound import SaidSounds, said_on
+from metagraph.live.said_sound import SaidSounds, merge_line_timing
 from metagraph.live.tape import Tape
-from metagraph.live.tick_work import Client, Open, Out, TickWork, in_turn, thinned
+from metagraph.live.tick_work import Client, Open, Out, TickWork, order_requests, thin_track
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.bml.reader import Block, read_block
+from metagraph.playback.bml.reader import BmlBlock, read_block
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.life.track import Speech
 from metagraph.playback.plan import Plan
@@ -141,11 +141,11 @@ class LiveSession:
     def receive(self, client: int, data: bytes | str) -> None:
         """Take a message in, to be answered at the next tick: one reply to each request in it."""
         try:
-            requests, _ = split(data)
+            requests, _ = split_message(data)
         except a.RequestError as error:
             self._queue.append((client, Reply(error=str(error))))
             return
-        self._queue += [(client, read(request)) for request in requests]
+        self._queue += [(client, read_live_request(request)) for request in requests]
 
     def warm(self, most: int | None = None) -> None:
         """Work out beforehand what requests with a stroke or a hold need to know of gestures, a millisecond
@@ -179,7 +179,7 @@ class LiveSession:
         out.replies = [Reply()] * len(queue)
         self.ledger.limits.several = len(self.clients) > 1
         self.ledger.limits.around = {client for client, _ in queue}
-        for done, place in enumerate(in_turn([client for client, _ in queue])):
+        for done, place in enumerate(order_requests([client for client, _ in queue])):
             client, item = queue[place]
             if isinstance(item, Reply):
                 out.replies[place] = item
@@ -192,7 +192,7 @@ class LiveSession:
                 out.replies[place] = Reply() if found is None else found
         self._plan(work, out)
         self.generating.reach(self.now, self.plan, self.project, self.clients)
-        out.events += happenings(self.plan, self.ledger, before, self.now, self.clients.values())
+        out.events += list_happenings(self.plan, self.ledger, before, self.now, self.clients.values())
         self._tidy()
         self.warm(1)
         out.frames = due(
@@ -222,7 +222,7 @@ class LiveSession:
         if not ident:
             client.count += 1
             ident = f"#{client.count}"
-        key = key_of(client.number, ident)
+        key = plan_key(client.number, ident)
         ask: Any = msgspec.structs.replace(
             message, at=message.at if heard.after is None else self.now + heard.after, told=self.now
         )
@@ -239,7 +239,7 @@ class LiveSession:
     def _partner(self, client: Client, message: Partner, work: TickWork, place: int) -> Reply | bytes | None:
         """Take up what the partner feels, or laugh along."""
         ident = message.id or (MOOD if message.laughs is None else LAUGH)
-        key = key_of(client.number, ident)
+        key = plan_key(client.number, ident)
         feel = partner_feel(message, ident, key, self.project, self.plan.track, self.now)
         if feel is None:
             return Reply(id=message.id or None, state="done", why="it does not laugh along")
@@ -250,7 +250,7 @@ class LiveSession:
         if isinstance(message, Status):
             if "status" not in self._told:
                 self._told["status"] = describe.status(self)
-            return describe.named(self._told["status"], message.id)
+            return describe.with_id(self._told["status"], message.id)
         if isinstance(message, Describe):
             if self.ledger.limits.characters >= BML_PER_TICK:
                 return Reply(id=message.id or None, state="refused", why=BUSY)
@@ -259,7 +259,7 @@ class LiveSession:
                     self.project, tuple(self.generating.models), tuple(self.generating.graphs)
                 )
             self.ledger.limits.characters += len(self._told["project"])
-            return describe.named(self._told["project"], message.id)
+            return describe.with_id(self._told["project"], message.id)
         client.name = message.name or client.name
         if message.events is not msgspec.UNSET:
             client.events = "all" if message.events == "all" else "own" if message.events else ""
@@ -286,7 +286,7 @@ class LiveSession:
                 ask = self._said(key, ask, goes_on)
             except a.RequestError as error:
                 return str(error)
-        in_time = timed(ask, self.now, wait)
+        in_time = set_start_now(ask, self.now, wait)
         if in_time.why:
             return in_time.why
         ask = in_time.ask
@@ -306,10 +306,10 @@ class LiveSession:
             self._take_back([key], work)
         before = work.asks.get(key)
         if isinstance(ask, a.Say) and isinstance(before, a.Say):
-            ask = said_on(before, ask)
+            ask = merge_line_timing(before, ask)
         work.close(key, "asked again under the same id")
         ledger.limits.planned[client.number] += 1
-        ledger.add(key, Known(client.number, ident, lane, ask.priority, wanted, missed=in_time.missed))
+        ledger.add(key, OpenAsk(client.number, ident, lane, ask.priority, wanted, missed=in_time.missed))
         work.asks[key] = msgspec.structs.replace(ask, id=key)
         return ""
 
@@ -356,7 +356,7 @@ class LiveSession:
         """Take back what a client asked for itself; what has begun plays on."""
         if self.ledger.limits.refusal("withdraw", self.now, 0.0, 0, self.now, client.number):
             return Reply(id=ident, state="refused", why=BUSY)
-        target, mine = key_of(client.number, ask.what), key_of(client.number, "")
+        target, mine = plan_key(client.number, ask.what), plan_key(client.number, "")
         keys = self.ledger.belonging(target) if ask.what else list(self.ledger.of(client.number))
         # What has begun and lasts is not in the ledger any more, but can still be ended.
         lasting = [
@@ -364,7 +364,7 @@ class LiveSession:
             for x in self.plan.track.items
             if getattr(x, "end", 0.0) > self.now and x.id not in self.ledger.known
         ]
-        keys += [x for x in lasting if (owner_of(x, (target,)) if ask.what else x.startswith(mine))]
+        keys += [x for x in lasting if (find_owning_ask(x, (target,)) if ask.what else x.startswith(mine))]
         if not keys:
             return Reply(
                 id=ident, state="done", why="nothing waits under that id" if ask.what else "nothing waits"
@@ -407,7 +407,7 @@ class LiveSession:
         return None
 
     def _parts(
-        self, client: Client, open_: Open, block: Block, at: float | None, work: TickWork
+        self, client: Client, open_: Open, block: BmlBlock, at: float | None, work: TickWork
     ) -> list[tuple[str, str, str, str]]:
         """Take on what a block asks for; return of each its key, what it is called, the ask, and why it was
         refused already.
@@ -418,7 +418,8 @@ class LiveSession:
             word = str(ask.__struct_config__.tag)
             if isinstance(ask, a.Withdraw):
                 self._take_back(
-                    [key_of(client.number, ask.what)] if ask.what else [*self.ledger.of(client.number)], work
+                    [plan_key(client.number, ask.what)] if ask.what else [*self.ledger.of(client.number)],
+                    work,
                 )
                 continue
             timed: Any = msgspec.structs.replace(ask, at=at if ask.at is None else ask.at, told=self.now)
@@ -432,14 +433,14 @@ class LiveSession:
             return Reply(id=ident, state="refused", why=BUSY)
         try:
             client.camera, asks, seen = see(
-                client.camera, message, self.project, self.plan, self.now, key_of(client.number, "mimic")
+                client.camera, message, self.project, self.plan, self.now, plan_key(client.number, "mimic")
             )
         except ValueError as error:
             return Reply(id=ident, error=str(error))
         if not asks:
             return Reply(id=ident, state="done", seen=seen)
-        key = f"{key_of(client.number, 'keypoints')}.{place}"
-        parts = [(key_of(client.number, x.id), x.id, str(x.__struct_config__.tag), x) for x in asks]
+        key = f"{plan_key(client.number, 'keypoints')}.{place}"
+        parts = [(plan_key(client.number, x.id), x.id, str(x.__struct_config__.tag), x) for x in asks]
         taken = [(k, called, word, self._admit(client, called, k, x, work)) for k, called, word, x in parts]
         work.open[key] = Open(place, message.id, key, taken, seen=seen)
         return None
@@ -488,10 +489,10 @@ class LiveSession:
             id=ask.ident,
             state=found.said(ask.missed),  # type: ignore[arg-type]
             layer=found.layer,
-            at=rounded(found.at),
-            until=rounded(found.until),
+            at=round_seconds(found.at),
+            until=round_seconds(found.until),
             actions=tuple(found.what),
-            why=told(why, ask.client),
+            why=reword_for_client(why, ask.client),
         )
 
     def _settle_block(self, open_: Open, found: Mapping[str, FoundAnswer]) -> Reply:
@@ -529,7 +530,7 @@ class LiveSession:
             seen=open_.seen,
         )
 
-    def _tell_changed(self, key: str, ask: Known, found: FoundAnswer, out: Out) -> None:
+    def _tell_changed(self, key: str, ask: OpenAsk, found: FoundAnswer, out: Out) -> None:
         """Tell who asked that what was answered holds no longer."""
         if found.state in ("refused", "done"):
             self.ledger.drop(key)
@@ -539,14 +540,14 @@ class LiveSession:
         if client is not None and client.events:
             event = Event(
                 event="changed",
-                t=rounded(self.now),
+                t=round_seconds(self.now),
                 id=ask.ident,
                 state=found.said(ask.missed),  # type: ignore[arg-type]
                 layer=found.layer,
-                at=rounded(found.at),
-                until=rounded(found.until),
+                at=round_seconds(found.at),
+                until=round_seconds(found.until),
                 actions=tuple(found.what),
-                why=told(found.why, ask.client),
+                why=reword_for_client(found.why, ask.client),
             )
             out.events.append((ask.client, event))
 
@@ -572,7 +573,7 @@ class LiveSession:
             r for n, r in enumerate(plan.reports) if n >= last or (r.at > now - KEPT and owner(r.request))
         )
         requests = tuple(r for r in plan.requests if r.id in near or owner(r.id))
-        self.running.plan = replace(plan, reports=reports, requests=requests, track=thinned(plan, now))
+        self.running.plan = replace(plan, reports=reports, requests=requests, track=thin_track(plan, now))
 
     def overlay(self, seconds: float) -> Overlay | None:
         """Return what generated motion lays over the plan at a time about now, None for nothing."""

@@ -17,7 +17,7 @@ from metagraph import __version__
 from metagraph.graph.model import Project
 from metagraph.graph.offered import ENGINES, tools
 from metagraph.live.stdio import StdioLine
-from metagraph.speech.text_gestures import gesture_requests, gesture_words_for, proposed, words_of
+from metagraph.speech.text_gestures import gesture_requests, gesture_words_for, propose_gestures, timed_words
 
 VERSIONS = ("2025-11-25", "2025-06-18", "2025-03-26", "2024-11-05")
 BROKEN, NO_REQUEST, NO_METHOD, NO_PARAMETERS = -32700, -32600, -32601, -32602  # JSON-RPC's codes
@@ -139,7 +139,7 @@ class McpLine(StdioLine):
             told = []  # as objects, or without ends: as long as lips take
         self._gestured += 1
         lexicon = gesture_words_for(said.text)
-        made = proposed(words_of(said.text, told), self._tags, lexicon, self._gestured)
+        made = propose_gestures(timed_words(said.text, told), self._tags, lexicon, self._gestured)
         for request in gesture_requests(made, begins, f"said{self._gestured}"):
             self._calls.append(_Call(_NOBODY))
             self._ask(msgspec.json.encode(request))

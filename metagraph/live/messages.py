@@ -212,15 +212,15 @@ encode = msgspec.json.Encoder().encode
 
 
 @overload
-def rounded(seconds: float) -> float: ...
+def round_seconds(seconds: float) -> float: ...
 @overload
-def rounded(seconds: None) -> None: ...
-def rounded(seconds: float | None) -> float | None:
+def round_seconds(seconds: None) -> None: ...
+def round_seconds(seconds: float | None) -> float | None:
     """Return seconds as they are told, to a tenth of a millisecond."""
     return None if seconds is None else round(seconds, 4)
 
 
-def split(data: bytes | str) -> tuple[list[bytes | str | msgspec.Raw], bool]:
+def split_message(data: bytes | str) -> tuple[list[bytes | str | msgspec.Raw], bool]:
     """Return the requests of a message, and whether it was a list. Raises RequestError for one that is too
     long or no list.
     """
@@ -233,13 +233,13 @@ def split(data: bytes | str) -> tuple[list[bytes | str | msgspec.Raw], bool]:
     try:
         several = _several.decode(data)
     except (msgspec.DecodeError, UnicodeError, RecursionError) as error:
-        raise a.RequestError(a.words_of(error)) from None
+        raise a.RequestError(a.explain_invalid_ask(error)) from None
     if len(several) > MOST:
         raise a.RequestError(f"a list has at most {MOST} requests, not {len(several)}; send several lists")
     return list(several), True
 
 
-def read(data: bytes | str | msgspec.Raw) -> HeardMessage | Reply:
+def read_live_request(data: bytes | str | msgspec.Raw) -> HeardMessage | Reply:
     """Return one request, or the reply that says what is wrong with it."""
     size = len(memoryview(data)) if isinstance(data, msgspec.Raw) else len(data)
     if size > LONGEST and not (size <= LONGEST_BML and _holds_bml(data)):
@@ -252,7 +252,7 @@ def read(data: bytes | str | msgspec.Raw) -> HeardMessage | Reply:
     except msgspec.ValidationError as error:
         return _otherwise(data, error)
     except (msgspec.DecodeError, UnicodeError, RecursionError) as error:
-        return Reply(error=a.words_of(error))
+        return Reply(error=a.explain_invalid_ask(error))
 
 
 def _holds_bml(data: bytes | str | msgspec.Raw) -> bool:
@@ -264,7 +264,7 @@ def _otherwise(data: bytes | str | msgspec.Raw, error: msgspec.ValidationError) 
     try:
         fields = _seconds.decode(data)
     except (msgspec.DecodeError, UnicodeError, RecursionError) as broken:
-        return Reply(error=a.words_of(broken))
+        return Reply(error=a.explain_invalid_ask(broken))
     if not isinstance(fields, dict):
         return Reply(error='a request is an object, as {"do": "nod"}')
     ident = fields["id"] if isinstance(fields.get("id"), str) and len(fields["id"]) <= 200 else None
@@ -285,7 +285,7 @@ def _otherwise(data: bytes | str | msgspec.Raw, error: msgspec.ValidationError) 
 
 
 def _words(error: Exception) -> str:
-    text = a.words_of(error).removeprefix("[...]: ")
+    text = a.explain_invalid_ask(error).removeprefix("[...]: ")
     if text.startswith("do: Invalid value"):
         text = text.partition("; known are")[0] + f"; known are {', '.join(WORDS)}"
     elif text.endswith("required field `do`"):
@@ -293,7 +293,7 @@ def _words(error: Exception) -> str:
     return text
 
 
-def schema() -> dict[str, Any]:
+def live_schema() -> dict[str, Any]:
     """Return the JSON Schema (draft 2020-12) of the live session: requests, lists of them, replies and
     events.
     """

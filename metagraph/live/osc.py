@@ -12,7 +12,7 @@ from typing import Any
 from metagraph.graph.words import LAYERS
 from metagraph.live.hub import BACKLOG, Hub
 from metagraph.live.messages import LONGEST_MESSAGE, encode
-from metagraph.live.osc_bytes import OscError, messages_of, padded
+from metagraph.live.osc_bytes import OscError, messages_of, pad_osc
 
 ROOT = "/metagraph/"
 SILENT = 60.0  # seconds after which a sender is forgotten
@@ -165,7 +165,7 @@ class _Sender:
                 text = data.decode()
                 if len(data) > LARGEST:
                     text = '{"error":"the reply is too long for a datagram; ask over WebSocket"}'
-                self.osc.put(padded(f"{ROOT}{word}") + padded(",s") + padded(text), self.address)
+                self.osc.put(pad_osc(f"{ROOT}{word}") + pad_osc(",s") + pad_osc(text), self.address)
 
     def answered(self, messages: int) -> None:
         """Nothing depends on it."""

@@ -10,7 +10,7 @@ from metagraph.playback.life.sympathy import DELAY, Laugh, laughs_along, taken_u
 from metagraph.playback.life.track import Track
 from metagraph.playback.life.wanted import moods_of
 from metagraph.playback.planning.mood import Mood, Moods, mood_at
-from metagraph.playback.planning.understand import felt
+from metagraph.playback.planning.understand import read_mood
 
 MOOD, LAUGH = "partner", "partner laugh"  # ids, where the client gives none
 # How far, or how often, where the client does not say.
@@ -36,7 +36,7 @@ def partner_feel(
         one = found[0]
         assert one.valence is not None and one.arousal is not None
         return Feel(id=ident, at=one.start, mood=(one.valence, one.arousal), duration=one.end - one.start)
-    other = felt(message.mood, None)
+    other = read_mood(message.mood, None)
     mine = mood_at(own, now)
     seen = Mood(other.get("valence", 0.0), other.get("arousal", 0.0))
     mood = taken_up(mine, seen, MOOD_SHARE if message.share is None else message.share)

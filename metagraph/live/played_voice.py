@@ -72,17 +72,17 @@ class PlayedVoice:
         session.generating.hear(CLIENT, Hear(comes=(clause,)), now)
 
 
-def read_voice(path: Path, graph: str, announce: float | None = None) -> PlayedVoice:
+def read_played_voice(path: Path, graph: str, announce: float | None = None) -> PlayedVoice:
     """Read a voice from a sound file, all channels mixed; where it is announced, its clauses are told by
     sound. Raises FileError.
     """
-    from metagraph.speech.clauses import by_sound
+    from metagraph.speech.clauses import segment_by_sound
     from metagraph.speech.pitch import pitch
-    from metagraph.speech.sound import hear, read_sound
-    from metagraph.speech.soundtrack import resampled
+    from metagraph.speech.sound import analyse_sound, read_sound
+    from metagraph.speech.soundtrack import resample_sound
 
     samples, rate = read_sound(path)
     found: tuple[Segment, ...] = ()
     if announce is not None:
-        found = by_sound((), pitch(samples, rate), hear(samples, rate), None)
-    return PlayedVoice(resampled(samples, rate, RATE), found, graph, announce)
+        found = segment_by_sound((), pitch(samples, rate), analyse_sound(samples, rate), None)
+    return PlayedVoice(resample_sound(samples, rate, RATE), found, graph, announce)

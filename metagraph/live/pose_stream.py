@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.graph.face.curves import worn
+from metagraph.graph.face.curves import fit_curves_to_face
 from metagraph.graph.model import Project
 from metagraph.graph.requests import RequestError
 from metagraph.live.messages import Poses, encode
-from metagraph.live.osc_bytes import padded
+from metagraph.live.osc_bytes import pad_osc
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.posing.overlay import Overlay
@@ -61,7 +61,7 @@ class Stream:
             name
             for entry in project.clips.values()
             if entry.motion is not None
-            for name in worn(project, entry.motion).morphs
+            for name in fit_curves_to_face(project, entry.motion).morphs
         )
         places = np.array([skeleton.names.index(name) for name in names], np.int64)
         return cls(
@@ -152,15 +152,17 @@ def _osc(
     """
     if not stream.prefixes:
         tags = ",sffff" if places is None else ",sfffffff"
-        stream.prefixes = [padded("/metagraph/joint") + padded(tags) + padded(name) for name in stream.names]
+        stream.prefixes = [
+            pad_osc("/metagraph/joint") + pad_osc(tags) + pad_osc(name) for name in stream.names
+        ]
     numbers = rotations if places is None else np.concatenate([rotations, places], axis=1)
-    parts = [padded("/metagraph/pose") + padded(",d") + struct.pack(">d", now)]
-    parts.append(padded("/metagraph/root") + padded(",fff") + root.astype(">f4").tobytes())
+    parts = [pad_osc("/metagraph/pose") + pad_osc(",d") + struct.pack(">d", now)]
+    parts.append(pad_osc("/metagraph/root") + pad_osc(",fff") + root.astype(">f4").tobytes())
     parts += [
         prefix + row.tobytes() for prefix, row in zip(stream.prefixes, numbers.astype(">f4"), strict=True)
     ]
     parts += [
-        padded("/metagraph/weight") + padded(",sf") + padded(name) + struct.pack(">f", x)
+        pad_osc("/metagraph/weight") + pad_osc(",sf") + pad_osc(name) + struct.pack(">f", x)
         for name, x in weights.items()
     ]
     return (

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from metagraph.common.child_channel import Channel, Child
-from metagraph.live.server import Options, checked
-from metagraph.live.wire import Batch, Ready, pack, unpack_batch
+from metagraph.common.child_channel import Child, ChildChannel
+from metagraph.live.server import Options, check_live_options
+from metagraph.live.wire import Ready, RequestBatch, pack, unpack_batch
 
 if TYPE_CHECKING:
     from metagraph.live.live_session import LiveSession
@@ -29,7 +29,7 @@ class Relay:
     """
 
     def __init__(self, options: Options) -> None:
-        self.options = checked(options)
+        self.options = check_live_options(options)
         self.ready: Ready | None = None
         self.error = ""
         self._in: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
@@ -47,7 +47,7 @@ class Relay:
         """Answer what came in and send what happened; at most as long as the session's tick takes."""
         from metagraph.live.wire import exchange
 
-        batch = Batch()
+        batch = RequestBatch()
         while batch.number == 0:
             try:
                 data = self._in.get_nowait()
@@ -77,7 +77,7 @@ class Relay:
             ending.join()
 
 
-def receive(channel: Channel, target: queue.SimpleQueue[bytes | None]) -> None:
+def receive(channel: ChildChannel, target: queue.SimpleQueue[bytes | None]) -> None:
     """Put what comes in into a queue, and None when nothing more will."""
     with contextlib.suppress(EOFError):
         while data := channel.receive():
@@ -85,7 +85,7 @@ def receive(channel: Channel, target: queue.SimpleQueue[bytes | None]) -> None:
     target.put(None)
 
 
-def send(channel: Channel, source: queue.SimpleQueue[bytes | None]) -> None:
+def send(channel: ChildChannel, source: queue.SimpleQueue[bytes | None]) -> None:
     """Send what a queue is given, until that is None."""
     with contextlib.suppress(OSError):
         while (data := source.get()) is not None:

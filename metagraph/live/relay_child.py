@@ -14,22 +14,22 @@ import time
 
 import msgspec
 
-from metagraph.common.child_channel import Channel, parent
+from metagraph.common.child_channel import ChildChannel, connect_to_parent
 from metagraph.live.relay import send
 from metagraph.live.server import LiveError, Options, Server
-from metagraph.live.wire import Batch, Ready, Result, pack, unpack_result
+from metagraph.live.wire import BatchResult, Ready, RequestBatch, pack, unpack_result
 
 PATIENCE = 1.0  # seconds for the last words to be heard
 
 
 def main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the window decides when it is over
-    channel = parent()
+    channel = connect_to_parent()
     with contextlib.suppress(EOFError):  # the parent is gone before it said anything
         asyncio.run(_serve(channel, msgspec.msgpack.decode(channel.receive(), type=Options)))
 
 
-async def _serve(channel: Channel, options: Options) -> None:
+async def _serve(channel: ChildChannel, options: Options) -> None:
     out: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
     sender = threading.Thread(target=send, args=(channel, out), daemon=True)
     sender.start()
@@ -40,7 +40,7 @@ async def _serve(channel: Channel, options: Options) -> None:
         sender.join(PATIENCE)
 
 
-async def _talk(channel: Channel, options: Options, out: queue.SimpleQueue[bytes | None]) -> None:
+async def _talk(channel: ChildChannel, options: Options, out: queue.SimpleQueue[bytes | None]) -> None:
     server = Server(options, time.monotonic)
     try:
         out.put(pack(await server.open()))
@@ -65,7 +65,7 @@ async def _talk(channel: Channel, options: Options, out: queue.SimpleQueue[bytes
                 pass
             loop.call_soon_threadsafe(take, None)
 
-    def step(batch: Batch | None = None) -> Result | None:
+    def step(batch: RequestBatch | None = None) -> BatchResult | None:
         batch = server.hub.take() if batch is None else batch
         if batch is not None:
             out.put(pack(batch))

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.requests import RequestError, Say
-from metagraph.playback.timing.told_timing import told_timing
+from metagraph.playback.timing.told_timing import read_given_timing
 
 Array = NDArray[Any]
 
@@ -32,19 +32,22 @@ class SaidSound:
         """Take in the next samples `[N]`, -1..1; return the visemes they tell. said: seconds of the line that
         are over.
         """
-        from metagraph.speech.sound import hear, shapes_heard  # what nobody streams to need not be loaded
+        from metagraph.speech.sound import (  # what nobody streams to need not be loaded
+            analyse_sound,
+            guess_mouth_shapes,
+        )
 
         if self.seconds < said - LATE:
             self.seconds = said
         start, end = self.seconds, self.seconds + len(samples) / self.rate
         self._samples = np.concatenate([self._samples, samples])[-round(RECALL * self.rate) :]
         quiet = np.zeros(round(QUIET * self.rate))  # what the voice is louder than, where it never pauses
-        heard = hear(np.concatenate([quiet, self._samples]), self.rate)
+        heard = analyse_sound(np.concatenate([quiet, self._samples]), self.rate)
         offset = end - heard.duration
         self.seconds = end
         marks: list[list[Any]] = []
         over = start
-        for piece in shapes_heard(heard):
+        for piece in guess_mouth_shapes(heard):
             begins, ends = max(start, piece.start + offset), min(end, piece.end + offset)
             if ends <= begins:
                 continue
@@ -55,7 +58,7 @@ class SaidSound:
         return [*marks, [max(over, start), "sil"]]
 
 
-def said_on(before: Say, ask: Say) -> Say:
+def merge_line_timing(before: Say, ask: Say) -> Say:
     """Return an ask with what another one of the same tick told of its line before it."""
     if not (ask.words or ask.visemes):
         return ask
@@ -63,7 +66,7 @@ def said_on(before: Say, ask: Say) -> Say:
         ask, words=(*before.words, *ask.words), visemes=(*before.visemes, *ask.visemes), at=before.at
     )
     try:
-        told_timing(both)
+        read_given_timing(both)
     except RequestError:  # it tells everything again
         return ask
     return both

@@ -18,11 +18,11 @@ GRAPH, LIVE = (
 )
 
 
-def texts() -> dict[Path, bytes]:
+def schema_texts() -> dict[Path, bytes]:
     """Return the files: one ask as performances, lines and agents have it; all that a live session says and
     hears.
     """
-    return {GRAPH: _text(requests.schema()), LIVE: _text(messages.schema())}
+    return {GRAPH: _text(requests.ask_schema()), LIVE: _text(messages.live_schema())}
 
 
 def _text(schema: dict[str, Any]) -> bytes:
@@ -30,5 +30,5 @@ def _text(schema: dict[str, Any]) -> bytes:
 
 
 if __name__ == "__main__":
-    for path, text in texts().items():
+    for path, text in schema_texts().items():
         path.write_bytes(text)

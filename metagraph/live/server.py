@@ -17,7 +17,7 @@ from msgspec import Struct
 from metagraph.live import OSC_PORT, PORT
 from metagraph.live.hub import Hub
 from metagraph.live.stdio import StdioLine
-from metagraph.live.wire import Batch, Ready, Result
+from metagraph.live.wire import BatchResult, Ready, RequestBatch
 
 if TYPE_CHECKING:
     from metagraph.graph.model import Project
@@ -47,7 +47,7 @@ class LiveError(ValueError):
     """A session cannot be opened as asked; the message says why and what to do."""
 
 
-def checked(options: Options) -> Options:
+def check_live_options(options: Options) -> Options:
     """Return options that are safe. Raises LiveError for those that are not."""
     if options.token is not None and not options.token:
         raise LiveError("the token is empty; leave it out or give one")
@@ -86,7 +86,7 @@ class Server:
         project: Project | None = None,
     ) -> None:
         self.project = project
-        self.options, self.clock, self.pipes = checked(options), clock, pipes
+        self.options, self.clock, self.pipes = check_live_options(options), clock, pipes
         self.hub = Hub(options.token)
         self.stopped = asyncio.Event()
         self._sockets: set[Any] = set()
@@ -166,7 +166,7 @@ class Server:
         if self._stdio is not None:
             self._stdio.send([(data, False)])
 
-    async def run(self, step: Callable[[Batch | None], Result | None]) -> None:
+    async def run(self, step: Callable[[RequestBatch | None], BatchResult | None]) -> None:
         """Pass batches to `step` and its results on, every tick, until stopped; what was asked by then is
         answered first.
         """

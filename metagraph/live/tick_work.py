@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from metagraph.graph import requests as a
 from metagraph.graph.words import Layer
-from metagraph.live.camera_mimicry import Camera
+from metagraph.live.camera_mimicry import ClientCamera
 from metagraph.live.messages import Event, Reply
 from metagraph.live.pose_stream import PoseFrame, Stream
 from metagraph.playback.life.track import Track
@@ -26,7 +26,7 @@ class Client:
     events: str = ""
     stream: Stream | None = None
     count: int = 0
-    camera: Camera | None = None
+    camera: ClientCamera | None = None
 
 
 @dataclass
@@ -72,7 +72,7 @@ class TickWork:
             self.over.append(found)
 
 
-def in_turn(clients: Sequence[int]) -> list[int]:
+def order_requests(clients: Sequence[int]) -> list[int]:
     """Return the places of requests in the order in which they are taken up: one of each client, then the
     next of each ..., so that who sends a thousand at once comes before nobody. clients: who sent each.
     """
@@ -84,7 +84,7 @@ def in_turn(clients: Sequence[int]) -> list[int]:
     return [place for _, place in sorted(turns)] if len(counts) > 1 else list(range(len(turns)))
 
 
-def thinned(plan: Plan, now: float) -> Track:
+def thin_track(plan: Plan, now: float) -> Track:
     """Return the track with fewer of the places a moving point had long ago; a stream of them would slow
     every plan down.
     """

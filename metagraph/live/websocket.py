@@ -13,7 +13,7 @@ from websockets.http11 import Request
 from websockets.protocol import State
 from websockets.server import ServerProtocol
 
-from metagraph.live.hub import BACKLOG, CLIENTS, POLICY, SLOW, Hub, same
+from metagraph.live.hub import BACKLOG, CLIENTS, POLICY, SLOW, Hub, is_right_token
 from metagraph.live.messages import LONGEST_MESSAGE
 
 GREET = 5.0  # seconds for the opening handshake
@@ -91,7 +91,7 @@ class WebSocketLine(asyncio.Protocol):
         token = _bearer(request)
         if why:
             response = self.protocol.reject(403, f"{why}\n")
-        elif self.hub.token is not None and token is not None and not same(token, self.hub.token):
+        elif self.hub.token is not None and token is not None and not is_right_token(token, self.hub.token):
             response = self.protocol.reject(401, "that is not the token\n")
         else:
             response = self.protocol.accept(request)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from metagraph.live.live_session import LiveSession
 
 
-class Batch(Struct, frozen=True, array_like=True):
+class RequestBatch(Struct, frozen=True, array_like=True):
     """Requests that came in since the last. number: counts up. joined, left: clients. asked: client and
     request, in order.
     """
@@ -26,7 +26,7 @@ class Batch(Struct, frozen=True, array_like=True):
     asked: tuple[tuple[int, HeardMessage], ...] = ()
 
 
-class Picture(Struct, frozen=True, array_like=True):
+class PosePicture(Struct, frozen=True, array_like=True):
     """A pose for some clients."""
 
     clients: tuple[int, ...]
@@ -34,7 +34,7 @@ class Picture(Struct, frozen=True, array_like=True):
     binary: bool
 
 
-class Result(Struct, frozen=True, array_like=True):
+class BatchResult(Struct, frozen=True, array_like=True):
     """What a batch is answered with. number: the batch's, 0 for none. replies: JSON, one to each request in
     order. events: client and JSON.
     """
@@ -42,7 +42,7 @@ class Result(Struct, frozen=True, array_like=True):
     number: int = 0
     replies: tuple[bytes, ...] = ()
     events: tuple[tuple[int, bytes], ...] = ()
-    poses: tuple[Picture, ...] = ()
+    poses: tuple[PosePicture, ...] = ()
 
 
 class Ready(Struct, frozen=True, omit_defaults=True):
@@ -56,22 +56,22 @@ class Ready(Struct, frozen=True, omit_defaults=True):
     error: str | None = None
 
 
-def exchange(session: LiveSession, now: float, batch: Batch | None) -> Result:
+def exchange(session: LiveSession, now: float, batch: RequestBatch | None) -> BatchResult:
     """Let a session answer a batch at `now`; None for what happens without being asked."""
-    batch = Batch() if batch is None else batch
+    batch = RequestBatch() if batch is None else batch
     for client in batch.joined:
         session.join(client)
     out = session.tick(now, batch.asked)
     for client in batch.left:
         session.leave(client)
-    return Result(
+    return BatchResult(
         batch.number,
         tuple(reply if isinstance(reply, bytes) else encode(reply) for reply in out.replies),
         tuple((client, encode(event)) for client, event in out.events),
-        tuple(Picture(frame.clients, frame.data, frame.binary) for frame in out.frames),
+        tuple(PosePicture(frame.clients, frame.data, frame.binary) for frame in out.frames),
     )
 
 
 pack = msgspec.msgpack.Encoder().encode
-unpack_batch = msgspec.msgpack.Decoder(Batch).decode
-unpack_result = msgspec.msgpack.Decoder(Result).decode
+unpack_batch = msgspec.msgpack.Decoder(RequestBatch).decode
+unpack_result = msgspec.msgpack.Decoder(BatchResult).decode

@@ -22,7 +22,7 @@ WIDE, LONG, LOW = (
 MOST = np.radians(60.0)  # beyond which a head is not taken to be turned
 
 
-class Gaze:
+class HeadFollower:
     """Follows one head. points `[17, 3]`: of the character, looking ahead."""
 
     def __init__(self, points: Array) -> None:

@@ -20,10 +20,10 @@ from metagraph.mimicry.pose_measures import (
     SHARP,
     MeasuredFrame,
     frame_of,
-    measured,
+    measure_pose,
+    measure_trust,
     sharp_in_a_picture,
-    trusted,
-    turned,
+    turn_about_y,
 )
 from metagraph.mimicry.signatures import Signature
 from metagraph.mimicry.tuning import Tuning
@@ -99,7 +99,7 @@ class Judge:
         self.distances: Array | None = None
         self.moving = False
         self.bias = np.zeros(signature.measures.shape[1:])
-        self.flat = np.stack([turned(signature.measures, angle)[..., :2] for angle in TURNS])
+        self.flat = np.stack([turn_about_y(signature.measures, angle)[..., :2] for angle in TURNS])
         self._alike = self._confused()
         self._first = np.searchsorted(
             signature.of, np.arange(len(signature.stances))
@@ -130,7 +130,11 @@ class Judge:
         if frame is None or (dims == 2 and frame.width < AWAY):
             return None
         return PersonView(
-            points, trust, frame, measured(self.layer, points, frame), trusted(self.layer, trust)[:, None]
+            points,
+            trust,
+            frame,
+            measure_pose(self.layer, points, frame),
+            measure_trust(self.layer, trust)[:, None],
         )
 
     def misfits(self, view: PersonView) -> Array | None:

@@ -55,7 +55,7 @@ _CHOSEN: Mapping[int, Array] = {
 
 
 @dataclass(frozen=True, eq=False)
-class Keypoints:
+class KeypointTrack:
     """One person over time. times `[F]` seconds, ascending from 0 or later; points `[F, K, 3]`, z 0 where
     dims is 2; confidence `[F, K]` 0..1, 0 for what was not found; names of the K points. notes: what was left
     out, in words.
@@ -86,7 +86,7 @@ class Keypoints:
         points[:, missing], confidence[:, missing] = 0.0, 0.0
         return points, confidence
 
-    def mirrored(self) -> Keypoints:
+    def mirrored(self) -> KeypointTrack:
         """Return the person as seen in a mirror: left and right changed over."""
         names = tuple(_other(name) for name in self.names)
         return replace(self, points=self.points * np.array([-1.0, 1.0, 1.0]), names=names)
@@ -98,7 +98,7 @@ def _other(name: str) -> str:
     return f"left_{name[6:]}" if name.startswith("right_") else name
 
 
-def choose(points: Array, confidence: Array) -> tuple[Array, Array]:
+def choose_points(points: Array, confidence: Array) -> tuple[Array, Array]:
     """Return the POINTS `[17, D]` and their confidence `[17]` among `points [K, D]` of a layout, told by
     their number K.
 

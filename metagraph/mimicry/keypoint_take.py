@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.mimicry.keypoint_layouts import PLACE, Keypoints
+from metagraph.mimicry.keypoint_layouts import PLACE, KeypointTrack
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
@@ -40,7 +40,7 @@ class KeypointTakeError(ValueError):
     """These keypoints cannot be made into motion; the message says why, and what to do."""
 
 
-def take_of(keypoints: Keypoints, skeleton: Skeleton, name: str) -> Clip:
+def clip_from_keypoints(keypoints: KeypointTrack, skeleton: Skeleton, name: str) -> Clip:
     """Return a clip of the skeleton at `FPS` frames a second that moves as a person's keypoints do. Raises
     KeypointTakeError where they are flat, too few, or the skeleton lacks arms, legs or a head.
     """
@@ -70,7 +70,7 @@ def take_of(keypoints: Keypoints, skeleton: Skeleton, name: str) -> Clip:
     return Clip(name, skeleton, FPS, rotation.continuous(local), translations)
 
 
-def _even(keypoints: Keypoints) -> tuple[Array, Array]:
+def _even(keypoints: KeypointTrack) -> tuple[Array, Array]:
     """Return even times `[F]` and smoothed places `[F, 17, 3]` of the points, gaps bridged."""
     places, sure = keypoints.canonical
     if len(keypoints) < 2 or keypoints.seconds <= keypoints.times[0]:
@@ -155,11 +155,11 @@ def _turned(skeleton: Skeleton, roles: Mapping[str, int], seen: Mapping[str, Arr
             away[joint] = _pointed(base, bone, wanted)
         _bent(away, roles, rest_places, seen, side)
         if f"{side}_foot" in roles:  # flat on the floor, pointing where the hips do
-            ahead = rotation.rotate(hips, np.array([0.0, 0.0, 1.0]))
+            ahead = rotation.rotate_vectors(hips, np.array([0.0, 0.0, 1.0]))
             turn = np.arctan2(ahead[:, 0], ahead[:, 2])
             away[roles[f"{side}_foot"]] = rotation.from_axis_angle(np.array([0.0, 1.0, 0.0]), turn)
     out = np.empty((len(hips), len(skeleton), 4))
-    whole = rotation.identity((len(hips),))
+    whole = rotation.identity_rotations((len(hips),))
     turned: list[Array] = []
     for joint, parent in enumerate(skeleton.parents.tolist()):
         turned.append(away.get(joint, turned[parent] if parent >= 0 else whole))
@@ -175,7 +175,7 @@ def _pointed(base: Array, bone: Array, wanted: Array) -> Array:
     """Return a joint's turn from rest `[F, 4]`: its parent's, and the least more that points its bone
     there.
     """
-    return rotation.multiply(rotation.between(rotation.rotate(base, bone), wanted), base)
+    return rotation.multiply(rotation.rotation_between(rotation.rotate_vectors(base, bone), wanted), base)
 
 
 def _bent(
@@ -203,7 +203,7 @@ def _bent(
             forward = np.array([0.0, 0.0, 1.0 if "arm" in upper else -1.0])
             hinge = np.cross(rest_one, forward)
         hinge = _unit(hinge - (hinge @ rest_one) * rest_one)
-        shown = rotation.rotate(away[first], hinge)
+        shown = rotation.rotate_vectors(away[first], hinge)
         shown = _unit(shown - (shown * one).sum(-1, keepdims=True) * one)
         goal = _unit(axis)
         angle = np.arctan2((np.cross(shown, goal) * one).sum(-1), (shown * goal).sum(-1))

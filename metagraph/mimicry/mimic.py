@@ -17,9 +17,9 @@ from numpy.typing import ArrayLike, NDArray
 from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest, Go, Look
-from metagraph.mimicry.gaze_reading import Gaze
+from metagraph.mimicry.gaze_reading import HeadFollower
 from metagraph.mimicry.judge import TURNS, Judge, Mean, PersonView
-from metagraph.mimicry.keypoint_layouts import POINTS, choose, swap
+from metagraph.mimicry.keypoint_layouts import POINTS, choose_points, swap
 from metagraph.mimicry.signatures import BodySignature, signatures
 from metagraph.mimicry.tuning import Tuning
 
@@ -73,7 +73,7 @@ class Mimic:
         }
         self.sightings: list[Sighting] = []
         self.heading = 0.0  # how far the person is turned to the picture's right, radians
-        self._gaze = Gaze(body.points(anatomy.base_pose(project))) if gaze else None
+        self._gaze = HeadFollower(body.points(anatomy.base_pose(project))) if gaze else None
         self._asked: dict[
             Layer, tuple[float, float]
         ] = {}  # when each layer's stance was asked for, and how long until it may be again
@@ -146,7 +146,7 @@ class Mimic:
         sure = np.ones(len(given)) if confidence is None else np.asarray(confidence, np.float64)
         if sure.shape != (len(given),):
             raise ValueError(f"{len(given)} keypoints have {len(given)} confidences, not {list(sure.shape)}")
-        where, sure = choose(given, sure)
+        where, sure = choose_points(given, sure)
         if self.mirror:
             where, sure = swap(where, sure)
         good = (np.abs(where) <= FARTHEST).all(1) & (sure >= 0)  # what is not a number is neither

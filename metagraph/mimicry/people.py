@@ -17,7 +17,7 @@ GROWTH = 1.6  # ratio of sizes up to which it may be the same person
 
 
 @dataclass(frozen=True, eq=False)
-class Person:
+class SeenPerson:
     """Somebody in a frame. points `[K, 3]` in the file's own axes; confidence `[K]`; ident: the file's own
     number for them, if any.
     """
@@ -36,9 +36,9 @@ class Person:
         return ((low + high) / 2, size) if size > 0 else None
 
 
-def follow(
-    times: Sequence[float], frames: Sequence[Sequence[Person]], middle: float | None = None
-) -> Iterator[Person | None]:
+def follow_person(
+    times: Sequence[float], frames: Sequence[Sequence[SeenPerson]], middle: float | None = None
+) -> Iterator[SeenPerson | None]:
     """Yield for each frame the person who is followed, None where they are not there.
 
     The largest is followed, those in the picture's middle (x, where it is known) before those at its edge;
@@ -73,8 +73,8 @@ def _presence(place: tuple[Array, float], middle: float | None) -> float:
 
 
 def _again(
-    known: Sequence[tuple[Person, tuple[Array, float]]], last: tuple[Array, float], ident: int | None
-) -> tuple[Person, tuple[Array, float]] | None:
+    known: Sequence[tuple[SeenPerson, tuple[Array, float]]], last: tuple[Array, float], ident: int | None
+) -> tuple[SeenPerson, tuple[Array, float]] | None:
     """Return who of those in a frame was followed in the last."""
     where, size = last
     named = next((item for item in known if ident is not None and item[0].ident == ident), None)

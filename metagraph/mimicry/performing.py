@@ -12,10 +12,10 @@ import msgspec
 
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest, Performance
-from metagraph.mimicry.keypoint_layouts import Keypoints
+from metagraph.mimicry.keypoint_layouts import KeypointTrack
 from metagraph.mimicry.mimic import Mimic, Sighting
 from metagraph.playback.plan import Plan
-from metagraph.playback.planning.extend_performance import hear
+from metagraph.playback.planning.extend_performance import hear_asks
 
 AHEAD = 10.0  # seconds that are planned ahead while a recording is gone through
 REST = 2.0  # seconds a performance goes on after the recording has ended
@@ -33,7 +33,7 @@ class Mimicry:
 
 def mimic_performance(
     project: Project,
-    keypoints: Keypoints,
+    keypoints: KeypointTrack,
     mirror: bool = True,
     layers: Collection[Layer] = LAYERS,
     gaze: bool = False,
@@ -70,7 +70,7 @@ def _prefix(asks: Collection[AnyRequest]) -> str:
 
 def _steps(
     project: Project,
-    keypoints: Keypoints,
+    keypoints: KeypointTrack,
     mimic: Mimic,
     into: Performance,
     progress: Callable[[int, int], object] | None,
@@ -83,7 +83,7 @@ def _steps(
     plan = Plan(project.settings.seed if into.seed is None else into.seed, 0.0)
 
     def heard(now: float, asks: list[AnyRequest]) -> Plan:
-        return hear(project, plan, now, asks, max(plan.end, now + AHEAD), dict(into.stances), into.idle)
+        return hear_asks(project, plan, now, asks, max(plan.end, now + AHEAD), dict(into.stances), into.idle)
 
     points, confidence = keypoints.canonical
     for n, (at, where, sure) in enumerate(zip(keypoints.times, points, confidence, strict=True)):
@@ -121,7 +121,7 @@ def goals(plan: Plan, now: float, mine: str) -> dict[Layer, str]:
     return out
 
 
-def placed(project: Project, performance: Performance) -> Performance:
+def place_requests(project: Project, performance: Performance) -> Performance:
     """Return a performance whose requests say when they begin, so that they can be seen and moved in time."""
     ahead = project.settings.lookahead
     asks = tuple(

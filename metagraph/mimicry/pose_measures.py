@@ -33,7 +33,7 @@ LEAST_EVIDENCE = 0.4  # share of a layer's measures, by weight, without which no
 
 
 @dataclass(frozen=True)
-class Measure:
+class PoseMeasure:
     """plus - minus. scale: along x, y, z, see above. weight: how much it counts beside the others. slant: by
     how much perspective alone may raise it in a picture of somebody seen from the side, torso lengths.
     """
@@ -58,25 +58,25 @@ def _beside_shoulders(part: str, share: float) -> tuple[Terms, Terms]:
 
 
 _HAND, _ELBOW, _APART, _NEAR = (0.16, 0.16, 0.3), (0.16, 0.16, 0.3), (0.2, 0.2, 0.4), (0.2, 0.2, 0.4)
-MEASURES: Mapping[Layer, tuple[Measure, ...]] = {
+MEASURES: Mapping[Layer, tuple[PoseMeasure, ...]] = {
     "arms": (
-        *(Measure(_one(f"{side}_wrist"), SHOULDERS, _HAND) for side in ("left", "right")),
-        *(Measure(_one(f"{side}_elbow"), SHOULDERS, _ELBOW, 0.6) for side in ("left", "right")),
-        Measure(_one("left_wrist"), _one("right_wrist"), _APART, 0.6),
-        *(Measure(_one(f"{side}_wrist"), _one("nose"), _NEAR, 0.4) for side in ("left", "right")),
-        *(Measure(_one(f"{side}_wrist"), _one(f"{side}_hip"), _NEAR, 0.4) for side in ("left", "right")),
+        *(PoseMeasure(_one(f"{side}_wrist"), SHOULDERS, _HAND) for side in ("left", "right")),
+        *(PoseMeasure(_one(f"{side}_elbow"), SHOULDERS, _ELBOW, 0.6) for side in ("left", "right")),
+        PoseMeasure(_one("left_wrist"), _one("right_wrist"), _APART, 0.6),
+        *(PoseMeasure(_one(f"{side}_wrist"), _one("nose"), _NEAR, 0.4) for side in ("left", "right")),
+        *(PoseMeasure(_one(f"{side}_wrist"), _one(f"{side}_hip"), _NEAR, 0.4) for side in ("left", "right")),
     ),
     "body": (
-        Measure(HIPS, ANKLES, (0.04, inf, 0.12), 1.0),
-        Measure(SHOULDERS, HIPS, (0.03, inf, 0.06), 1.0),
-        Measure(_one("left_hip"), _one("right_hip"), (inf, 0.02, inf), 0.7, 0.05),
-        Measure(_one("left_shoulder"), _one("right_shoulder"), (inf, 0.03, inf), 0.4, 0.09),
+        PoseMeasure(HIPS, ANKLES, (0.04, inf, 0.12), 1.0),
+        PoseMeasure(SHOULDERS, HIPS, (0.03, inf, 0.06), 1.0),
+        PoseMeasure(_one("left_hip"), _one("right_hip"), (inf, 0.02, inf), 0.7, 0.05),
+        PoseMeasure(_one("left_shoulder"), _one("right_shoulder"), (inf, 0.03, inf), 0.4, 0.09),
     ),
     "head": (
-        Measure(_one("left_ear"), _one("right_ear"), (0.12, inf, 0.12)),
-        Measure(*_beside_shoulders("ear", 0.32), (inf, 0.03, inf), 1.0, 0.02),
-        Measure(*_beside_shoulders("eye", 0.135), (inf, 0.018, inf), 1.0, 0.01),
-        Measure(_one("nose"), EARS, (0.12, 0.08, 0.12)),
+        PoseMeasure(_one("left_ear"), _one("right_ear"), (0.12, inf, 0.12)),
+        PoseMeasure(*_beside_shoulders("ear", 0.32), (inf, 0.03, inf), 1.0, 0.02),
+        PoseMeasure(*_beside_shoulders("eye", 0.135), (inf, 0.018, inf), 1.0, 0.01),
+        PoseMeasure(_one("nose"), EARS, (0.12, 0.08, 0.12)),
     ),
 }
 # What must hold still for a layer to be in a stance.
@@ -137,7 +137,7 @@ USED: Mapping[Layer, Array] = {layer: rows != 0 for layer, rows in ROWS.items()}
 MOVED: Mapping[Layer, Array] = {layer: rows != 0 for layer, rows in MOVING.items()}
 
 
-def trusted(layer: Layer, confidence: Array) -> Array:
+def measure_trust(layer: Layer, confidence: Array) -> Array:
     """Return how far each measure `[N]` can be trusted: as far as the least certain of its points, of
     `confidence [17]`.
     """
@@ -162,7 +162,7 @@ _LS, _RS, _LH, _RH, _LE, _RE = (
 )
 
 
-def turned(vectors: Array, angle: float) -> Array:
+def turn_about_y(vectors: Array, angle: float) -> Array:
     """Return `vectors [..., 3]` turned about y by an angle, which takes z to x."""
     c, s = cos(angle), sin(angle)
     out = vectors.copy()
@@ -171,7 +171,7 @@ def turned(vectors: Array, angle: float) -> Array:
     return out
 
 
-def straightened(vectors: Array, up: Array) -> Array:
+def straighten(vectors: Array, up: Array) -> Array:
     """Return `vectors [..., 3]` turned the shortest way that takes the direction `up [3]` (unit, not straight
     down) to y.
     """
@@ -209,15 +209,15 @@ def frame_of(points: Array, confidence: Array, dims: int, usual_width: float) ->
         return None
     if dims == 3:
         heading = atan2(-float(beside[2]), float(beside[0]))
-        up = turned(up, -heading)
+        up = turn_about_y(up, -heading)
     return MeasuredFrame(size, up, heading, float(across[0]) / size)
 
 
-def measured(layer: Layer, points: Array, frame: MeasuredFrame) -> Array:
+def measure_pose(layer: Layer, points: Array, frame: MeasuredFrame) -> Array:
     """Return a layer's measures `[N, 3]` of a person, as if facing the camera; along x and y alone in two
     dimensions.
     """
     vectors = ROWS[layer] @ points / frame.size
     if frame.heading:
-        vectors = turned(vectors, -frame.heading)
-    return vectors if UPRIGHT[layer] else straightened(vectors, frame.up)
+        vectors = turn_about_y(vectors, -frame.heading)
+    return vectors if UPRIGHT[layer] else straighten(vectors, frame.up)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.mimicry.keypoint_layouts import PLACE, POINTS, swap
-from metagraph.mimicry.pose_measures import frame_of, measured
+from metagraph.mimicry.pose_measures import frame_of, measure_pose
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.evaluator import Evaluator
@@ -59,7 +59,7 @@ class BodySignature:
     def __init__(self, project: Project) -> None:
         if project.skeleton is None:
             raise ValueError("the project has no clips, so that there is no character to mimic with")
-        roles = anatomy.roles(project)
+        roles = anatomy.project_roles(project)
         needed = {
             f"{side}_{_ROLES[part]}"
             for part in ("shoulder", "elbow", "wrist", "hip")
@@ -118,7 +118,7 @@ class BodySignature:
                 x, y, z = FACE[part]
                 out[place] = eyes + away(-x if side == "right" else x, y, z) - head
         back = rotation.conjugate(turns[self.head].astype(float))
-        return {place: rotation.rotate(back, v) for place, v in out.items()}
+        return {place: rotation.rotate_vectors(back, v) for place, v in out.items()}
 
     def points(self, pose: Pose) -> Array:
         """Return the POINTS `[..., 17, 3]` of poses, metres; zeros where there is no such joint (`confidence
@@ -128,7 +128,9 @@ class BodySignature:
         out = np.zeros((*places.shape[:-2], len(POINTS), 3))
         out[..., self.places, :] = places[..., self.joints, :]
         for place, inside in self._face.items():
-            out[..., place, :] = places[..., self.head, :] + rotation.rotate(turns[..., self.head, :], inside)
+            out[..., place, :] = places[..., self.head, :] + rotation.rotate_vectors(
+                turns[..., self.head, :], inside
+            )
         return out
 
 
@@ -161,7 +163,7 @@ def signatures(
                     shown, sure = swap(points, body.confidence) if other else (points, body.confidence)
                     frame = frame_of(shown, sure, 3, width)
                     if frame is not None:
-                        rows.append(measured(layer, shown, frame))
+                        rows.append(measure_pose(layer, shown, frame))
                         of.append(len(stances))
                         extra.append(cost)
             if seen:

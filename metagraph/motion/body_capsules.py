@@ -11,8 +11,8 @@ from msgspec import Meta, Struct
 from numpy.typing import NDArray
 
 from metagraph.motion import rotation
-from metagraph.motion.character_mesh import Character
-from metagraph.motion.joint_map import known_roles
+from metagraph.motion.character_mesh import CharacterMesh
+from metagraph.motion.joint_map import find_known_roles
 from metagraph.motion.skeleton import Pose, Skeleton
 
 Array = NDArray[Any]
@@ -57,7 +57,7 @@ class _Standing:
         """Return a capsule between two points in the character's space."""
         names = self.skeleton.names
         ends = [
-            rotation.rotate(rotation.conjugate(self.turned[j]), p - self.at[j]).round(5).tolist()
+            rotation.rotate_vectors(rotation.conjugate(self.turned[j]), p - self.at[j]).round(5).tolist()
             for j, p in ((joint, a), (to, b))
         ]
         return BodyPart(names[joint], names[to], tuple(ends[0]), tuple(ends[1]), round(radius, 5))
@@ -68,7 +68,7 @@ def body_capsules(
     roles: Mapping[str, int],
     pose: Pose,
     axes: Array,
-    character: Character | None = None,
+    character: CharacterMesh | None = None,
 ) -> tuple[BodyPart, ...]:
     """Return the parts of a body; none of one without two arms, hips and a head.
 
@@ -78,7 +78,7 @@ def body_capsules(
     needed = {"hips", "head", *(f"{s}_{p}" for s in SIDES for p in ("upper_arm", "lower_arm", "hand"))}
     if not needed <= roles.keys():
         return ()
-    body = _Standing(skeleton, {**roles, **known_roles(skeleton, roles)}, pose, axes)
+    body = _Standing(skeleton, {**roles, **find_known_roles(skeleton, roles)}, pose, axes)
     mesh = None if character is None or character.skeleton != skeleton else _Mesh(body, character)
     found = [part for side in SIDES for part in _arm(body, mesh, side)]
     return (*found, *_legs(body, mesh), *_trunk(body, mesh), *_head(body, mesh))
@@ -190,7 +190,7 @@ def _head(body: _Standing, mesh: _Mesh | None) -> list[BodyPart]:
 class _Mesh:
     """A character's vertices as the figure stands, and the joint that moves each most."""
 
-    def __init__(self, body: _Standing, character: Character) -> None:
+    def __init__(self, body: _Standing, character: CharacterMesh) -> None:
         self.axes, self.at = body.axes, body.at
         self.below = {j: body.skeleton.descendants(j) for j in [body.roles["head"]]}
         back = rotation.conjugate(body.rest_turned)
@@ -198,7 +198,7 @@ class _Mesh:
         points = np.zeros_like(np.asarray(character.positions, float))
         for k in range(character.joints.shape[1]):
             j = character.joints[:, k]
-            moved = body.at[j] + rotation.rotate(turn[j], character.positions - body.rest_at[j])
+            moved = body.at[j] + rotation.rotate_vectors(turn[j], character.positions - body.rest_at[j])
             points += character.weights[:, k, None] * moved
         used = np.unique(character.triangles)
         self.points = points[used]

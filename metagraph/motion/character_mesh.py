@@ -20,7 +20,7 @@ INSIDE = 0.25  # share of the joints that are within a small mesh that is a part
 
 
 @dataclass(frozen=True, eq=False)
-class Material:
+class MeshMaterial:
     """color: linear RGBA 0..1. image: encoded PNG or JPEG bytes of the base colour texture, or None."""
 
     name: str
@@ -44,7 +44,7 @@ class Surface:
 
 
 @dataclass(frozen=True, eq=False)
-class Character:
+class CharacterMesh:
     """positions, normals `[V, 3]` in model space in the skeleton's rest pose, metres; uvs `[V, 2]`;
     joints `[V, 4]` and weights `[V, 4]` summing to 1; triangles `[N, 3]`;
     morph_positions `[K, V, 3]` are offsets for the morph targets named in `morphs`. meshes: the names of all
@@ -59,7 +59,7 @@ class Character:
     joints: Array
     weights: Array
     triangles: Array
-    materials: tuple[Material, ...]
+    materials: tuple[MeshMaterial, ...]
     surfaces: tuple[Surface, ...]
     morphs: tuple[str, ...] = ()
     morph_positions: Array | None = None
@@ -90,7 +90,7 @@ class Character:
                 f"{len(self.skeleton)}"
             )
 
-    def without(self, meshes: Collection[str]) -> Character:
+    def without(self, meshes: Collection[str]) -> CharacterMesh:
         """Return the character without the meshes of some names; names that it has not are passed over."""
         kept = [surface for surface in self.surfaces if surface.mesh not in meshes]
         if len(kept) == len(self.surfaces):
@@ -104,7 +104,7 @@ class Character:
         )
 
 
-def no_character(body: Character, skeleton: Skeleton | None = None) -> str | None:
+def explain_no_character(body: CharacterMesh, skeleton: Skeleton | None = None) -> str | None:
     """Return why a mesh is no character to draw on a skeleton (its own, if none is given), in words that
     follow "its mesh"; None where it is one.
 
@@ -152,7 +152,7 @@ def followers(own: Skeleton, skeleton: Skeleton) -> tuple[Array, Array]:
     return follow, found[follow]
 
 
-def bound(body: Character, skeleton: Skeleton) -> Character:
+def bind_character(body: CharacterMesh, skeleton: Skeleton) -> CharacterMesh:
     """Return a character on a skeleton that is not its own, its joints matched by name as `followers` says,
     and its surface as that skeleton's rest pose moves it. Raises ValueError where no joint matches.
     """
@@ -162,7 +162,7 @@ def bound(body: Character, skeleton: Skeleton) -> Character:
     own_r, own_p = body.skeleton.globals(body.skeleton.rest)
     rest_r, rest_p = skeleton.globals(skeleton.rest)
     turns = rotation.multiply(rest_r[places], rotation.conjugate(own_r[follow]))
-    shifts = rest_p[places] - rotation.rotate(turns, own_p[follow])
+    shifts = rest_p[places] - rotation.rotate_vectors(turns, own_p[follow])
     weights = body.weights[..., None].astype(float)
     matrix = (weights[..., None] * rotation.to_matrix(turns)[body.joints]).sum(1)
     moved = np.einsum("vij,vj->vi", matrix, body.positions) + (weights * shifts[body.joints]).sum(1)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.motion.limbs import unit
+from metagraph.motion.limbs import unit_directions
 
 Array = NDArray[Any]
 
@@ -35,7 +35,7 @@ class Contact:
     last: float
 
 
-def held(clip: Clip, contacts: Iterable[Contact]) -> Clip:
+def hold_hands(clip: Clip, contacts: Iterable[Contact]) -> Clip:
     """Return a clip in which hands stay where contacts say; those whose joints it has not, or that are no
     limb, are left out.
     """
@@ -45,7 +45,7 @@ def held(clip: Clip, contacts: Iterable[Contact]) -> Clip:
     return clip
 
 
-def nearest_joint(clip: Clip, hand: int, among: Iterable[int], seconds: float) -> int | None:
+def find_nearest_joint(clip: Clip, hand: int, among: Iterable[int], seconds: float) -> int | None:
     """Return which of some joints a hand is nearest to at a moment, None of none."""
     _, places = clip.skeleton.globals(clip.pose_at(seconds))
     found = [(float(np.linalg.norm(places[hand] - places[j])), j) for j in among if j != hand]
@@ -79,9 +79,11 @@ def _held(clip: Clip, contact: Contact) -> Clip:
     turns, places = (np.asarray(a, np.float64) for a in skeleton.globals(clip.poses()))
     at = min(max(round(contact.first * clip.fps), 0), clip.frames - 1)
     back = rotation.conjugate(turns[at, to])
-    offset = rotation.rotate(back, places[at, hand] - places[at, to])
+    offset = rotation.rotate_vectors(back, places[at, hand] - places[at, to])
     turn = rotation.multiply(back, turns[at, hand])
-    stays = places[:, to] + rotation.rotate(turns[:, to], np.broadcast_to(offset, places[:, to].shape))
+    stays = places[:, to] + rotation.rotate_vectors(
+        turns[:, to], np.broadcast_to(offset, places[:, to].shape)
+    )
     weight = _weight(clip, contact, np.linalg.norm(stays - places[:, hand], axis=-1))
     goal = places[:, hand] + weight[:, None] * (stays - places[:, hand])
     wanted = rotation.multiply(turns[:, to], np.broadcast_to(turn, turns[:, to].shape))
@@ -145,17 +147,17 @@ def _bent(root: Array, middle: Array, end: Array, goal: Array, turn: Array) -> t
     one, two = (np.linalg.norm(v, axis=-1) for v in (middle - root, end - middle))
     way = goal - root
     far = np.clip(np.linalg.norm(way, axis=-1), np.abs(one - two) + 1e-4, REACHED * (one + two))
-    ahead, now = unit(way), unit(end - root)
+    ahead, now = unit_directions(way), unit_directions(end - root)
     aside = middle - root - now * np.einsum("fi,fi->f", middle - root, now)[:, None]
     # A straight limb has no side: then one that goes with the bone.
-    spare = rotation.rotate(turn, np.broadcast_to(np.array([0.31, 0.52, 0.8]), now.shape))
+    spare = rotation.rotate_vectors(turn, np.broadcast_to(np.array([0.31, 0.52, 0.8]), now.shape))
     straight = np.linalg.norm(aside, axis=-1) < 1e-3 * (one + two)
     aside = np.where(straight[:, None], spare - now * np.einsum("fi,fi->f", spare, now)[:, None], aside)
-    aside = rotation.rotate(rotation.between(now, ahead), aside)
+    aside = rotation.rotate_vectors(rotation.rotation_between(now, ahead), aside)
     along = (one**2 + far**2 - two**2) / (2 * far)
     high = np.sqrt(np.maximum(0, one**2 - along**2))
-    knee = ahead * along[:, None] + unit(aside) * high[:, None]
-    swing = rotation.between(unit(middle - root), unit(knee))
-    carried = rotation.rotate(swing, end - middle)
-    fold = rotation.between(unit(carried), unit(ahead * far[:, None] - knee))
+    knee = ahead * along[:, None] + unit_directions(aside) * high[:, None]
+    swing = rotation.rotation_between(unit_directions(middle - root), unit_directions(knee))
+    carried = rotation.rotate_vectors(swing, end - middle)
+    fold = rotation.rotation_between(unit_directions(carried), unit_directions(ahead * far[:, None] - knee))
     return swing, fold

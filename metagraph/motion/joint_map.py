@@ -12,7 +12,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from metagraph.motion.joint_names import kind_of, take_apart
+from metagraph.motion.joint_names import joint_kind, split_joint_name
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Skeleton
 
@@ -136,7 +136,7 @@ class JointMap:
             raise RetargetError(f"that is no joint map ({error!r})") from None
 
 
-def proposed(
+def propose_joint_map(
     source: Skeleton,
     target: Skeleton,
     source_roles: Mapping[str, int] | None = None,
@@ -145,7 +145,7 @@ def proposed(
     """Propose which joint of `target` follows which of `source`: by roles, fingers and twists, then by
     names.
     """
-    ours, theirs = known_roles(source, source_roles), known_roles(target, target_roles)
+    ours, theirs = find_known_roles(source, source_roles), find_known_roles(target, target_roles)
     pairs: dict[str, JointPair] = {}
     taken: set[str] = set()
 
@@ -158,7 +158,9 @@ def proposed(
     for role, joint in ours.items():
         if role in theirs:
             other = theirs[role]
-            same = take_apart(source.names[joint]).joined == take_apart(target.names[other]).joined
+            same = (
+                split_joint_name(source.names[joint]).joined == split_joint_name(target.names[other]).joined
+            )
             shaped = not role[-1].isdecimal() and _unnamed(source.names[joint], role) + _unnamed(
                 target.names[other], role
             )
@@ -177,10 +179,10 @@ def proposed(
         add(0, 0, "root", 0.8, "both stand above the hips")
     names: dict[tuple[Any, ...], list[int]] = {}
     for i, name in enumerate(target.names):
-        words = take_apart(name)
+        words = split_joint_name(name)
         names.setdefault((words.words, words.side, words.number), []).append(i)
     for i, name in enumerate(source.names):
-        words = take_apart(name)
+        words = split_joint_name(name)
         found = names.get((words.words, words.side, words.number), [])
         exact = name in target
         j = target.index(name) if exact else found[0] if len(found) == 1 and words.words else -1
@@ -189,7 +191,7 @@ def proposed(
     return JointMap(fingerprint(source), fingerprint(target), tuple(pairs.values()))
 
 
-def known_roles(skeleton: Skeleton, roles: Mapping[str, int] | None) -> dict[str, int]:
+def find_known_roles(skeleton: Skeleton, roles: Mapping[str, int] | None) -> dict[str, int]:
     """Return roles with those of fingers and twist joints, as far as they can be told apart."""
     roles = find_roles(skeleton) if roles is None else roles
     out = {role: roles[role] for role in _PLAIN if role in roles}
@@ -204,7 +206,7 @@ def _fingers(skeleton: Skeleton, roles: Mapping[str, int], side: str) -> dict[st
         return {}
     lines: dict[str, list[int]] = {}
     for j in skeleton.descendants(top):
-        words = take_apart(skeleton.names[j])
+        words = split_joint_name(skeleton.names[j])
         if {"end", "nub", "tip", "metacarpal", "carpal", "twist", "roll"} & set(words.words):
             continue
         numbered = re.search(r"[Ff]inger(\d)", skeleton.names[j])
@@ -230,7 +232,7 @@ def _twists(skeleton: Skeleton, roles: Mapping[str, int]) -> dict[str, int]:
         found = [
             c
             for c in skeleton.children[roles[role]]
-            if c not in taken and {"twist", "roll"} & set(take_apart(skeleton.names[c]).words)
+            if c not in taken and {"twist", "roll"} & set(split_joint_name(skeleton.names[c]).words)
         ]
         out.update({f"{role}_twist_{n}": c for n, c in enumerate(found, 1)})
     return out
@@ -238,6 +240,6 @@ def _twists(skeleton: Skeleton, roles: Mapping[str, int]) -> dict[str, int]:
 
 def _unnamed(name: str, role: str) -> int:
     """Whether the name alone does not say the role."""
-    words = take_apart(name)
+    words = split_joint_name(name)
     bare = role.removeprefix("left_").removeprefix("right_")
-    return int(kind_of(words) != bare and bare.replace("_", "") not in words.joined)
+    return int(joint_kind(words) != bare and bare.replace("_", "") not in words.joined)

@@ -46,7 +46,7 @@ class JointWords:
 
 
 @lru_cache(maxsize=4096)  # clips of a project name the same joints
-def take_apart(name: str) -> JointWords:
+def split_joint_name(name: str) -> JointWords:
     """Split a name at separators, capitals and digits, without its namespace."""
     bare = re.split(r"[:|]", name)[-1]
     pieces = [
@@ -69,7 +69,7 @@ def take_apart(name: str) -> JointWords:
 
 
 @lru_cache(maxsize=4096)
-def kind_of(words: JointWords) -> str:
+def joint_kind(words: JointWords) -> str:
     """Return what a name alone says of a limb's joint; "" when it says nothing, or nothing certain."""
     own, joined = set(words.words), words.joined
     if own & _FOUR_LEGGED and ("leg" in joined or "foot" in joined or "paw" in joined or "toe" in joined):

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.joint_map import ARM, SIDES
-from metagraph.motion.limbs import eased, faded
-from metagraph.motion.standing import Figure, aligned
+from metagraph.motion.limbs import ease_reach, fade_above_half
+from metagraph.motion.standing import StandingFigure, align_standing
 
 Array = NDArray[Any]
 
@@ -41,12 +41,14 @@ class LimbGoals:
     length. chest: the role that carries the arms.
     """
 
-    def __init__(self, clip: Clip, source: Figure, target: Figure, roles: Sequence[str]) -> None:
+    def __init__(
+        self, clip: Clip, source: StandingFigure, target: StandingFigure, roles: Sequence[str]
+    ) -> None:
         self.clip, self.source, self.target = clip, source, target
         turns, places = clip.skeleton.globals(clip.poses())
         self.from_turns = rotation.multiply(source.turn.astype(np.float32), turns)
-        self.from_places = rotation.rotate(source.turn.astype(np.float32), places)
-        self.align = aligned(source, target, roles)
+        self.from_places = rotation.rotate_vectors(source.turn.astype(np.float32), places)
+        self.align = align_standing(source, target, roles)
         self.level = rotation.IDENTITY if source.natural and target.natural else source.frame()
         self.chest = next(r for r in ("upper_chest", "chest", "spine", "hips") if r in roles)
         self.scale = target.leg / source.leg
@@ -78,7 +80,7 @@ class LimbGoals:
         side, kind = upper.split("_", 1)
         beside = OUTWARDS[kind] * [1 if side == "left" else -1, 1, 1]
         trunk = "hips" if kind == "upper_leg" else self.chest
-        return rotation.rotate(self.turned(trunk), rotation.rotate(self.level, beside))
+        return rotation.rotate_vectors(self.turned(trunk), rotation.rotate_vectors(self.level, beside))
 
     def placed(self, points: Array) -> Array:
         """Return where places `[F, 3]` near the source's legs come to: scaled, the ankles of a standing
@@ -95,7 +97,7 @@ class LimbGoals:
         above, legs = self.source.roles[f"{side}_foot"], [self.source.roles[f"{s}_upper_leg"] for s in SIDES]
         wide = (1 if side == "left" else -1) * (self.target.half_hips - self.scale * self.source.half_hips)
         # Halfway between how either stands with toes out: the same way there and back.
-        half = rotation.power(self.align[f"{side}_foot"], 0.5)
+        half = rotation.scale_rotation(self.align[f"{side}_foot"], 0.5)
         turned = rotation.multiply(
             self.from_turns[:, above],
             rotation.multiply(rotation.conjugate(self.source.rotations[above]), half).astype(np.float32),
@@ -104,11 +106,11 @@ class LimbGoals:
         hips = hips / np.maximum(np.linalg.norm(hips, axis=-1, keepdims=True), 1e-9)
         body, foot = np.arctan2(-hips[:, 2], hips[:, 0]), 2 * np.arctan2(turned[:, 1], turned[:, 3])
         aside = (foot - body + np.pi) % (2 * np.pi) - np.pi
-        heading = body + np.sign(aside) * ASIDE * eased(np.abs(aside) / ASIDE, np.full(len(aside), 0.6))
+        heading = body + np.sign(aside) * ASIDE * ease_reach(np.abs(aside) / ASIDE, np.full(len(aside), 0.6))
         flat = np.stack([np.cos(heading), 0 * heading, -np.sin(heading)], -1)
         tilt = 1 - 2 * (turned[:, 0] ** 2 + turned[:, 2] ** 2)  # of the sole: 1 flat, 0 upright
         high = np.abs(self.from_places[:, above, 1] - self.from_ankle) / self.source.leg
-        planted = (faded((1 - tilt) / UPTURNED) * faded(high / LIFTED))[:, None]
+        planted = (fade_above_half((1 - tilt) / UPTURNED) * fade_above_half(high / LIFTED))[:, None]
         out = planted * flat + (1 - planted) * hips * [1, 0, 1]  # an ankle keeps its height
         place = self.placed(self.from_places[:, above])
         return np.asarray(place + np.float32(wide) * out.astype(np.float32))
@@ -121,7 +123,7 @@ class LimbGoals:
         arm = [f"{side}_{part}" for part in ARM]
         scale, sign = self.target.length(*arm) / self.source.length(*arm), 1 if side == "left" else -1
         away = self.from_places[:, hand] - self.from_places[:, upper]
-        level = rotation.rotate(self.turned(self.chest), np.array([1.0, 0, 0])) * [1, 0, 1]
+        level = rotation.rotate_vectors(self.turned(self.chest), np.array([1.0, 0, 0])) * [1, 0, 1]
         length = np.linalg.norm(level, axis=-1, keepdims=True)
         level = level / np.maximum(length, 0.3)
         from_half, to_half = self.source.half_shoulders, self.target.half_shoulders
@@ -132,7 +134,7 @@ class LimbGoals:
         # As far inwards as the arm is long enough for: a hand that cannot come to the middle stays in front.
         length = self.target.length(*arm)
         free = np.maximum(np.linalg.norm(away, axis=-1) / length, STRAIGHT)
-        reach = eased(np.linalg.norm(away + inwards, axis=-1) / length, free) * length
+        reach = ease_reach(np.linalg.norm(away + inwards, axis=-1) / length, free) * length
         room = reach**2 - np.einsum("fi,fi->f", away, away)
         along, square = (
             np.einsum("fi,fi->f", away, inwards),

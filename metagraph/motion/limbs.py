@@ -24,30 +24,30 @@ def bent(
     about the limb are reckoned, by the shortest way, so that they are the same there and back. source: places
     of the limb that is followed, each `[F, 3]`. pole: `[F, 3]` where a straight limb bends to.
     """
-    goal = within(goal, abs(one - two) + 1e-3 * (one + two), one + two)
+    goal = clamp_to_reach(goal, abs(one - two) + 1e-3 * (one + two), one + two)
     far = np.linalg.norm(goal, axis=-1, keepdims=True)
     ahead = goal / far
     root, middle, end = (p.astype(np.float64) for p in source)
-    way, knee = unit(end - root), unit(middle - root)
+    way, knee = unit_directions(end - root), unit_directions(middle - root)
     aside = knee - way * np.einsum("fi,fi->f", knee, way)[:, None]
-    aside = rotation.rotate(rotation.conjugate(rotation.between(start, way)), aside)
-    aside = rotation.rotate(rotation.between(start, ahead), aside)
+    aside = rotation.rotate_vectors(rotation.conjugate(rotation.rotation_between(start, way)), aside)
+    aside = rotation.rotate_vectors(rotation.rotation_between(start, ahead), aside)
     pole = pole - ahead * np.einsum("fi,fi->f", pole, ahead)[:, None]
     along = (one**2 + far**2 - two**2) / (2 * far)
     out = np.sqrt(np.maximum(0, one**2 - along**2))
     # Where it bends more than the source, a hardly bent source's side is no guide.
     size = np.linalg.norm(aside, axis=-1, keepdims=True)
     more = np.clip((out / one - size) / STRAIGHT, 0, 1)
-    aside = unit(aside + np.maximum(0, STRAIGHT - size) * more * pole)
+    aside = unit_directions(aside + np.maximum(0, STRAIGHT - size) * more * pole)
     return ahead * along + aside * out, goal
 
 
-def unit(v: Array) -> Array:
+def unit_directions(v: Array) -> Array:
     """Return directions `[..., 3]`."""
     return np.asarray(v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-9))
 
 
-def eased(reach: Array, free: Array) -> Array:
+def ease_reach(reach: Array, free: Array) -> Array:
     """Return `reach [F]`, of a limb's length, slowed down from `free` on so that it never quite gets to 1: no
     elbow snaps straight.
     """
@@ -55,13 +55,13 @@ def eased(reach: Array, free: Array) -> Array:
     return np.where(reach > free, free + left * (1 - np.exp(-np.maximum(0, reach - free) / left)), reach)
 
 
-def faded(amount: Array) -> Array:
+def fade_above_half(amount: Array) -> Array:
     """Return 1 for `amount` up to 0.5, 0 from 1 on, smoothly less between."""
     x = np.clip(2 - 2 * amount, 0, 1)
     return np.asarray(x * x * (3 - 2 * x))
 
 
-def within(goal: Array, least: float, most: float) -> Array:
+def clamp_to_reach(goal: Array, least: float, most: float) -> Array:
     """Return `[F, 3]` moved into reach sideways, so that the height stays."""
     goal = goal.copy()
     goal[:, 1] = np.clip(goal[:, 1], -most, most)

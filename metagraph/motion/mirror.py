@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.motion.joint_names import HELPERS, take_apart
+from metagraph.motion.joint_names import HELPERS, split_joint_name
 from metagraph.motion.roles import find_roles, joint_sides
 from metagraph.motion.skeleton import Skeleton
 
@@ -76,7 +76,7 @@ class _Pairing:
     def __init__(self, skeleton: Skeleton, roles: Mapping[str, int]) -> None:
         self.skeleton = skeleton
         self.roles = roles
-        self.words = [take_apart(name) for name in skeleton.names]
+        self.words = [split_joint_name(name) for name in skeleton.names]
         self.twins = [-1] * len(skeleton)
 
     def _join(self, a: int, b: int) -> None:
@@ -172,9 +172,9 @@ def mirror(clip: Clip, pairs: Sequence[int]) -> Clip:
     # What a joint is shifted by goes through model space, so that both sides may have different axes and
     # lengths.
     shift = local_t - rest.translations
-    shift[:, inner] = rotation.rotate(model_r[:, parents[inner]], shift[:, inner])
+    shift[:, inner] = rotation.rotate_vectors(model_r[:, parents[inner]], shift[:, inner])
     shift = _reflect(shift, lateral, 0.0)[:, twins]
-    shift[:, inner] = rotation.rotate(rotation.conjugate(turned[:, parents[inner]]), shift[:, inner])
+    shift[:, inner] = rotation.rotate_vectors(rotation.conjugate(turned[:, parents[inner]]), shift[:, inner])
     translated = sorted({0, *(int(twins[j]) for j in clip.translated)})
     order = _face_order(clip.morphs)
     return replace(
@@ -222,7 +222,7 @@ def _checked(clip: Clip, pairs: Sequence[int]) -> Array:
     skewed = rotation.angle_between(_held(skeleton, positions, twins, lateral), rotation.IDENTITY)
     for j, name in enumerate(names):
         if alone[j] or HELPERS & set(
-            take_apart(name).words
+            split_joint_name(name).words
         ):  # where an animator keeps a handle says nothing of the body
             continue
         if off[j] > UNEVEN * skeleton.height:
@@ -253,13 +253,15 @@ def _held(skeleton: Skeleton, positions: Array, twins: Array, lateral: Array) ->
     np.add.at(children, skeleton.parents[skeleton.parents >= 0], positions[skeleton.parents >= 0])
     bone = children / np.maximum(count, 1)[:, None] - positions
     wanted = _reflect(bone, lateral, 0.0)[twins]
-    out = rotation.identity((len(skeleton),))
+    out = rotation.identity_rotations((len(skeleton),))
     for j in range(len(skeleton)):
         if twins[j] == j:
             continue
         out[j] = out[skeleton.parents[j]] if skeleton.parents[j] >= 0 else rotation.IDENTITY
         if count[j] and count[twins[j]] and min(np.linalg.norm(bone[j]), np.linalg.norm(wanted[j])) > 1e-3:
-            out[j] = rotation.multiply(rotation.between(rotation.rotate(out[j], bone[j]), wanted[j]), out[j])
+            out[j] = rotation.multiply(
+                rotation.rotation_between(rotation.rotate_vectors(out[j], bone[j]), wanted[j]), out[j]
+            )
     return out
 
 

@@ -23,7 +23,7 @@ TRAVELS = 0.12
 PARTS: tuple[Moved, ...] = ("place", *TURNS)
 
 
-def moved(clip: Clip) -> tuple[Moved, ...]:
+def find_moved_parts(clip: Clip) -> tuple[Moved, ...]:
     """Return the parts that a clip moves, "place" first where it travels; nothing for one that stands still.
 
     A joint moves with its part where it turns farther against its parent, from its mean pose, than `TURNS`.

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from metagraph.motion import rotation
 from metagraph.motion.joint_map import SIDES
-from metagraph.motion.limbs import eased, faded, unit
-from metagraph.motion.standing import Figure
+from metagraph.motion.limbs import ease_reach, fade_above_half, unit_directions
+from metagraph.motion.standing import StandingFigure
 
 Array = NDArray[Any]
 Points = Mapping[str, Array]
@@ -48,12 +48,12 @@ ALONG = (0.0, 0.5, 0.85)  # of the hand, from wrist to fingertip: what touches
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
+class ContactBody:
     """What of a figure its hands can meet. arm: length. radius: part -> metres. tips, skull: from wrist and
     head, `[3]` in the standing pose.
     """
 
-    figure: Figure
+    figure: StandingFigure
     arm: float
     radius: Mapping[str, float]
     tips: Mapping[str, Array]
@@ -66,7 +66,7 @@ class Body:
         def turned(role: str, v: Array) -> Array:
             joint = roles[role]
             turn = rotation.multiply(turns[:, joint], rotation.conjugate(self.figure.rotations[joint]))
-            return rotation.rotate(turn, v)
+            return rotation.rotate_vectors(turn, v)
 
         names = ("upper_arm", "lower_arm", "hand", "upper_leg", "lower_leg")
         out = {f"{s}_{n}": places[:, roles[f"{s}_{n}"]].astype(float) for s in SIDES for n in names}
@@ -77,7 +77,7 @@ class Body:
         return out
 
 
-def body_of(figure: Figure) -> Body:
+def body_of(figure: StandingFigure) -> ContactBody:
     """Return the body of a figure as it stands."""
     skeleton, roles = figure.skeleton, figure.roles
     tall = max(1e-3, float(np.ptp(figure.positions[:, 1])))
@@ -92,7 +92,7 @@ def body_of(figure: Figure) -> Body:
         ends = [figure.positions[j] - hand for j in skeleton.descendants(roles[f"{side}_hand"])]
         tip = max(ends, key=lambda v: float(np.linalg.norm(v)))
         if not 0.1 * arm < np.linalg.norm(tip) < 0.6 * arm:  # none, or a thing held
-            tip = HAND * arm * unit(hand - figure.at(f"{side}_lower_arm"))
+            tip = HAND * arm * unit_directions(hand - figure.at(f"{side}_lower_arm"))
         tips[side] = tip
     above = [figure.positions[j, 1] - figure.at("head")[1] for j in skeleton.descendants(roles["head"])]
     size = float(np.clip(max(above), SKULL * tall, 2 * SKULL * tall))
@@ -100,7 +100,7 @@ def body_of(figure: Figure) -> Body:
     skull = np.array([0.0, size / 2, 0])
     if {"left_eye", "right_eye"} <= roles.keys():  # rigs put the head's joint anywhere, but not its eyes
         skull = figure.middle("eye") - figure.at("head") - [0, 0, EYES * tall]
-    return Body(figure, figure.arm, radius, tips, skull)
+    return ContactBody(figure, figure.arm, radius, tips, skull)
 
 
 def _line(part: str, p: Points) -> tuple[Array, Array]:
@@ -120,7 +120,7 @@ def _line(part: str, p: Points) -> tuple[Array, Array]:
 
 
 def _across(p: Points) -> Array:
-    return unit(p["left_upper_arm"] - p["right_upper_arm"])
+    return unit_directions(p["left_upper_arm"] - p["right_upper_arm"])
 
 
 def _touching(side: str, p: Points) -> list[Array]:
@@ -148,7 +148,7 @@ class OwnContact:
     them.
     """
 
-    def __init__(self, source: Figure, target: Figure, turns: Array, places: Array) -> None:
+    def __init__(self, source: StandingFigure, target: StandingFigure, turns: Array, places: Array) -> None:
         self.source, self.target = body_of(source), body_of(target)
         self.points = self.source.points(turns, places)
         self.near: dict[str, Array] = {}
@@ -164,7 +164,7 @@ class OwnContact:
             for part in ("head", "trunk", "left_thigh", "right_thigh", *arms):
                 for n, point in enumerate(_touching(side, self.points)):
                     share, beside, gap = self._beside(part, point)
-                    near = faded(np.abs(gap) / (NEAR * self.source.arm))
+                    near = fade_above_half(np.abs(gap) / (NEAR * self.source.arm))
                     if part == "trunk" or part.endswith("_thigh"):
                         near = near * (1 - hanging)
                     if near.any():
@@ -180,7 +180,7 @@ class OwnContact:
         down = np.degrees(np.arccos(np.clip(-arm[:, 1] / np.maximum(far, 1e-9), -1, 1)))
         least, most = STRAIGHT
         return np.asarray(
-            faded(down / HANGS) * np.clip((far / self.source.arm - least) / (most - least), 0, 1)
+            fade_above_half(down / HANGS) * np.clip((far / self.source.arm - least) / (most - least), 0, 1)
         )
 
     def _beside(self, part: str, point: Array) -> tuple[Array, Array, Array]:
@@ -213,7 +213,9 @@ class OwnContact:
             )
         scale = self.target.radius[place.part] / self.source.radius[place.part]
         if place.part != "head":
-            beside = rotation.rotate(rotation.between(ours[1] - ours[0], theirs[1] - theirs[0]), beside)
+            beside = rotation.rotate_vectors(
+                rotation.rotation_between(ours[1] - ours[0], theirs[1] - theirs[0]), beside
+            )
         return np.asarray(theirs[0] + place.share[:, None] * (theirs[1] - theirs[0]) + scale * beside)
 
     def shift(self, side: str, base: Points, now: Points, before: Array) -> tuple[Array, Array]:
@@ -227,7 +229,9 @@ class OwnContact:
         for place in self.places[side]:
             away = self.wanted(place, now) - hand[place.point]
             far = np.linalg.norm(wrist + away, axis=-1) / self.target.arm
-            can = faded((far - 1) / BEYOND) * faded(np.linalg.norm(away, axis=-1) / (ODD * self.target.arm))
+            can = fade_above_half((far - 1) / BEYOND) * fade_above_half(
+                np.linalg.norm(away, axis=-1) / (ODD * self.target.arm)
+            )
             if place.part.endswith("_hand"):
                 away = (before + away) / 2
             total += (can * place.weight)[:, None] * away
@@ -272,7 +276,7 @@ def _held(before: Array, goal: Array, arm: float) -> Array:
     """Return a goal from the shoulder, nearer where the arm would be straighter than it was and BENT."""
     far = np.linalg.norm(goal, axis=-1)
     free = np.clip(np.linalg.norm(before, axis=-1) / arm, BENT, 1)
-    return np.asarray(goal * (eased(far / arm, free) * arm / np.maximum(far, 1e-9))[:, None])
+    return np.asarray(goal * (ease_reach(far / arm, free) * arm / np.maximum(far, 1e-9))[:, None])
 
 
 def _lasting(near: Array, fps: float) -> Array:

@@ -33,7 +33,7 @@ from metagraph.motion.limb_goals import LimbGoals
 from metagraph.motion.limbs import bent
 from metagraph.motion.own_contact import OwnContact, meet
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.motion.standing import Figure, standing_pose, stands
+from metagraph.motion.standing import StandingFigure, is_standing, standing_pose
 
 Array = NDArray[Any]
 
@@ -59,13 +59,15 @@ def retarget(
     roles = _checked(clip, target, joint_map)
     ours = {role: clip.skeleton.index(pair.source) for role, pair in roles.items()}
     theirs = {role: target.index(pair.target) for role, pair in roles.items()}
-    if target_pose is None and not stands(target, theirs):
+    if target_pose is None and not is_standing(target, theirs):
         raise RetargetError(
             f"'{clip.name}': the rest pose of the project's skeleton does not stand; give a pose of it that "
             "does"
         )
-    source = Figure(clip.skeleton, ours, standing_pose(clip, ours) if source_pose is None else source_pose)
-    figure = Figure(target, theirs, target.rest if target_pose is None else target_pose)
+    source = StandingFigure(
+        clip.skeleton, ours, standing_pose(clip, ours) if source_pose is None else source_pose
+    )
+    figure = StandingFigure(target, theirs, target.rest if target_pose is None else target_pose)
     work = _Work(clip, source, figure, joint_map, roles)
     work.turn_joints()
     work.move_hips()
@@ -103,8 +105,8 @@ class _Work(LimbGoals):
     def __init__(
         self,
         clip: Clip,
-        source: Figure,
-        target: Figure,
+        source: StandingFigure,
+        target: StandingFigure,
         joint_map: JointMap,
         roles: Mapping[str, JointPair],
     ) -> None:
@@ -117,7 +119,7 @@ class _Work(LimbGoals):
         back = np.where(inner[:, None], rotation.conjugate(target.rotations[above]), rotation.IDENTITY)
         self.local_r = rotation.multiply(back, target.rotations).astype(np.float32)
         offset = np.where(inner[:, None], target.positions - target.positions[above], target.positions)
-        offset = rotation.rotate(back, offset).astype(np.float32)
+        offset = rotation.rotate_vectors(back, offset).astype(np.float32)
         self.local_t = np.broadcast_to(offset, (clip.frames, len(above), 3)).copy()
         self.shifted: set[int] = set()
         self.turns = np.empty((clip.frames, len(above), 4), np.float32)
@@ -209,7 +211,7 @@ class _Work(LimbGoals):
                 rotation.conjugate(self.target.rotations[over]), self.source.rotations[above]
             )
             self.shifted.add(b)
-            self.local_t[:, b] += scale * rotation.rotate(turn.astype(np.float32), shift)
+            self.local_t[:, b] += scale * rotation.rotate_vectors(turn.astype(np.float32), shift)
 
     def walk(self) -> None:
         """Forward kinematics: the turns of joints that are not given, and all places."""
@@ -222,7 +224,7 @@ class _Work(LimbGoals):
             above = self.parents[joints]
             free = joints[~self.given[joints]]
             self.turns[:, free] = rotation.multiply(self.turns[:, self.parents[free]], self.local_r[free])
-            self.places[:, joints] = self.places[:, above] + rotation.rotate(
+            self.places[:, joints] = self.places[:, above] + rotation.rotate_vectors(
                 self.turns[:, above], self.local_t[:, joints]
             )
 
@@ -249,7 +251,9 @@ class _Work(LimbGoals):
         goal[:, 1] -= np.minimum(drop, LOWEST * self.target.leg)
         above = int(self.parents[hips])
         if above >= 0:
-            goal = rotation.rotate(rotation.conjugate(self.turns[:, above]), goal - self.places[:, above])
+            goal = rotation.rotate_vectors(
+                rotation.conjugate(self.turns[:, above]), goal - self.places[:, above]
+            )
         self.local_t[:, hips] = goal
         self.walk()
 
@@ -262,9 +266,12 @@ class _Work(LimbGoals):
         root = self.places[:, upper].astype(np.float64)
         knee, tip = self.places[:, lower] - root, self.places[:, end] - root
         one, two = (self.target.length(*pair) for pair in pairwise(names))
-        pole = rotation.rotate(self.turned(names[0]), side)
+        pole = rotation.rotate_vectors(self.turned(names[0]), side)
         new, goal = bent(goal - root, one, two, self.outwards(names[0]), (above[0], above[1], above[2]), pole)
-        first, second = rotation.between(knee, new), rotation.between(tip - knee, goal - new)
+        first, second = (
+            rotation.rotation_between(knee, new),
+            rotation.rotation_between(tip - knee, goal - new),
+        )
         self.turns[:, upper] = rotation.multiply(first, self.turns[:, upper])
         self.turns[:, lower] = rotation.multiply(second, self.turns[:, lower])
         return root + new, root + goal
@@ -307,13 +314,13 @@ class _Work(LimbGoals):
             *np.flatnonzero(self.parents != target.parents),
         }
         joints = sorted(int(j) for j in may)
-        places = rotation.rotate(back, self.places)
+        places = rotation.rotate_vectors(back, self.places)
         moves = places[:, joints]
         for n, joint in enumerate(joints):
             parent = int(target.parents[joint])
             if parent >= 0:
                 turn = rotation.conjugate(rotation.multiply(back, self.turns[:, parent]))
-                moves[:, n] = rotation.rotate(turn, moves[:, n] - places[:, parent])
+                moves[:, n] = rotation.rotate_vectors(turn, moves[:, n] - places[:, parent])
         kept = [
             n
             for n, j in enumerate(joints)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from metagraph.motion.clip import Clip
 from metagraph.motion.contact_hold import MOST as HANDS
-from metagraph.motion.contact_hold import Contact, held
+from metagraph.motion.contact_hold import Contact, hold_hands
 
 Array = NDArray[Any]
 
@@ -159,11 +159,11 @@ def _ramps(retime: Retime, duration: float) -> list[float]:
     return out
 
 
-def retimed(clip: Clip, retime: Retime) -> Clip:
+def apply_retiming(clip: Clip, retime: Retime) -> Clip:
     """Return a clip as a retiming plays it; the same clip where that is as it is."""
     if retime.plain or clip.frames < 2:
         return clip
-    clip = held(clip, retime.contacts)
+    clip = hold_hands(clip, retime.contacts)
     if retime.speed == 1.0 and not retime.holds:
         return clip
     course = Course(retime, clip.duration, clip.fps)

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from metagraph.motion.joint_names import take_apart
+from metagraph.motion.joint_names import split_joint_name
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Skeleton
 
@@ -21,5 +21,5 @@ def rig_controls(skeleton: Skeleton) -> frozenset[int]:
     is called.
     """
     body = {k for joint in find_roles(skeleton).values() for k in skeleton.chain(joint)}
-    named = {j for j, name in enumerate(skeleton.names) if _WORDS & set(take_apart(name).words)}
+    named = {j for j, name in enumerate(skeleton.names) if _WORDS & set(split_joint_name(name).words)}
     return frozenset(named - body)

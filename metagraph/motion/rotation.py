@@ -16,7 +16,7 @@ Numbers = Any  # whatever numpy.asarray takes: arrays, nested sequences, numbers
 IDENTITY: Array = np.array([0.0, 0.0, 0.0, 1.0])
 
 
-def identity(shape: tuple[int, ...] = (), dtype: Any = np.float64) -> Array:
+def identity_rotations(shape: tuple[int, ...] = (), dtype: Any = np.float64) -> Array:
     """Return unit rotations `[*shape, 4]`."""
     out = np.zeros((*shape, 4), dtype)
     out[..., 3] = 1
@@ -52,7 +52,7 @@ def multiply(a: Numbers, b: Numbers) -> Array:
     return out
 
 
-def rotate(q: Numbers, v: Numbers) -> Array:
+def rotate_vectors(q: Numbers, v: Numbers) -> Array:
     """Rotate vectors `v [..., 3]` by `q [..., 4]`."""
     q, v = np.asarray(q), np.asarray(v)
     x, y, z, w = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
@@ -157,7 +157,7 @@ def exp(v: Numbers) -> Array:
     return np.concatenate([v * factor, np.cos(angle / 2)], -1)
 
 
-def power(q: Numbers, weight: Numbers) -> Array:
+def scale_rotation(q: Numbers, weight: Numbers) -> Array:
     """Return `q [..., 4]` turned by `weight [...]` times its angle, the short way; 0 gives the identity, 1
     gives `q`.
     """
@@ -180,7 +180,7 @@ def nlerp(a: Numbers, b: Numbers, weight: Numbers) -> Array:
 def slerp(a: Numbers, b: Numbers, weight: Numbers) -> Array:
     """Blend `a` to `b [..., 4]` by `weight [...]` in 0..1 at constant speed along the shorter arc."""
     a, b = np.asarray(a), np.asarray(b)
-    return multiply(a, power(multiply(conjugate(a), b), weight))
+    return multiply(a, scale_rotation(multiply(conjugate(a), b), weight))
 
 
 def angle_between(a: Numbers, b: Numbers) -> Array:
@@ -199,7 +199,7 @@ def continuous(q: Numbers) -> Array:
     return np.asarray(np.where(odd[..., None], -q, q))
 
 
-def between(a: Numbers, b: Numbers) -> Array:
+def rotation_between(a: Numbers, b: Numbers) -> Array:
     """Return the shortest rotation `[..., 4]` taking direction `a [..., 3]` to direction `b [..., 3]`."""
     a, b = np.asarray(a, float), np.asarray(b, float)
     a = a / np.maximum(np.linalg.norm(a, axis=-1, keepdims=True), 1e-12)

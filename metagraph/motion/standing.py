@@ -26,7 +26,7 @@ BACKWARD = np.radians(
 )  # a neck or spine turned further than this in every frame does not start from its rest pose
 
 
-def stands(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> bool:
+def is_standing(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> bool:
     """Whether the rest pose is a standing figure. In some files all bones lie along one axis, and only the
     motion stands up.
     """
@@ -52,7 +52,7 @@ def standing_pose(clip: Clip, roles: Mapping[str, int] | None = None) -> Pose:
     roles = find_roles(skeleton) if roles is None else roles
     if not all(r in roles for r in NEEDED):
         return skeleton.rest
-    if stands(skeleton, roles):
+    if is_standing(skeleton, roles):
         trunk = [roles[r] for r in TRUNK[1:] if r in roles]
         turned = rotation.angle_between(
             clip.rotations[:, trunk], skeleton.rest_rotations[trunk].astype(np.float32)
@@ -87,7 +87,7 @@ def _faced(skeleton: Skeleton, joints: Sequence[int]) -> Pose:
     return Pose(local, skeleton.rest_translations)
 
 
-class Figure:
+class StandingFigure:
     """A skeleton in its standing pose, in the character's axes, by role. `ankle` is the ankles' height when
     it stands on the ground.
     """
@@ -101,13 +101,13 @@ class Figure:
         limbs = [roles[f"{s}_{part}"] for s in SIDES for part in (*ARM, *LEG)]
         self.natural = bool(
             (rotation.angle_between(pose.rotations, skeleton.rest_rotations)[limbs] < 1e-3).all()
-        ) and stands(skeleton, roles)
+        ) and is_standing(skeleton, roles)
         # Axes are those of the file, turned by quarters: a figure that looks a little aside does look aside.
         quarter = np.round(np.arctan2(across[2], across[0]) / (np.pi / 2)) * np.pi / 2
         self.turn = rotation.from_axis_angle(np.array([0, 1.0, 0]), quarter)
         self.rotations, self.positions = (
             rotation.multiply(self.turn, rotations),
-            rotation.rotate(self.turn, positions),
+            rotation.rotate_vectors(self.turn, positions),
         )
         self.leg = float(
             np.mean([self.length(f"{s}_upper_leg", f"{s}_lower_leg", f"{s}_foot") for s in SIDES])
@@ -146,7 +146,7 @@ def _turn_of(first: Array, second: Array) -> Array:
     return rotation.from_matrix(np.stack([x, y, np.cross(x, y)], -1))
 
 
-def aligned(source: Figure, target: Figure, roles: Sequence[str]) -> dict[str, Array]:
+def align_standing(source: StandingFigure, target: StandingFigure, roles: Sequence[str]) -> dict[str, Array]:
     """Return for each role the turn `[4]` that brings the target's standing pose to the source's."""
     level = rotation.IDENTITY
     if not (source.natural and target.natural):
@@ -154,7 +154,7 @@ def aligned(source: Figure, target: Figure, roles: Sequence[str]) -> dict[str, A
     known = set(roles)
     out: dict[str, Array] = dict.fromkeys(roles, level)
 
-    def bone(figure: Figure, role: str, *tips: str) -> Array:
+    def bone(figure: StandingFigure, role: str, *tips: str) -> Array:
         return np.asarray(np.mean([figure.at(t) for t in tips], 0) - figure.at(role))
 
     def follow(role: str, before: Array, *tips: str) -> Array:
@@ -163,7 +163,9 @@ def aligned(source: Figure, target: Figure, roles: Sequence[str]) -> dict[str, A
         if tips:
             wanted, own = bone(source, role, *tips), bone(target, role, *tips)
             if min(np.linalg.norm(wanted), np.linalg.norm(own)) > 1e-4:
-                out[role] = rotation.multiply(rotation.between(rotation.rotate(before, own), wanted), before)
+                out[role] = rotation.multiply(
+                    rotation.rotation_between(rotation.rotate_vectors(before, own), wanted), before
+                )
         return out[role]
 
     for side in SIDES:
@@ -194,7 +196,7 @@ def aligned(source: Figure, target: Figure, roles: Sequence[str]) -> dict[str, A
     return out
 
 
-def _heading(source: Figure, target: Figure, side: str) -> Array:
+def _heading(source: StandingFigure, target: StandingFigure, side: str) -> Array:
     """Return the turn about the vertical from where the target's foot points to where the source's does;
     soles stay flat.
     """

@@ -25,7 +25,7 @@ def t_pose(skeleton: Skeleton, roles: Mapping[str, int], left: NDArray[np.float6
                 if joint is None or end is None:
                     continue
                 turned, at = skeleton.globals(Pose(rotations, translations))
-                swing = rotation.between(at[end] - at[joint], towards)
+                swing = rotation.rotation_between(at[end] - at[joint], towards)
                 parent = int(skeleton.parents[joint])
                 above = turned[parent] if parent >= 0 else rotation.IDENTITY
                 made = rotation.multiply(swing, turned[joint])

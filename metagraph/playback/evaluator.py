@@ -18,7 +18,7 @@ from metagraph.playback.life.evaluate import LifeStage, Playing
 from metagraph.playback.plan import Plan
 from metagraph.playback.posing.composer import playable
 from metagraph.playback.posing.contacts import ContactStage
-from metagraph.playback.posing.layers import LayersStage, cue_weight, loop_seconds
+from metagraph.playback.posing.layers import LayersStage, loop_seconds, weight_of_cue
 from metagraph.playback.posing.overlay import Overlay, lay_over
 from metagraph.playback.posing.rigs import Rigs, rigs_of
 from metagraph.playback.posing.weight import WeightStage
@@ -130,7 +130,7 @@ class Evaluator:
             weight = 0.0
             if cue is not None:
                 playing.append((cue.action.tags, cue.start, cue.end))
-                weight = float(cue_weight(cue, np.array([seconds]))[0])
+                weight = float(weight_of_cue(cue, np.array([seconds]))[0])
                 shares.append((cue.action, float(cue.clip_seconds(seconds)), weight))
             if rest is not None:
                 elapsed = np.array([seconds - rest.start])

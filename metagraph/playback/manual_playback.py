@@ -29,7 +29,14 @@ from metagraph.playback.life.track import Track
 from metagraph.playback.plan import Cue, LayerPlan, Plan, Report
 from metagraph.playback.planning.choice import pick
 from metagraph.playback.posing.composer import Ground, Reach, playable
-from metagraph.playback.posing.layers import Sample, ease, keep_to, mix, no_offsets, sample
+from metagraph.playback.posing.layers import (
+    Sample,
+    crossfade,
+    ease_blend,
+    keep_to,
+    sample_offsets,
+    zero_offsets,
+)
 from metagraph.playback.posing.rigs import rigs_of
 
 Array = NDArray[Any]
@@ -85,7 +92,7 @@ class ManualLayer:
             return []
         if turn.blend <= 0 or turn is self.played[0]:
             return [(turn, 1.0)]
-        share = float(ease(np.array((seconds - turn.start) / turn.blend)))
+        share = float(ease_blend(np.array((seconds - turn.start) / turn.blend)))
         return [(turn, share), (self.played[self.played.index(turn) - 1], 1 - share)][: 2 if share < 1 else 1]
 
 
@@ -247,7 +254,7 @@ def route(manual: Manual, state: str, trigger: str) -> tuple[Link, ...] | None:
 # --- parts of a machine, looked at alone
 
 
-def state_alone(project: Project, ident: str) -> ManualPlan:
+def play_state_alone(project: Project, ident: str) -> ManualPlan:
     """Return a plan of one state as it plays in its layer, nothing else moving; it ends with the part that
     plays. Raises KeyError.
     """
@@ -353,8 +360,10 @@ def _layer(plan: ManualLayer, project: Project, ground: Ground, reach: Reach, ti
         fading = times[here] < turn.start + turn.blend
         if number > 0 and fading.any():
             before = _offsets(plan.played[number - 1], project, ground, reach, times[here])
-            shown = mix(
-                before, shown, np.where(fading, ease((times[here] - turn.start) / max(turn.blend, 1e-9)), 1.0)
+            shown = crossfade(
+                before,
+                shown,
+                np.where(fading, ease_blend((times[here] - turn.start) / max(turn.blend, 1e-9)), 1.0),
             )
         rotations[here], translations[here] = shown
     return rotations, translations
@@ -377,10 +386,10 @@ def _offsets(turn: Played, project: Project, ground: Ground, reach: Reach, times
     """
     motion = playable(project, turn.action)
     if motion is None:
-        return no_offsets(len(times), len(reach.joints))
-    shown = sample(ground, reach, motion, clip_seconds(project, turn, times))
-    mask = anatomy.mask(project, turn.action)
+        return zero_offsets(len(times), len(reach.joints))
+    shown = sample_offsets(ground, reach, motion, clip_seconds(project, turn, times))
+    mask = anatomy.action_mask(project, turn.action)
     if mask is not None:
-        none = rotation.identity(shown[0].shape[:-1], np.float32), np.zeros_like(shown[1])
+        none = rotation.identity_rotations(shown[0].shape[:-1], np.float32), np.zeros_like(shown[1])
         keep_to(shown, none, mask[reach.joints])
     return shown

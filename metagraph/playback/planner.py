@@ -17,8 +17,8 @@ from metagraph.playback.plan import LayerPlan, MetaAction, MetaRequest, Plan, Re
 from metagraph.playback.planning import markov
 from metagraph.playback.planning.layer_planning import draft
 from metagraph.playback.planning.mood import Moods, mood_at, stirs
-from metagraph.playback.planning.plan_head import head_of, keep_head, shared
-from metagraph.playback.planning.strand import joined
+from metagraph.playback.planning.plan_head import find_plan_head, keep_head, share_layer
+from metagraph.playback.planning.strand import join_sequence
 
 
 @dataclass(frozen=True)
@@ -50,10 +50,10 @@ def make_plan(
     stays still.
     """
     empty = Plan(project.settings.seed if seed is None else seed, 0.0)
-    return extend(project, empty, 0.0, requests, end, stances, idle)
+    return extend_plan(project, empty, 0.0, requests, end, stances, idle)
 
 
-def extend(
+def extend_plan(
     project: Project,
     plan: Plan,
     now: float,
@@ -74,7 +74,7 @@ def extend(
     layers: dict[Layer, LayerPlan] = {}
     reports: list[Report] = []
     moods = moods_of(project.life, plan.track)
-    head = head_of(project, plan, now, again)
+    head = find_plan_head(project, plan, now, again)
     told = plan.reports if head is None else plan.reports[head.reports :]
     for layer in LAYERS:
         old = plan.layers[layer]
@@ -90,12 +90,14 @@ def extend(
         )  # fmt: skip
         metas = [m for m in drafted.placed if not m.written or _performed(chain, plan, layer, m, moods)]
         made = drafted.performed(metas, end)
-        layers[layer] = shared(made) if head is None else head.whole(old, made)
+        layers[layer] = share_layer(made) if head is None else head.whole(old, made)
         reports += drafted.reports
     kept = tuple(r for r in plan.requests if r.id not in again) if again else plan.requests
     near = plan.life if head is None else plan.life.since(head.end)
     grown = schedule(project.life, plan.track, project.voices, plan.seed, end, near, now)
-    every = joined(plan.reports, 0 if head is None else head.reports, sorted(reports, key=lambda r: r.at))
+    every = join_sequence(
+        plan.reports, 0 if head is None else head.reports, sorted(reports, key=lambda r: r.at)
+    )
     life = with_past(plan.life, near, grown)
     out = Plan(plan.seed, end, layers, every, kept + fresh, plan.track, life)
     if head is not None:

@@ -32,7 +32,7 @@ def morphs_at(
     return _evaluator(plan, project).morphs_at(seconds, alive, composed)
 
 
-def layered(plan: Plan, project: Project, times: NDArray[Any]) -> Pose:
+def compose_layers(plan: Plan, project: Project, times: NDArray[Any]) -> Pose:
     """Return what the layers alone compose at `times [N]`, without life, weight and contacts. Raises
     ValueError as `pose_at`.
     """

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.speech.pitch import Pitch, stretches
+from metagraph.speech.pitch import Pitch, list_runs
 from metagraph.speech.sound import HOP, HeardSound
 
 Array = NDArray[Any]
@@ -31,7 +31,7 @@ APART = 10.0  # dB between the two channels' levels, one's own speech and the pa
 
 
 @dataclass(frozen=True, slots=True)
-class Stretch:
+class SpokenStretch:
     """Something said without a pause. start, end: seconds."""
 
     start: float
@@ -40,7 +40,7 @@ class Stretch:
 
 def activity(
     heard: HeardSound, pitch: Pitch | None = None, partner: HeardSound | None = None
-) -> tuple[Stretch, ...]:
+) -> tuple[SpokenStretch, ...]:
     """Return when somebody speaks, by start, pauses between. pitch: of the same channel, to leave out what is
     not voiced. partner: what the other's microphone hears, of the same conversation, to leave out what only
     crosses over.
@@ -48,9 +48,9 @@ def activity(
     return tuple(_spoken(heard, pitch, partner))
 
 
-def _spoken(heard: HeardSound, pitch: Pitch | None, partner: HeardSound | None) -> list[Stretch]:
+def _spoken(heard: HeardSound, pitch: Pitch | None, partner: HeardSound | None) -> list[SpokenStretch]:
     level = heard.level
-    own = np.ones(len(level), bool) if partner is None else not_crossed(heard, partner)
+    own = np.ones(len(level), bool) if partner is None else is_not_crosstalk(heard, partner)
     if not own.any():
         return []
     floor, top = float(np.percentile(level, 10)), float(np.percentile(level[own], 99.5))
@@ -59,7 +59,7 @@ def _spoken(heard: HeardSound, pitch: Pitch | None, partner: HeardSound | None) 
     begin = max(floor + ABOVE * (top - floor), floor + 0.6 * LEAST, top - BELOW)
     loud = (level > begin) & own
     held = (level > begin - AGAIN) & own
-    runs = [(a, b) for a, b in stretches(held) if loud[a:b].any()]
+    runs = [(a, b) for a, b in list_runs(held) if loud[a:b].any()]
     joined: list[tuple[int, int]] = []
     for a, b in runs:
         if joined and (a - joined[-1][1]) * HOP < PAUSE:
@@ -71,7 +71,7 @@ def _spoken(heard: HeardSound, pitch: Pitch | None, partner: HeardSound | None) 
         if (b - a) * HOP < SHORTEST or (pitch is not None and not _voiced(pitch, a, b)):
             continue
         out.append(
-            Stretch(
+            SpokenStretch(
                 round(float(heard.times[a]), 3),
                 round(min(float(heard.times[b - 1]) + HOP, heard.duration), 3),
             )
@@ -104,7 +104,7 @@ def crosstalk(heard: HeardSound, partner: HeardSound) -> float:
     return low if high - low > APART else float(np.median(apart))
 
 
-def not_crossed(heard: HeardSound, partner: HeardSound) -> Array:
+def is_not_crosstalk(heard: HeardSound, partner: HeardSound) -> Array:
     """Return which moments `[K]` are louder than what comes over from the partner."""
     bleed = crosstalk(heard, partner)
     count = min(len(heard.level), len(partner.level))

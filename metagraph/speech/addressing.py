@@ -21,7 +21,7 @@ from itertools import groupby, pairwise
 from typing import Literal
 
 from metagraph.graph.conversation.model import EVERYBODY, Conversation, Segment, others_of
-from metagraph.graph.vocabulary import tokens
+from metagraph.graph.vocabulary import split_tokens
 
 TURN = 0.6  # seconds of silence that part two turns of one speaker
 ANSWER = 1.5  # seconds after a turn within which who starts answers it
@@ -31,7 +31,7 @@ Part = Literal["speaks", "addressed", "aside", "idle"]
 
 
 @dataclass(frozen=True, slots=True)
-class Turn:
+class AddressedTurn:
     """What a side says without a pause, of more than responses. start, end: seconds. to: the side it is said
     to, `EVERYBODY` to all. chosen: whether it says so itself, and is not only inferred. text: its words.
     """
@@ -54,10 +54,10 @@ class Role:
     end: float
     part: Part
     whom: int | None = None
-    turn: Turn | None = None
+    turn: AddressedTurn | None = None
 
 
-def spans(segments: Iterable[Segment]) -> list[tuple[float, float]]:
+def speaking_spans(segments: Iterable[Segment]) -> list[tuple[float, float]]:
     """Return when someone speaks, with pauses shorter than `TURN` closed."""
     out: list[tuple[float, float]] = []
     for s in segments:
@@ -68,7 +68,7 @@ def spans(segments: Iterable[Segment]) -> list[tuple[float, float]]:
     return out
 
 
-def turns_of(conversation: Conversation) -> tuple[Turn, ...]:
+def turns_of(conversation: Conversation) -> tuple[AddressedTurn, ...]:
     """Return the turns of all sides, by start, each with whom it is said to."""
     found = sorted(
         (t for side in range(len(conversation.sides)) for t in _turns(conversation, side)),
@@ -77,7 +77,7 @@ def turns_of(conversation: Conversation) -> tuple[Turn, ...]:
     if len(conversation.sides) == 2:
         return tuple(replace(t, to=1 - t.side) for t in found)
     groups = [list(some) for _, some in groupby(found, key=lambda t: t.side)]
-    out: list[Turn] = []
+    out: list[AddressedTurn] = []
     for n, group in enumerate(groups):
         before = out[-1] if out else None
         after = groups[n + 1][0] if n + 1 < len(groups) else None
@@ -86,7 +86,9 @@ def turns_of(conversation: Conversation) -> tuple[Turn, ...]:
     return tuple(out)
 
 
-def _inferred(group: Sequence[Turn], before: Turn | None, after: Turn | None) -> int:
+def _inferred(
+    group: Sequence[AddressedTurn], before: AddressedTurn | None, after: AddressedTurn | None
+) -> int:
     """Return whom turns of one side are said to that do not tell, by who speaks before and after."""
     first, last = group[0], group[-1]
     told = next((t.to for t in reversed(group) if t.chosen), None)
@@ -100,11 +102,11 @@ def _inferred(group: Sequence[Turn], before: Turn | None, after: Turn | None) ->
     return before.side if recent and before is not None else EVERYBODY
 
 
-def _turns(conversation: Conversation, side: int) -> Iterable[Turn]:
+def _turns(conversation: Conversation, side: int) -> Iterable[AddressedTurn]:
     """Yield a side's turns: parted where it says that it speaks to somebody else."""
     segments = conversation.sides[side].segments
-    names = {n: tokens(conversation.sides[n].name) for n in others_of(conversation, side)}
-    ends = iter([end for _, end in spans(segments)])
+    names = {n: split_tokens(conversation.sides[n].name) for n in others_of(conversation, side)}
+    ends = iter([end for _, end in speaking_spans(segments)])
     end = next(ends, 0.0)
     some: list[Segment] = []
     for s in segments:
@@ -116,19 +118,23 @@ def _turns(conversation: Conversation, side: int) -> Iterable[Turn]:
     yield from _parted(side, some, names)
 
 
-def _parted(side: int, segments: Sequence[Segment], names: dict[int, tuple[str, ...]]) -> Iterable[Turn]:
+def _parted(
+    side: int, segments: Sequence[Segment], names: dict[int, tuple[str, ...]]
+) -> Iterable[AddressedTurn]:
     if all(s.kind == "response" for s in segments):
         return
     for given, some in groupby(segments, key=lambda s: s.to):
         own = list(some)
         text = " ".join(s.text for s in own if s.text)
         to = given if given is not None else _called(text, names)
-        yield Turn(side, own[0].start, own[-1].end, EVERYBODY if to is None else to, to is not None, text)
+        yield AddressedTurn(
+            side, own[0].start, own[-1].end, EVERYBODY if to is None else to, to is not None, text
+        )
 
 
 def _called(text: str, names: dict[int, tuple[str, ...]]) -> int | None:
     """Return whose name comes last in a text: the whole, or its first word where no other is called so."""
-    said = tokens(text)
+    said = split_tokens(text)
     found: list[tuple[int, int]] = []
     for n, name in names.items():
         firsts = [other[:1] for m, other in names.items() if m != n]
@@ -138,12 +144,12 @@ def _called(text: str, names: dict[int, tuple[str, ...]]) -> int | None:
     return max(found)[1] if found else None
 
 
-def floor(turns: Iterable[Turn]) -> tuple[tuple[float, float, Turn], ...]:
+def floor(turns: Iterable[AddressedTurn]) -> tuple[tuple[float, float, AddressedTurn], ...]:
     """Return from when to when which of some turns holds the floor: of those at once the one that began
     first. By start; nothing while nobody speaks.
     """
     given = sorted(turns, key=lambda t: (t.start, t.side))
-    out: list[tuple[float, float, Turn]] = []
+    out: list[tuple[float, float, AddressedTurn]] = []
     at = 0.0
     for t in given:
         if t.end > max(at, t.start):
@@ -165,7 +171,7 @@ def roles_of(conversation: Conversation, side: int) -> tuple[Role, ...]:
     for a, b in pairwise(edges):
         if a >= conversation.length:
             break
-        held: list[Turn | None] = [None, None]
+        held: list[AddressedTurn | None] = [None, None]
         for k, part in enumerate((own, theirs)):
             while places[k] < len(part) and part[places[k]][1] <= a:
                 places[k] += 1
@@ -179,7 +185,9 @@ def roles_of(conversation: Conversation, side: int) -> tuple[Role, ...]:
     return tuple(out)
 
 
-def _role(start: float, end: float, side: int, own: Turn | None, other: Turn | None) -> Role:
+def _role(
+    start: float, end: float, side: int, own: AddressedTurn | None, other: AddressedTurn | None
+) -> Role:
     if own is not None:
         return Role(start, end, "speaks", own.to, own)
     if other is None:

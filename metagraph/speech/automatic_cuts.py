@@ -20,7 +20,7 @@ SILENCE = 3.0  # seconds without a word in which all are seen
 
 
 @dataclass(frozen=True, slots=True)
-class Turn:
+class FloorTurn:
     """side: who speaks."""
 
     side: int
@@ -28,27 +28,27 @@ class Turn:
     end: float
 
 
-def turns(conversation: Conversation) -> list[Turn]:
+def list_turns(conversation: Conversation) -> list[FloorTurn]:
     """Return who has the floor, by start: stretches of one side's clauses, joined over short silences,
     without answers in passing.
     """
-    some: list[Turn] = []
+    some: list[FloorTurn] = []
     for n, side in enumerate(conversation.sides):
-        held: list[Turn] = []
+        held: list[FloorTurn] = []
         for s in side.segments:
             if s.kind == "response":
                 continue
             if held and s.start - held[-1].end < JOINED:
-                held[-1] = Turn(n, held[-1].start, s.end)
+                held[-1] = FloorTurn(n, held[-1].start, s.end)
             else:
-                held.append(Turn(n, s.start, s.end))
+                held.append(FloorTurn(n, s.start, s.end))
         some += [t for t in held if t.end - t.start >= BRIEF]
     return sorted(some, key=lambda t: (t.start, t.end))
 
 
 def automatic_cuts(conversation: Conversation) -> tuple[Cut, ...]:
     """Return the cuts, by time; the first at 0."""
-    found = turns(conversation)
+    found = list_turns(conversation)
     cuts = [Cut(at=0.0, shot="two")]
 
     def cut(at: float, shot: Shot, side: int) -> None:

@@ -37,7 +37,7 @@ class Caption:
     side: int = 0
 
 
-def words_in(grid: TextGrid) -> tuple[Word, ...]:
+def read_caption_words(grid: TextGrid) -> tuple[Word, ...]:
     """Return the words of a TextGrid, by start; none where it has no tier of words."""
     tier = next((t for t in grid.tiers if not t.points and _WORDS.search(t.name.casefold())), None)
     some = tier.intervals if tier is not None else ()
@@ -48,7 +48,7 @@ def words_in(grid: TextGrid) -> tuple[Word, ...]:
     )
 
 
-def line_words(line: Line, folder: Path) -> tuple[Word, ...]:
+def describe_line(line: Line, folder: Path) -> tuple[Word, ...]:
     """Return the words of a line whose times are told in its TextGrid; none where they are not. folder: what
     its path begins at.
     """
@@ -63,10 +63,10 @@ def line_words(line: Line, folder: Path) -> tuple[Word, ...]:
 
 @lru_cache(maxsize=1024)
 def _words_of(path: Path, written: int) -> tuple[Word, ...]:
-    return words_in(read_textgrid(path))
+    return read_caption_words(read_textgrid(path))
 
 
-def told_words(speech: Speech, lines: Mapping[str, Sequence[Word]]) -> tuple[Word, ...]:
+def list_timed_words(speech: Speech, lines: Mapping[str, Sequence[Word]]) -> tuple[Word, ...]:
     """Return the words of something said as far as their times are known, in the plan's time. lines: the
     words of lines, from their start.
     """

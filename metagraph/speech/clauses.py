@@ -26,12 +26,12 @@ from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from metagraph.graph.conversation.model import SHORTEST, Segment, Spoken, Word
-from metagraph.graph.vocabulary import Vocabulary, joined, kinds_of_words, tokens
-from metagraph.speech.activity import PAUSE, Stretch, activity
-from metagraph.speech.language_packs import Language, english
+from metagraph.graph.vocabulary import Vocabulary, join_tokens, kinds_of_words, split_tokens
+from metagraph.speech.activity import PAUSE, SpokenStretch, activity
+from metagraph.speech.language_packs import LanguagePack, english_pack
 from metagraph.speech.pitch import Pitch, peaks, smooth
 from metagraph.speech.sound import HeardSound
-from metagraph.speech.stress import CLOSED, parted, stresses
+from metagraph.speech.stress import CLOSED, rate_stresses, split_into_clauses
 
 Array = NDArray[Any]
 
@@ -60,7 +60,7 @@ def segments(
     responses: Collection[str] | None = None,
     hesitations: Collection[str] | None = None,
     partner: HeardSound | None = None,
-    language: Language | None = None,
+    language: LanguagePack | None = None,
 ) -> tuple[Segment, ...]:
     """Return one side's clauses, responses and hesitations, by start, never overlapping.
 
@@ -68,22 +68,22 @@ def segments(
     that is another. responses, hesitations: instead of the language's own lists. language: None for English.
     Without words, `by_sound` tells.
     """
-    words = in_order(words, heard.duration)
+    words = order_words(words, heard.duration)
     if not words:
-        return by_sound(words, pitch, heard, partner)
-    spoken = language if language is not None else english()
+        return segment_by_sound(words, pitch, heard, partner)
+    spoken = language if language is not None else english_pack()
     lists = [
         tuple(own if some is None else some)
         for own, some in ((spoken.responses, responses), (spoken.hesitations, hesitations))
     ]
     answers, pauses, _, both = kinds_of_words(lists[0], lists[1])
     tones = smooth(pitch)
-    said = [tokens(w.text) for w in words]
+    said = [split_tokens(w.text) for w in words]
     found = _parts(words, said, answers, pauses, both, spoken.lexical)
     return _segments(words, said, found, pitch, tones, heard, spoken)
 
 
-def by_sound(
+def segment_by_sound(
     words: Sequence[Word], pitch: Pitch, heard: HeardSound, partner: HeardSound | None
 ) -> tuple[Segment, ...]:
     """Return one side's clauses and responses without understanding a word: there are none, or nobody knows
@@ -92,14 +92,14 @@ def by_sound(
     What is loud tells (`activity.activity`): what pauses part is a clause, a short sound while the partner
     talks a response. Where a channel is shared or nothing stands out of it, words tell when is spoken.
     """
-    words, tones = in_order(words, heard.duration), smooth(pitch)
+    words, tones = order_words(words, heard.duration), smooth(pitch)
     found = _by_loudness(pitch, tones, heard, partner) if partner is not None or not words else ()
     if found or not words:
         return tuple(
-            replace(s, text=joined(w.text for w in words if s.start <= (w.start + w.end) / 2 < s.end))
+            replace(s, text=join_tokens(w.text for w in words if s.start <= (w.start + w.end) / 2 < s.end))
             for s in found
         )
-    said = [tokens(w.text) for w in words]
+    said = [split_tokens(w.text) for w in words]
     return _segments(
         words, said, [_Part("clause", a, b) for a, b in _turns(words)], pitch, tones, heard, None
     )
@@ -112,21 +112,21 @@ def _segments(
     pitch: Pitch,
     tones: Array,
     heard: HeardSound,
-    language: Language | None,
+    language: LanguagePack | None,
 ) -> tuple[Segment, ...]:
     """Return parts as segments, clauses parted further by stress."""
-    stress = stresses(words, said, tones, heard, language)
+    stress = rate_stresses(words, said, tones, heard, language)
     out: list[Segment] = []
     for part in parts:
         groups = [(part.first, part.last)]
         if part.kind == "clause":
-            groups = parted(words, said, stress, part.first, part.last, language)
+            groups = split_into_clauses(words, said, stress, part.first, part.last, language)
         for first, last in groups:
             out.append(_segment(part.kind, words[first:last], pitch, tones, heard))
     return tuple(out)
 
 
-def in_order(words: Sequence[Word], length: float) -> list[Word]:
+def order_words(words: Sequence[Word], length: float) -> list[Word]:
     """Return the words by start, none longer than to the next one's start, none past the length (seconds);
     those left too short go.
     """
@@ -152,12 +152,12 @@ def _segment(kind: Spoken, words: Sequence[Word], pitch: Pitch, tones: Array, he
         kind,
         start,
         end,
-        peak_of(pitch, tones, heard, start, end) if kind == "clause" else None,
-        joined(w.text for w in words),
+        find_stress_time(pitch, tones, heard, start, end) if kind == "clause" else None,
+        join_tokens(w.text for w in words),
     )
 
 
-def peak_of(pitch: Pitch, tones: Array, heard: HeardSound, start: float, end: float) -> float:
+def find_stress_time(pitch: Pitch, tones: Array, heard: HeardSound, start: float, end: float) -> float:
     """Return where the stress between two times is, seconds: F0's most prominent peak, or, of a voiceless
     one, the loudest moment. tones: `pitch.smooth(pitch)`.
     """
@@ -301,16 +301,16 @@ def _by_loudness(
             out.append(Segment("response", s.start, s.end))
             continue
         for start, end in _shorter(s, heard):
-            out.append(Segment("clause", start, end, peak_of(pitch, tones, heard, start, end)))
+            out.append(Segment("clause", start, end, find_stress_time(pitch, tones, heard, start, end)))
     return tuple(out)
 
 
-def _meanwhile(s: Stretch, others: Sequence[Stretch]) -> bool:
+def _meanwhile(s: SpokenStretch, others: Sequence[SpokenStretch]) -> bool:
     """Return whether the partner talks during something, or stopped or starts right beside it."""
     return any(o.start < s.end + AROUND and o.end > s.start - AROUND for o in others)
 
 
-def _shorter(s: Stretch, heard: HeardSound) -> list[tuple[float, float]]:
+def _shorter(s: SpokenStretch, heard: HeardSound) -> list[tuple[float, float]]:
     """Return a stretch in parts of bearable length, cut where it is softest."""
     if s.end - s.start <= LONGEST_CLAUSE:
         return [(s.start, s.end)]
@@ -319,4 +319,4 @@ def _shorter(s: Stretch, heard: HeardSound) -> list[tuple[float, float]]:
         int(np.searchsorted(heard.times, s.start + third)), int(np.searchsorted(heard.times, s.end - third))
     )
     at = round(float(heard.times[part][int(heard.level[part].argmin())]), 3)
-    return [*_shorter(Stretch(s.start, at), heard), *_shorter(Stretch(at, s.end), heard)]
+    return [*_shorter(SpokenStretch(s.start, at), heard), *_shorter(SpokenStretch(at, s.end), heard)]

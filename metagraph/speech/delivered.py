@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from metagraph.graph.conversation.model import SPOKEN, Conversation, Segment, Spoken, heard_by
+from metagraph.graph.conversation.model import SPOKEN, Conversation, Segment, Spoken, segments_heard_by
 from metagraph.graph.model import Project
 from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.timing.phases import phases
-from metagraph.speech.drive import TOLERANCE, drawn_of, keyed, peak_of
+from metagraph.speech.drive import TOLERANCE, clause_peak, draw_segments, key_segments
 
 NAMES = {
     "clause": "clauses with a gesture",
@@ -48,12 +48,14 @@ class Delivered:
         )
 
 
-def delivered(conversation: Conversation, side: int, project: Project, plan: Plan) -> tuple[Delivered, ...]:
+def count_delivered(
+    conversation: Conversation, side: int, project: Project, plan: Plan
+) -> tuple[Delivered, ...]:
     """Return what a side's plan does with each kind of segments, of those its rates are about. project: whose
     graph moves it.
     """
-    every = keyed(heard_by(conversation, side))
-    drawn = drawn_of(conversation, side)
+    every = key_segments(segments_heard_by(conversation, side))
+    drawn = draw_segments(conversation, side)
     told = [_told(cue, project) for cue in plan.layers["arms"].cues if cue.action.kind == "gesture"]
     nods = [cue for cue in plan.layers["head"].cues if cue.action.kind == "gesture"]
     out = []
@@ -75,11 +77,11 @@ def _told(cue: Cue, project: Project) -> tuple[float, float]:
 
 
 def _strikes(segment: Segment, told: Sequence[tuple[float, float]]) -> bool:
-    return any(abs(stroke - peak_of(segment)) <= TOLERANCE for stroke, _ in told)
+    return any(abs(stroke - clause_peak(segment)) <= TOLERANCE for stroke, _ in told)
 
 
 def _covered(segment: Segment, told: Sequence[tuple[float, float]]) -> bool:
-    peak = peak_of(segment)
+    peak = clause_peak(segment)
     return any(stroke - TOLERANCE <= peak <= end + TOLERANCE for stroke, end in told)
 
 

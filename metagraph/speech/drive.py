@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from metagraph.graph.conversation.model import Conversation, Segment, heard_by, others_of
+from metagraph.graph.conversation.model import Conversation, Segment, others_of, segments_heard_by
 from metagraph.graph.model import Action, Layer, Mode, Project
 from metagraph.graph.requests import (
     AnyRequest,
@@ -31,10 +31,10 @@ from metagraph.graph.requests import (
 )
 from metagraph.playback.plan import Plan
 from metagraph.playback.planning.choice import uniform
-from metagraph.playback.planning.running_plan import perform
+from metagraph.playback.planning.running_plan import plan_performance
 from metagraph.playback.timing.phases import phases
-from metagraph.speech.addressing import TURN, spans
-from metagraph.speech.gesture_choice import Clause, choose
+from metagraph.speech.addressing import TURN, speaking_spans
+from metagraph.speech.gesture_choice import GestureClause, choose_gestures
 from metagraph.speech.group_gaze import looks_of
 from metagraph.speech.peak_blinks import peak_blinks
 
@@ -52,7 +52,7 @@ FIDGETS = 0.5  # how often it does
 SHIFTS = 0.4
 
 
-def asks_of(
+def drive_side(
     conversation: Conversation,
     side: int,
     project: Project,
@@ -77,26 +77,26 @@ def asks_of(
         out += [Blink(id=f"blink {n}", at=at) for n, at in enumerate(found)]
     kinds = {layer: {kind for _, kind in project.graphs[layer].index} for layer in project.graphs}
     nods = "gesture" in kinds["head"]
-    heard, said = heard_by(conversation, side), _meanings(project)
+    heard, said = segments_heard_by(conversation, side), _meanings(project)
     busy = [(s.start, s.end) for s in conversation.sides[side].segments]
-    drawn = drawn_of(conversation, side)
+    drawn = draw_segments(conversation, side)
     tags = {
         key: _tags(said, s.text, uniform(conversation.seed, str(side), key, "tags"))
-        for key, s in keyed(heard)
+        for key, s in key_segments(heard)
         if s.kind == "clause"
     }
     if together and "gesture" in kinds["arms"]:
         out += _chosen(conversation, side, project, drawn, tags)
-    for key, s in keyed(heard):
+    for key, s in key_segments(heard):
         if key not in drawn:
             continue
         if s.kind == "clause" and "gesture" in kinds["arms"] and not together:
-            out.append(Gesture(id=key, at=s.start, stroke=peak_of(s), tags=tags[key], priority=CLAUSE))
+            out.append(Gesture(id=key, at=s.start, stroke=clause_peak(s), tags=tags[key], priority=CLAUSE))
         elif s.kind != "clause" and nods:
             out.append(Nod(id=key, at=s.start, priority=ANSWER))
             busy.append((s.start, s.end + 1.0))
     if "transition" in kinds["body"]:
-        own = spans(conversation.sides[side].segments)
+        own = speaking_spans(conversation.sides[side].segments)
         for n, (start, end) in enumerate(own):
             if end - start > TURN and uniform(conversation.seed, str(side), f"shift {n}") < SHIFTS:
                 out.append(
@@ -132,17 +132,17 @@ def partner_points(plan: Plan) -> dict[int, Point]:
     return {int(number) - 1: point for number, point in named if number.isdecimal()}
 
 
-def drawn_of(conversation: Conversation, side: int) -> frozenset[str]:
+def draw_segments(conversation: Conversation, side: int) -> frozenset[str]:
     """Return the keys of the segments that are drawn to get a movement, by the side's rates."""
     rates = conversation.sides[side].rates
     return frozenset(
         key
-        for key, s in keyed(heard_by(conversation, side))
+        for key, s in key_segments(segments_heard_by(conversation, side))
         if s.kind != "idle" and uniform(conversation.seed, str(side), key) < getattr(rates, s.kind)
     )
 
 
-def peak_of(segment: Segment) -> float:
+def clause_peak(segment: Segment) -> float:
     """Return where a clause's stress is, its middle where that is not known."""
     return (segment.start + segment.end) / 2 if segment.peak is None else segment.peak
 
@@ -161,9 +161,11 @@ def _chosen(
     stance = graph.start if graph.start is not None else next(iter(graph.stances), "")
     every = [a for a in graph.of(stance, "gesture") if a.likelihood > 0]
     every = [a for a in every if a.cooldown <= 0] or every
-    said = [(key, s) for key, s in keyed(heard_by(conversation, side)) if s.kind == "clause"]
-    clauses = [Clause(key, peak_of(s), key in drawn, _fitting(every, tags[key])) for key, s in said]
-    for one in choose(project, clauses, conversation.seed, conversation.length):
+    said = [(key, s) for key, s in key_segments(segments_heard_by(conversation, side)) if s.kind == "clause"]
+    clauses = [
+        GestureClause(key, clause_peak(s), key in drawn, _fitting(every, tags[key])) for key, s in said
+    ]
+    for one in choose_gestures(project, clauses, conversation.seed, conversation.length):
         (key, s), clause = said[one.clause], clauses[one.clause]
         if one.free and clause.wanted:
             meant = tags[key] if set(tags[key]) - set(PLAIN) else one.action.tags
@@ -221,10 +223,10 @@ def drive(
 
     The same asks performed again give the same plan.
     """
-    asks = [*asks_of(conversation, side, project, line, heads, together), *more]
+    asks = [*drive_side(conversation, side, project, line, heads, together), *more]
     plan = Plan(conversation.seed, 0.0)
     for _ in range(ROUNDS):
-        plan = perform(project, asks, conversation.length, conversation.seed, idle=False)
+        plan = plan_performance(project, asks, conversation.length, conversation.seed, idle=False)
         late = _missed(project, plan, asks)
         if not late:
             break
@@ -262,7 +264,7 @@ def _missed(project: Project, plan: Plan, asks: list[AnyRequest]) -> set[str]:
     return out
 
 
-def keyed(segments: tuple[Segment, ...]) -> list[tuple[str, Segment]]:
+def key_segments(segments: tuple[Segment, ...]) -> list[tuple[str, Segment]]:
     """Return segments with a key of each that stays when others change: its kind and words, and how many such
     came before.
     """
@@ -279,8 +281,10 @@ def _modes(conversation: Conversation, side: int) -> Iterator[tuple[float, Mode]
     """Yield from when on a side talks, listens or idles: who speaks, with short silences counted to whoever
     spoke before.
     """
-    own = spans(conversation.sides[side].segments)
-    other = [span for n in others_of(conversation, side) for span in spans(conversation.sides[n].segments)]
+    own = speaking_spans(conversation.sides[side].segments)
+    other = [
+        span for n in others_of(conversation, side) for span in speaking_spans(conversation.sides[n].segments)
+    ]
     edges = sorted({0.0, *(x for start, end in (*own, *other) for x in (start, end))})
     last: Mode | None = None
     for at in edges:

@@ -24,12 +24,12 @@ from metagraph.playback.life.body import LIFELESS
 from metagraph.playback.life.voice import Voice
 from metagraph.playback.plan import Plan
 from metagraph.playback.posing.rigs import rigs_of
-from metagraph.speech.delivered import Delivered, delivered
+from metagraph.speech.delivered import Delivered, count_delivered
 from metagraph.speech.drive import drive
 from metagraph.speech.gaze_shares import GazeShare, gaze_shares
-from metagraph.speech.lines import read_spoken
-from metagraph.speech.mirroring import Mover, mirrored
-from metagraph.speech.sympathies import sympathies
+from metagraph.speech.lines import read_spoken_voice
+from metagraph.speech.mirroring import Mover, list_mirrored_stances
+from metagraph.speech.sympathies import list_sympathies
 
 Array = NDArray[Any]
 HEAD = 1.6  # metres up, of a skeleton whose head is not known
@@ -48,7 +48,7 @@ class Stand:
         here.
         """
         about = np.array([0.0, sin(self.turn / 2), 0.0, cos(self.turn / 2)], rotations.dtype)
-        moved = rotation.rotate(np.broadcast_to(about, rotations.shape), positions) + np.array(
+        moved = rotation.rotate_vectors(np.broadcast_to(about, rotations.shape), positions) + np.array(
             [self.x, 0.0, self.z], positions.dtype
         )
         return rotation.multiply(np.broadcast_to(about, rotations.shape), rotations), moved
@@ -89,7 +89,7 @@ class Duet:
     notes: tuple[str, ...] = ()
 
 
-def stands(conversation: Conversation) -> tuple[Stand, ...]:
+def place_sides(conversation: Conversation) -> tuple[Stand, ...]:
     """Return where the sides of a conversation stand, seen from the front.
 
     Two face each other, the first on the left. More stand in a circle, the first left of its opening towards
@@ -117,7 +117,7 @@ def _facing(at: Sequence[tuple[float, float]], n: int) -> float:
     return atan2(x, z) if hypot(x, z) > 1e-3 else 0.0
 
 
-def line_of(side: Side) -> Line:
+def side_line(side: Side) -> Line:
     """Return the line that has a side's voice."""
     return Line(text=" ".join(w.text for w in side.words)[:20000], audio=side.audio, channel=side.channel)
 
@@ -130,7 +130,9 @@ def voices(conversation: Conversation, folder: Path) -> tuple[tuple[Voice | None
     notes: list[str] = []
     for n, side in enumerate(conversation.sides, 1):
         try:
-            found.append(read_spoken(folder / side.audio, side.channel, side.words) if side.audio else None)
+            found.append(
+                read_spoken_voice(folder / side.audio, side.channel, side.words) if side.audio else None
+            )
         except FileError as error:
             found.append(None)
             notes.append(f"{side.name or f'Speaker {n}'}: {error}")
@@ -143,7 +145,7 @@ def duet(
     """Return all characters' plans. ident: the conversation's id. projects: of each side. heard: their
     voices.
     """
-    places = stands(conversation)
+    places = place_sides(conversation)
     ahead = len(places) == 2 and all(side.place is None for side in conversation.sides)
     movers: list[Mover] = []
     driven = []
@@ -162,12 +164,12 @@ def duet(
     for n, (known, heads, performance) in enumerate(driven):
         others, plan = [m for m in movers if m.side != n], movers[n].plan
         taken_up: tuple[AnyRequest, ...] = (
-            *mirrored(conversation, movers[n], others),
-            *sympathies(conversation, movers[n], others),
+            *list_mirrored_stances(conversation, movers[n], others),
+            *list_sympathies(conversation, movers[n], others),
         )
         if taken_up:
             performance, plan = drive(conversation, n, *known, heads, more=taken_up)
-        told = delivered(conversation, n, known[0], plan)
+        told = count_delivered(conversation, n, known[0], plan)
         looks = gaze_shares(conversation, n, known[0], plan)
         parts.append(DuetPart(known[0], performance, plan, places[n], told, looks))
     return Duet(tuple(parts), conversation.length)
@@ -183,7 +185,7 @@ def _with_voice(
         peaks = [s.peak for s in side.segments if s.kind == "clause" and s.peak is not None]
         voice = replace(voice, stresses=np.array(peaks)) if peaks else voice
         project = replace(
-            project, lines={**project.lines, line: line_of(side)}, voices={**project.voices, line: voice}
+            project, lines={**project.lines, line: side_line(side)}, voices={**project.voices, line: voice}
         )
     if conversation.blinks == "peaks":  # and no others
         project = replace(project, life=msgspec.structs.replace(project.life, blinks=0.0, accent_blinks=0.0))
@@ -201,7 +203,7 @@ def _head(project: Project) -> float:
     """Return how high a character's head is, metres."""
     if project.skeleton is None:
         return HEAD
-    head = anatomy.roles(project).get("head")
+    head = anatomy.project_roles(project).get("head")
     return HEAD if head is None else float(project.skeleton.globals(project.skeleton.rest)[1][head, 1])
 
 

@@ -12,7 +12,7 @@ from typing import Literal
 from metagraph.graph.conversation.model import EVERYBODY, Conversation
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Point
-from metagraph.playback.life.gaze import Gaze
+from metagraph.playback.life.gaze import BodyGaze
 from metagraph.playback.plan import Plan
 from metagraph.playback.posing.rigs import rigs_of
 from metagraph.speech.addressing import roles_of
@@ -66,7 +66,7 @@ def gaze_shares(conversation: Conversation, side: int, project: Project, plan: P
     points = partner_points(plan)
     if len(conversation.sides) < 3 or not points or not project.life.on:
         return ()
-    gaze = Gaze(plan.life, project.life, rigs_of(project).body, project.points)
+    gaze = BodyGaze(plan.life, project.life, rigs_of(project).body, project.points)
     found: dict[Doing, list[int]] = {doing: [0, 0, 0] for doing in NAMES}
     roles, place = roles_of(conversation, side), 0
     step = max(STEP, conversation.length / MOST)
@@ -91,7 +91,7 @@ def gaze_shares(conversation: Conversation, side: int, project: Project, plan: P
     )
 
 
-def together(shares: Sequence[GazeShare]) -> tuple[GazeShare, ...]:
+def join_shares(shares: Sequence[GazeShare]) -> tuple[GazeShare, ...]:
     """Return shares of several as of one, by what they do."""
     out = []
     for doing in NAMES:
@@ -104,7 +104,7 @@ def together(shares: Sequence[GazeShare]) -> tuple[GazeShare, ...]:
     return tuple(out)
 
 
-def _seen(gaze: Gaze, at: float, points: Mapping[int, Point]) -> int | None:
+def _seen(gaze: BodyGaze, at: float, points: Mapping[int, Point]) -> int | None:
     """Return whose face the eyes are on; None for nobody's."""
     moves, eyes = gaze.at(at), gaze.body.eyes_at_rest
     turn, up = moves.eyes

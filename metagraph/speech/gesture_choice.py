@@ -42,7 +42,7 @@ BACK = 12  # clauses that a gesture may reach over, at most
 
 
 @dataclass(frozen=True, slots=True)
-class Clause:
+class GestureClause:
     """A clause that may get a gesture. key: of its draws. peak: seconds. wanted: whether one was drawn for
     it. actions: those that go with its words.
     """
@@ -90,8 +90,8 @@ class _Lengths:
         return self.least + self.end(self.hold / HURRY)
 
 
-def choose(
-    project: Project, clauses: Sequence[Clause], seed: int, length: float = inf
+def choose_gestures(
+    project: Project, clauses: Sequence[GestureClause], seed: int, length: float = inf
 ) -> list[ChosenGesture]:
     """Return the gestures of one who says these clauses, by time; peaks ascend. length: seconds that there
     are. The arms stay in one stance.
@@ -107,7 +107,7 @@ def choose(
 
 
 def _of_turn(
-    project: Project, clauses: Sequence[Clause], first: int, last: int, seed: int, length: float,
+    project: Project, clauses: Sequence[GestureClause], first: int, last: int, seed: int, length: float,
     known: dict[str, _Lengths], before: ChosenGesture | None,
 ) -> list[ChosenGesture]:  # fmt: skip
     """Return the gestures of clauses that nothing parts, first to last (exclusive): where too few of those
@@ -151,7 +151,7 @@ def _lengths(project: Project, action: Action) -> _Lengths:
     )
 
 
-def _tried(project: Project, clause: Clause, seed: int, known: dict[str, _Lengths]) -> list[Action]:
+def _tried(project: Project, clause: GestureClause, seed: int, known: dict[str, _Lengths]) -> list[Action]:
     """Return the actions to try for a clause: drawn by likelihood, and the shortest."""
     for action in clause.actions:
         if action.id not in known:
@@ -163,7 +163,7 @@ def _tried(project: Project, clause: Clause, seed: int, known: dict[str, _Length
 
 
 def _options(
-    clauses: Sequence[Clause],
+    clauses: Sequence[GestureClause],
     n: int,
     action: Action,
     lengths: _Lengths,
@@ -202,7 +202,7 @@ def _best(
     worth: Array,
     firsts: Sequence[int],
     known: Mapping[str, _Lengths],
-    clauses: Sequence[Clause],
+    clauses: Sequence[GestureClause],
     rest: float,
     begun: float,
 ) -> list[int]:
@@ -256,7 +256,7 @@ def _best(
 
 
 def _freed(
-    project: Project, clauses: Sequence[Clause], found: list[ChosenGesture], known: dict[str, _Lengths]
+    project: Project, clauses: Sequence[GestureClause], found: list[ChosenGesture], known: dict[str, _Lengths]
 ) -> list[ChosenGesture]:
     """Tell of each gesture whether any other of its clause would have done."""
     rest, out = project.settings.rest, []

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 
 from metagraph.graph.conversation.model import EVERYBODY, Conversation, others_of
 from metagraph.playback.planning.choice import uniform
-from metagraph.speech.addressing import ANSWER, OVERLAP, Role, Turn, roles_of, turns_of
+from metagraph.speech.addressing import ANSWER, OVERLAP, AddressedTurn, Role, roles_of, turns_of
 
 AT_SPEAKER, AT_ADDRESSEE = 0.88, 0.77  # of looks at faces, listening and speaking (Vertegaal et al. 2001)
 GLANCE = (0.6, 0.6)  # seconds a look at somebody else lasts: at least, and what chance adds
@@ -50,7 +50,7 @@ def looks_of(conversation: Conversation, side: int) -> tuple[LookAtFace, ...]:
     roles, turns = roles_of(conversation, side), turns_of(conversation)
     seen: Counter[str] = Counter()
     found: list[LookAtFace] = []
-    before: Turn | None = None
+    before: AddressedTurn | None = None
     for n, role in enumerate(roles):
         name = f"{role.part} {role.turn.side} {role.turn.text[:60]}" if role.turn is not None else role.part
         seen[name] += 1
@@ -77,7 +77,7 @@ def _first(roles: Sequence[Role], others: Sequence[int]) -> int:
 
 
 def _during(
-    role: Role, start: float, last: int, others: Sequence[int], turns: Sequence[Turn], draw: Draw
+    role: Role, start: float, last: int, others: Sequence[int], turns: Sequence[AddressedTurn], draw: Draw
 ) -> Iterator[tuple[float, int]]:
     """Yield from when on who is looked at. start: when the first look begins. last: who was looked at."""
     if role.part == "idle" or role.whom is None:
@@ -110,7 +110,7 @@ def _left(share: float, whole: float, spent: float, left: float) -> float:
     return min(0.5, max(0.0, share * whole - spent) / left) if left > 0 else 0.0
 
 
-def _next(role: Role, turns: Sequence[Turn]) -> int | None:
+def _next(role: Role, turns: Sequence[AddressedTurn]) -> int | None:
     """Return who speaks next, where somebody else does soon after a turn, or into its end."""
     if role.turn is None or role.end < role.turn.end:
         return None

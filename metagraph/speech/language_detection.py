@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Literal
 
-from metagraph.graph.vocabulary import is_unspaced, tokens
-from metagraph.speech.language_packs import Language
+from metagraph.graph.vocabulary import is_unspaced, split_tokens
+from metagraph.speech.language_packs import LanguagePack
 
 FEWEST = 3.0  # words of one language alone that tell it
 ENOUGH = 15  # different words from which on a language that is not known can be told
@@ -20,28 +20,28 @@ APART = 1.5  # deviations by which one stands out from the next
 
 
 @dataclass(frozen=True)
-class Spoken:
+class SpokenLanguage:
     """language: what is spoken; None where that is not known. how: sure; undecided, as there are too few
     words or they fit several; unknown, as they are of none of the languages. words: how many were read.
     known: how many of them are the language's, or the likeliest one's. likeliest: the next best, to name.
     """
 
-    language: Language | None
+    language: LanguagePack | None
     how: Literal["sure", "undecided", "unknown"]
     words: int
     known: int
-    likeliest: Language | None = None
+    likeliest: LanguagePack | None = None
 
 
-def language_spoken(words: Iterable[str], languages: Collection[Language]) -> Spoken:
+def detect_language(words: Iterable[str], languages: Collection[LanguagePack]) -> SpokenLanguage:
     """Return the language of words as transcribed. Names and words of another language among them are borne
     as long as they are the fewer.
     """
-    said = [t for w in words for t in tokens(w) if any(c.isalpha() for c in t)]
+    said = [t for w in words for t in split_tokens(w) if any(c.isalpha() for c in t)]
     units = sum(_units(t) for t in said)
     unspaced = sum(_units(t) for t in said if is_unspaced(t[0]))
     if not units or not languages:
-        return Spoken(None, "undecided", units, 0)
+        return SpokenLanguage(None, "undecided", units, 0)
     found = {one: _hits(one, said) for one in languages}
     sharing: dict[str, int] = {}
     for hits in found.values():
@@ -63,10 +63,10 @@ def language_spoken(words: Iterable[str], languages: Collection[Language]) -> Sp
         read = {_script(t) for one in languages for t in one.known}
         foreign = sum(_units(t) for t in said if _script(t) not in read)  # in a writing of no language
         strange = len(set(said)) >= ENOUGH or unspaced >= 2 * ENOUGH or (units >= 3 and 2 * foreign > units)
-        return Spoken(None, "unknown" if strange else "undecided", units, known, best)
+        return SpokenLanguage(None, "unknown" if strange else "undecided", units, known, best)
     if score < FEWEST or score - second < APART * (score + max(second, 0.0)) ** 0.5 * 0.5:
-        return Spoken(None, "undecided", units, known, best)
-    return Spoken(best, "sure", units, known, best)
+        return SpokenLanguage(None, "undecided", units, known, best)
+    return SpokenLanguage(best, "sure", units, known, best)
 
 
 @lru_cache(maxsize=1 << 14)
@@ -81,7 +81,7 @@ def _units(token: str) -> int:
     return sum(map(is_unspaced, token)) or 1
 
 
-def _hits(language: Language, said: Sequence[str]) -> list[tuple[str, int]]:
+def _hits(language: LanguagePack, said: Sequence[str]) -> list[tuple[str, int]]:
     """Return which words of a language are said, with what they count."""
     if language.spaced:
         return [(t, 1) for token in said for t in language.parted((token,)) if t in language.known]
@@ -94,7 +94,7 @@ def _hits(language: Language, said: Sequence[str]) -> list[tuple[str, int]]:
     return out
 
 
-def _within(token: str, language: Language) -> list[tuple[str, int]]:
+def _within(token: str, language: LanguagePack) -> list[tuple[str, int]]:
     """Return the words of a language in writing without blanks, the longest first from the left."""
     out, at = [], 0
     while at < len(token):
@@ -106,7 +106,7 @@ def _within(token: str, language: Language) -> list[tuple[str, int]]:
     return out
 
 
-def _strange(token: str, language: Language) -> bool:
+def _strange(token: str, language: LanguagePack) -> bool:
     """Whether a word has Latin letters that a language does not spell with."""
     return bool(_beyond(token) - language.letters)
 

@@ -15,7 +15,7 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta, Struct
 
-from metagraph.graph.vocabulary import Vocabulary, is_unspaced, key_of, tokens
+from metagraph.graph.vocabulary import Vocabulary, is_unspaced, split_tokens, token_key
 
 FOLDER = Path(__file__).parent / "languages"
 ENGLISH = "en"
@@ -67,7 +67,7 @@ class PackError(ValueError):
 
 
 @dataclass(frozen=True, eq=False)
-class Language:
+class LanguagePack:
     """A pack as it is used. responses, hesitations: as written, in order. lexical: phrases. small, joining,
     trailing, inside, closing, elided: tokens. known: every token that tells this language.
     """
@@ -136,41 +136,43 @@ def _made_of(token: str, words: frozenset[str]) -> bool:
     return len(token) in reached
 
 
-def listed(words: str | Collection[str]) -> tuple[str, ...]:
+def list_pack_words(words: str | Collection[str]) -> tuple[str, ...]:
     """Return the words of a list as it is written, each once."""
     texts = (words,) if isinstance(words, str) else words
     each = (" ".join(part.split()) for text in texts for part in text.replace("、", ",").split(","))
     return tuple(dict.fromkeys(w for w in each if w))
 
 
-def language_of(pack: PackFile, others: Mapping[str, Language]) -> Language:
+def language_of(pack: PackFile, others: Mapping[str, LanguagePack]) -> LanguagePack:
     """Return a pack as it is used. others: those it may borrow from, by code. Raises PackError naming the
     field that is wrong.
     """
-    lists = {name: listed(getattr(pack, name)) for name in _LISTS}
+    lists = {name: list_pack_words(getattr(pack, name)) for name in _LISTS}
     for name, words in lists.items():
         if len(words) > MOST:
             raise PackError(name, f"has {len(words):,} words, {MOST:,} at most are read")
         for word in words:
             if len(word) > 200:
                 raise PackError(name, f"'{word[:40]}...' is longer than 200 letters")
-            if not (found := tokens(word)):
+            if not (found := split_tokens(word)):
                 raise PackError(name, f"'{word}' has no letters, so nothing said can be it")
             if name not in _PHRASES and len(found) > 1:
                 raise PackError(name, f"'{word}' is more than one word")
     if not lists["responses"] and not lists["hesitations"]:
         raise PackError("responses", "has no words, and neither has 'hesitations'")
     sets = {
-        name: frozenset(tokens(w)[0] for w in words) for name, words in lists.items() if name not in _PHRASES
+        name: frozenset(split_tokens(w)[0] for w in words)
+        for name, words in lists.items()
+        if name not in _PHRASES
     }
-    own = {key_of(tokens(w)) for words in lists.values() for w in words}
+    own = {token_key(split_tokens(w)) for words in lists.values() for w in words}
     borrowed: list[str] = []
     for code in pack.borrows:
         if code not in others:
             raise PackError("borrows", f"there are no words of '{code}': known are {', '.join(others)}")
-        borrowed += (w for w in others[code].responses if key_of(tokens(w)) not in own)
-    said = {t for name in ("responses", "hesitations") for w in lists[name] for t in tokens(w)}
-    return Language(
+        borrowed += (w for w in others[code].responses if token_key(split_tokens(w)) not in own)
+    said = {t for name in ("responses", "hesitations") for w in lists[name] for t in split_tokens(w)}
+    return LanguagePack(
         pack.code,
         pack.name,
         pack.own or pack.name,
@@ -193,18 +195,18 @@ _LISTS = (*_PHRASES, "small", "joining", "trailing", "inside", "closing", "elide
 
 def tokens_letters(letters: str) -> str:
     """Return letters in the form tokens have."""
-    return "".join(tokens(letters))
+    return "".join(split_tokens(letters))
 
 
 @cache
-def languages() -> Mapping[str, Language]:
+def list_language_packs() -> Mapping[str, LanguagePack]:
     """Return the packs that come with the program, by code, English first."""
-    out: dict[str, Language] = {}
+    out: dict[str, LanguagePack] = {}
     for path in sorted(FOLDER.glob("*.json"), key=lambda p: (p.stem != ENGLISH, p.stem)):
         pack = language_of(msgspec.json.decode(path.read_bytes(), type=PackFile), out)
         out[pack.code] = pack
     return out
 
 
-def english() -> Language:
-    return languages()[ENGLISH]
+def english_pack() -> LanguagePack:
+    return list_language_packs()[ENGLISH]

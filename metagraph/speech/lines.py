@@ -11,17 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.budgets import CONVERSATION_SECONDS, LINE_SECONDS
-from metagraph.common.files import unforeseen
+from metagraph.common.files import unforeseen_error
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.graph.conversation.model import Word
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Line
 from metagraph.playback.life.mouth import MouthPiece
-from metagraph.playback.life.voice import Voice, silent, voiced
+from metagraph.playback.life.voice import Voice, make_voice, silent
 from metagraph.speech.phones import pieces_of
-from metagraph.speech.sound import hear, read_sound, shapes_heard, syllables
-from metagraph.speech.textgrid import Interval, TextGrid, Tier, read_textgrid
+from metagraph.speech.sound import analyse_sound, guess_mouth_shapes, read_sound, syllables
+from metagraph.speech.textgrid import GridInterval, GridTier, TextGrid, read_textgrid
 
 Array = NDArray[Any]
 
@@ -29,7 +29,7 @@ FINE = 24000  # samples a second that a mouth is read from
 _VOWELS = ("aa", "E", "I", "O", "U", "RR")
 
 
-def read_voice(audio: str | Path, phones: str | Path | None = None, channel: int | None = None) -> Voice:
+def read_line_voice(audio: str | Path, phones: str | Path | None = None, channel: int | None = None) -> Voice:
     """Read a line's sound and, where there are any, its phones or words from a Praat TextGrid. channel: which
     of the sound's is the line's, from 0; None for all mixed. Raises FileError.
     """
@@ -38,22 +38,22 @@ def read_voice(audio: str | Path, phones: str | Path | None = None, channel: int
     )
 
 
-def read_spoken(audio: str | Path, channel: int | None = None, words: Sequence[Word] = ()) -> Voice:
+def read_spoken_voice(audio: str | Path, channel: int | None = None, words: Sequence[Word] = ()) -> Voice:
     """Read a voice from its sound and, where there are any, the words that were transcribed. Raises
     FileError.
     """
     samples, rate = read_sound(audio, channel, CONVERSATION_SECONDS, FINE)
     if not words:
         return _voice(samples, rate, None)
-    tier = Tier("words", tuple(Interval(w.start, w.end, w.text) for w in words))
+    tier = GridTier("words", tuple(GridInterval(w.start, w.end, w.text) for w in words))
     return _voice(samples, rate, pieces_of(TextGrid(0.0, len(samples) / rate, (tier,))))
 
 
 def _voice(samples: Array, rate: int, told: list[MouthPiece] | None) -> Voice:
     """Return the voice of a sound. told: what the mouth goes through, None to hear it."""
-    heard = hear(samples, rate)
+    heard = analyse_sound(samples, rate)
     peaks, strengths = syllables(heard)
-    pieces = shapes_heard(heard) if told is None else told
+    pieces = guess_mouth_shapes(heard) if told is None else told
     pieces = [replace(p, end=min(p.end, heard.duration)) for p in pieces if p.start < heard.duration]
     if told is not None:  # how open a vowel is, its loudness tells
         loud = [float(np.interp(0.5 * (p.start + p.end), heard.times, heard.loud)) for p in pieces]
@@ -63,7 +63,7 @@ def _voice(samples: Array, rate: int, told: list[MouthPiece] | None) -> Voice:
         ]
     if not pieces:
         return silent(heard.duration)
-    return voiced(pieces, heard.duration, peaks, strengths)
+    return make_voice(pieces, heard.duration, peaks, strengths)
 
 
 def voice_from_phones(phones: str | Path) -> Voice:
@@ -89,7 +89,7 @@ def voice_from_phones(phones: str | Path) -> Voice:
     long = np.array(
         [p.strength * min(1.0, 0.3 + 4 * (p.end - p.start)) for p in vowels]
     )  # what is stressed is long
-    return voiced(pieces, duration, peaks, long)
+    return make_voice(pieces, duration, peaks, long)
 
 
 def read_line(line: Line, folder: Path) -> Voice | None:
@@ -97,7 +97,9 @@ def read_line(line: Line, folder: Path) -> Voice | None:
     Raises FileError.
     """
     if line.audio:
-        return read_voice(folder / line.audio, folder / line.phones if line.phones else None, line.channel)
+        return read_line_voice(
+            folder / line.audio, folder / line.phones if line.phones else None, line.channel
+        )
     return voice_from_phones(folder / line.phones) if line.phones else None
 
 
@@ -121,7 +123,7 @@ def load_voices(project: Project, folder: str | Path) -> tuple[Project, tuple[st
             try:
                 voice = read_line(attempt, folder)
             except Exception as error:  # one bad sound never spoils a project
-                why = unforeseen(folder / (line.audio or line.phones or ""), error)
+                why = unforeseen_error(folder / (line.audio or line.phones or ""), error)
                 note = phrase("line '{ident}': {why}", ident=ident, why=why.words)
                 if note not in notes:
                     notes.append(note)

@@ -18,7 +18,7 @@ BELOW = 10.0  # LU under the loudest parts' mean, below which a block does not c
 OFFSET = -0.691  # of the standard
 
 
-def loudness(samples: Array, rate: int) -> float | None:
+def loudness_of(samples: Array, rate: int) -> float | None:
     """Return the integrated loudness of samples `[N]`, -1..1, in LUFS; None for silence, and for sounds
     shorter than a block.
     """
@@ -78,13 +78,13 @@ def _high_pass(rate: int) -> Filter:
     return (1.0, -2.0, 1.0), (1.0, 2 * (k * k - 1) / a0, (1 - k / q + k * k) / a0)
 
 
-def levelled(sounds: dict[str, Array], rate: int, wanted: float, peak: float = 0.95) -> dict[str, Array]:
+def level_sounds(sounds: dict[str, Array], rate: int, wanted: float, peak: float = 0.95) -> dict[str, Array]:
     """Return sounds as loud as each other: `wanted` LUFS, or as much less as keeps all within `peak`. Silence
     stays silent.
     """
     out: dict[str, Array] = {}
     for name, samples in sounds.items():
-        found = loudness(samples, rate)
+        found = loudness_of(samples, rate)
         out[name] = samples if found is None else samples * np.float32(10 ** ((wanted - found) / 20))
     most = max((float(np.abs(s).max(initial=0)) for s in out.values()), default=0.0)
     return out if most <= peak else {n: s * np.float32(peak / most) for n, s in out.items()}

@@ -39,7 +39,7 @@ class Mover:
     plan: Plan
 
 
-def mirrored(conversation: Conversation, own: Mover, others: Sequence[Mover]) -> Iterator[Go]:
+def list_mirrored_stances(conversation: Conversation, own: Mover, others: Sequence[Mover]) -> Iterator[Go]:
     """Yield the stances of the body that a side takes up while it listens: of several others, of whose turn
     it is. Nothing where either has no stances to tell apart, or bodies cannot be compared.
     """
@@ -85,7 +85,7 @@ def stance_shapes(project: Project) -> dict[str, Array]:
     """Return where `SEEN` is in each stance of the body `[6, 3]`, x to the left, from the hips, in units of
     the hips' height; none where that cannot be told.
     """
-    roles = anatomy.roles(project)
+    roles = anatomy.project_roles(project)
     if project.skeleton is None or not {"hips", *SEEN} <= roles.keys():
         return {}
     graph, out = project.graphs["body"], {}

@@ -16,7 +16,7 @@ from math import inf
 from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.graphemes import shapes
 from metagraph.playback.life.mouth import MouthPiece
-from metagraph.speech.textgrid import Interval, TextGrid, Tier
+from metagraph.speech.textgrid import GridInterval, GridTier, TextGrid
 
 _SILENT = {
     "",
@@ -177,7 +177,7 @@ def pieces_of(grid: TextGrid) -> list[MouthPiece]:
     return [p for i in _in_turn(words) for p in _spell(i)] if words is not None else []
 
 
-def _in_turn(tier: Tier) -> list[Interval]:
+def _in_turn(tier: GridTier) -> list[GridInterval]:
     """Return a tier's intervals by start, each ending where the next begins: a mouth says one thing at a
     time.
     """
@@ -186,12 +186,12 @@ def _in_turn(tier: Tier) -> list[Interval]:
     return [replace(i, end=end) if end < i.end else i for i, end in zip(ordered, [*ends, inf], strict=False)]
 
 
-def _pick(tiers: Sequence[Tier], pattern: str, short: bool) -> Tier | None:
+def _pick(tiers: Sequence[GridTier], pattern: str, short: bool) -> GridTier | None:
     named = [t for t in tiers if re.search(pattern, t.name.casefold())]
     if named:
         return named[0]
 
-    def length(tier: Tier) -> float:
+    def length(tier: GridTier) -> float:
         sizes = sorted(len(i.text) for i in tier.intervals if i.text.casefold() not in _SILENT)
         return sizes[len(sizes) // 2]
 
@@ -199,7 +199,7 @@ def _pick(tiers: Sequence[Tier], pattern: str, short: bool) -> Tier | None:
     return max(fitting, key=lambda t: len(t.intervals), default=None)
 
 
-def _spread(interval: Interval, found: list[str], strength: float) -> list[MouthPiece]:
+def _spread(interval: GridInterval, found: list[str], strength: float) -> list[MouthPiece]:
     """Return an interval's pieces: a diphthong's two, or equal parts."""
     if not found or interval.end <= interval.start:
         return []
@@ -212,7 +212,7 @@ def _spread(interval: Interval, found: list[str], strength: float) -> list[Mouth
     return out
 
 
-def _spell(interval: Interval) -> list[MouthPiece]:
+def _spell(interval: GridInterval) -> list[MouthPiece]:
     if interval.text.casefold() in _SILENT:
         return []
     found = [s for word in interval.text.split() for s in shapes(ALPHABET, word)]

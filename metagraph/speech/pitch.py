@@ -65,7 +65,7 @@ def pitch(samples: Array, rate: int) -> Pitch:
     hertz, repeats, level = _blocks(samples, rate, [times[p] for p in parts], (low, high), audible)
     voiced = _voiced(repeats, level)
     voiced &= _near(hertz, voiced)
-    for start, end in stretches(voiced):
+    for start, end in list_runs(voiced):
         if end - start < _SHORTEST:
             voiced[start:end] = False
     return Pitch(times, np.where(voiced, hertz, np.nan))
@@ -145,7 +145,7 @@ def _near(hertz: Array, voiced: Array) -> Array:
         return np.asarray(np.abs(tones - np.nanmedian(around, 1)) <= JUMP)
 
 
-def stretches(some: Array) -> list[tuple[int, int]]:
+def list_runs(some: Array) -> list[tuple[int, int]]:
     """Return the runs of true moments in `[K]`, each from its first to behind its last."""
     edges = np.flatnonzero(
         np.diff(np.concatenate([[False], np.asarray(some, bool), [False]]).astype(np.int8))
@@ -161,7 +161,7 @@ def smooth(found: Pitch) -> Array:
     known = ~np.isnan(tones)
     if not known.any():
         return np.asarray(tones)
-    for start, end in stretches(~known):
+    for start, end in list_runs(~known):
         if start > 0 and end < len(tones) and end - start <= 6:
             tones[start:end] = np.linspace(tones[start - 1], tones[end], end - start + 2)[1:-1]
     bell = np.exp(-0.5 * (np.arange(-5, 6) / 2.5) ** 2)

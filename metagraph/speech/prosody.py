@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from metagraph.graph.conversation.model import Segment, Sound, Word
 from metagraph.speech.loudness import loudness_within
-from metagraph.speech.sound import hear, syllables
+from metagraph.speech.sound import analyse_sound, syllables
 
 Array = NDArray[Any]
 
@@ -49,7 +49,7 @@ def prosody(
     if np.isnan(found).all():
         found = np.array([_of(letters(s.text), s.end - s.start) for s in segments])
     if np.isnan(found).all() and samples is not None and any(own):
-        peaks = syllables(hear(samples, rate))[0]
+        peaks = syllables(analyse_sound(samples, rate))[0]
         count = [np.searchsorted(peaks, s.end) - np.searchsorted(peaks, s.start) for s in segments]
         found = np.array([_of(int(n), s.end - s.start) for n, s in zip(count, segments, strict=True)])
     return Prosody(np.where(own, loud, np.nan), np.where(own, found, np.nan))

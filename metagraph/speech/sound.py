@@ -24,7 +24,7 @@ from metagraph.common.budgets import (
     SOUND_RATES,
     SOUND_SAMPLES,
 )
-from metagraph.common.files import check_file, guarded, is_file, opened
+from metagraph.common.files import check_file, guard_reader, is_file, open_file
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.playback.life.mouth import MouthPiece
@@ -125,7 +125,7 @@ def read_sound(
     return samples[channel], read.rate
 
 
-@guarded
+@guard_reader
 def read_head(path: str | Path) -> tuple[int, int, int]:
     """Return samples a second, channels and samples of each of a sound file. Raises FileError."""
     import soundfile
@@ -152,7 +152,7 @@ def _no_sound(path: Path, error: Exception) -> FileError:
     )
 
 
-@guarded
+@guard_reader
 def read_recording(path: str | Path, longest: float = LONGEST, most: int | None = None) -> Recording:
     """Read a sound file, channels apart, block by block. most: samples a second at most, at least 8000; where
     the file has more, what is too high is taken out, every second, third ... is kept, as float32, so that
@@ -218,7 +218,7 @@ def read_recording(path: str | Path, longest: float = LONGEST, most: int | None 
                     phrase("holds more samples than are read"),
                     remedy=phrase("Cut it, or save it with 48000 a second."),
                 )
-            return replace(_read_blocks(file, rate, every), really=misnamed(path))
+            return replace(_read_blocks(file, rate, every), really=explain_misnamed(path))
     except (soundfile.LibsndfileError, RuntimeError, TypeError, MemoryError, OSError) as error:
         raise _no_sound(path, error) from error
 
@@ -226,7 +226,7 @@ def read_recording(path: str | Path, longest: float = LONGEST, most: int | None 
 def sound_kind(path: str | Path) -> str:
     """Return what a file is by its first bytes, in words ("an MP3 file"), "" where they do not tell."""
     try:
-        with opened(path, SOUND_FILE) as file:
+        with open_file(path, SOUND_FILE) as file:
             head = file.read(64)
     except FileError:
         return ""
@@ -262,7 +262,7 @@ def sound_ending(path: str | Path) -> str:
     return path.suffix if not known or own in known else known[0]
 
 
-def misnamed(path: str | Path) -> str:
+def explain_misnamed(path: str | Path) -> str:
     """Return in words what a file is whose ending says it is another kind of sound, else ""."""
     kind = sound_kind(path)
     endings = next((e for words, e in _ENDINGS.items() if words == kind), None)
@@ -319,7 +319,7 @@ def _cut_off(samples: Array) -> Array:
     return np.asarray(out.sum(0))
 
 
-def hear(samples: Array, rate: int) -> HeardSound:
+def analyse_sound(samples: Array, rate: int) -> HeardSound:
     """Analyse a sound: samples `[N]`, about -1..1."""
     duration = len(samples) / rate
     hop, size = HOP * rate, max(16, round(WINDOW * rate))
@@ -402,7 +402,7 @@ def syllables(heard: HeardSound) -> tuple[Array, Array]:
     return heard.times[kept] if kept else np.zeros(0), strengths
 
 
-def shapes_heard(heard: HeardSound) -> list[MouthPiece]:
+def guess_mouth_shapes(heard: HeardSound) -> list[MouthPiece]:
     """Return the mouth's shapes guessed from the sound alone."""
     labels = _labels(heard)
     out: list[MouthPiece] = []

@@ -36,11 +36,11 @@ def line_sounds(
             except FileError as error:
                 notes.append(phrase("line '{ident}': {why}", ident=ident, why=error.words))
                 continue
-            sounds[ident] = resampled(samples, own, rate)
+            sounds[ident] = resample_sound(samples, own, rate)
     return sounds, tuple(notes)
 
 
-def resampled(samples: Array, rate: int, wanted: int) -> Array:
+def resample_sound(samples: Array, rate: int, wanted: int) -> Array:
     """Return samples `[N]` at another rate, float32."""
     samples = np.asarray(samples, np.float32)
     if rate == wanted or len(samples) < 2:
@@ -50,7 +50,7 @@ def resampled(samples: Array, rate: int, wanted: int) -> Array:
     return np.asarray(soxr.resample(samples, rate, wanted), np.float32)
 
 
-def placed(plan: Plan, sounds: Mapping[str, Array], rate: int = RATE) -> list[tuple[float, Array]]:
+def place_lines(plan: Plan, sounds: Mapping[str, Array], rate: int = RATE) -> list[tuple[float, Array]]:
     """Return each spoken line's start and samples, cut where the plan cuts the line."""
     out: list[tuple[float, Array]] = []
     for speech in plan.track.speeches:
@@ -66,7 +66,7 @@ def placed(plan: Plan, sounds: Mapping[str, Array], rate: int = RATE) -> list[tu
     return out
 
 
-def mixed(parts: list[tuple[float, Array]], start: int, count: int, rate: int = RATE) -> Array:
+def mix_track(parts: list[tuple[float, Array]], start: int, count: int, rate: int = RATE) -> Array:
     """Return samples `start`..`start + count` of the track, `[count]` float32 within -1..1. Silent outside
     its parts.
     """

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.conversation.model import Word
-from metagraph.speech.language_packs import Language
+from metagraph.speech.language_packs import LanguagePack
 from metagraph.speech.sound import HeardSound
 
 Array = NDArray[Any]
@@ -30,12 +30,12 @@ _CONTENT = (
 )
 
 
-def stresses(
+def rate_stresses(
     words: Sequence[Word],
     said: Sequence[tuple[str, ...]],
     tones: Array,
     heard: HeardSound,
-    language: Language | None,
+    language: LanguagePack | None,
 ) -> Array:
     """Return how strongly each word is stressed `[W]`, about -3..5: its F0 peak and loudness, each compared
     with the side's other words, how long it lasts, and whether it is one that usually is. tones: semitones
@@ -69,13 +69,13 @@ def _standing(values: Array) -> Array:
     return np.asarray(np.nan_to_num(np.clip((values - middle) / spread, -2, 2)))
 
 
-def parted(
+def split_into_clauses(
     words: Sequence[Word],
     said: Sequence[tuple[str, ...]],
     stress: Array,
     first: int,
     last: int,
-    language: Language | None,
+    language: LanguagePack | None,
 ) -> list[tuple[int, int]]:
     """Return the words from `first` to before `last` in clauses (from, to before): the cheapest way to part
     them so that each has one stressed word and about `USUAL` words, found exactly.
@@ -120,7 +120,7 @@ def _break(
     parts: Sequence[tuple[str, ...]],
     first: int,
     n: int,
-    language: Language | None,
+    language: LanguagePack | None,
 ) -> float:
     """Return how well a clause begins at the n-th of the parts, words from `first` on; below 0, rather not."""
     before, gap = words[first + n - 1], words[first + n].start - words[first + n - 1].end

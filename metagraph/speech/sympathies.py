@@ -38,7 +38,7 @@ def laughs_of(side: Side, plan: Plan) -> list[Laugh]:
     return out
 
 
-def sympathies(conversation: Conversation, own: Mover, others: Sequence[Mover]) -> Iterator[Feel]:
+def list_sympathies(conversation: Conversation, own: Mover, others: Sequence[Mover]) -> Iterator[Feel]:
     """Yield what a side is asked to feel for the others' moods and laughs."""
     rates = conversation.sides[own.side].rates
     mine = moods_of(own.project.life, own.plan.track)

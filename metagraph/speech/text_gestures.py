@@ -22,8 +22,8 @@ from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.graphemes import read_aloud
 from metagraph.playback.planning.hashing import Bits
 from metagraph.speech import word_gestures
-from metagraph.speech.language_detection import language_spoken
-from metagraph.speech.language_packs import languages
+from metagraph.speech.language_detection import detect_language
+from metagraph.speech.language_packs import list_language_packs
 from metagraph.speech.word_gestures import (
     GestureRule,
     GestureWords,
@@ -83,7 +83,7 @@ def read_gesture_words(path: str | Path) -> GestureWords:
 
 
 @cache
-def gesture_words(language: str = "en") -> GestureWords:
+def words_for_gesture(language: str = "en") -> GestureWords:
     """Return the lexicon that comes along for a language, English where there is none."""
     file = _files().get(language)
     return msgspec.json.decode((file or _files()["en"]).read_bytes(), type=_Words).read()
@@ -91,12 +91,14 @@ def gesture_words(language: str = "en") -> GestureWords:
 
 def gesture_words_for(text: str) -> GestureWords:
     """Return the lexicon of the language a text is in, as far as its words tell; else the English one."""
-    packs = languages()
-    spoken = language_spoken(text.split(), [packs[code] for code in known_languages() if code in packs])
-    return gesture_words(spoken.language.code if spoken.language is not None else "en")
+    packs = list_language_packs()
+    spoken = detect_language(
+        text.split(), [packs[code] for code in list_lexicon_languages() if code in packs]
+    )
+    return words_for_gesture(spoken.language.code if spoken.language is not None else "en")
 
 
-def known_languages() -> tuple[str, ...]:
+def list_lexicon_languages() -> tuple[str, ...]:
     """Return the languages a lexicon comes along for."""
     return tuple(_files())
 
@@ -106,7 +108,7 @@ def _files() -> dict[str, Any]:
     return {f.name.removesuffix(".json"): f for f in sorted(place.iterdir(), key=lambda f: f.name)}
 
 
-def words_of(
+def timed_words(
     text: str, told: Sequence[tuple[str, float, float]] = (), seconds: float | None = None
 ) -> list[TextWord]:
     """Return a text's words with their times: as a synthesiser told them, else as long as lips would take.
@@ -118,7 +120,7 @@ def words_of(
     return word_gestures.words_of(ALPHABET, text, times, seconds)
 
 
-def proposed(
+def propose_gestures(
     words: Sequence[TextWord],
     tags: Mapping[Layer, Collection[str]],
     lexicon: GestureWords | None = None,
@@ -128,8 +130,8 @@ def proposed(
 
     tags: which a character's gestures have, by layer; what it has none for is not proposed.
     """
-    known = lexicon or gesture_words()
-    pack = languages().get(known.language)
+    known = lexicon or words_for_gesture()
+    pack = list_language_packs().get(known.language)
     small = {word.plain for word in words if pack is not None and pack.is_small(word.plain)}
     return proposed_for(words, set(tags.get("arms", ())), bool(tags.get("head")), known, small, Bits(seed))
 
@@ -186,11 +188,11 @@ class TextStream:
     def _said(self, text: str, now: float) -> list[dict[str, Any]]:
         self._count += 1
         ident, start = f"{self.name}{self._count}", max(self.free, now + START)
-        words = words_of(text)
+        words = timed_words(text)
         self.free = start + float(read_aloud(ALPHABET, text)) + BETWEEN
         self._heard = f"{self._heard} {text}"[-HEARD:]
         known = self.lexicon or gesture_words_for(self._heard)
-        made = proposed(words, self.tags, known, self.seed + self._count)
+        made = propose_gestures(words, self.tags, known, self.seed + self._count)
         return [
             {"do": "say", "id": ident, "text": text, "at": round(start, 3)},
             *gesture_requests(made, start, ident),

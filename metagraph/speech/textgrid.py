@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from metagraph.common.budgets import MARKS, MARKS_FILE
-from metagraph.common.files import guarded, read_file
+from metagraph.common.files import guard_reader, read_file
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 
@@ -25,7 +25,7 @@ _REMEDY = phrase("Save it from Praat as a text file or a short text file.")
 
 
 @dataclass(frozen=True, slots=True)
-class Interval:
+class GridInterval:
     """What is said from `start` to `end` seconds; "" for nothing. A point has no length."""
 
     start: float
@@ -34,9 +34,9 @@ class Interval:
 
 
 @dataclass(frozen=True, slots=True)
-class Tier:
+class GridTier:
     name: str
-    intervals: tuple[Interval, ...]
+    intervals: tuple[GridInterval, ...]
     points: bool = False
 
 
@@ -46,10 +46,10 @@ class TextGrid:
 
     start: float
     end: float
-    tiers: tuple[Tier, ...]
+    tiers: tuple[GridTier, ...]
 
 
-@guarded
+@guard_reader
 def read_textgrid(path: str | Path) -> TextGrid:
     """Read a TextGrid. Raises FileError naming the line."""
     path = Path(path)
@@ -127,14 +127,14 @@ class _Reader:
         )
         return TextGrid(start, end, tiers)
 
-    def tier(self) -> Tier:
+    def tier(self) -> GridTier:
         kind = self.word("tier's class")
         if kind not in ("IntervalTier", "TextTier"):
             raise self.fail(phrase("there is no tier of class {kind!r}", kind=kind[:20]))
         name = self.word("tier's name")
         self.number("tier's start")
         self.number("tier's end")
-        out: list[Interval] = []
+        out: list[GridInterval] = []
         for _ in range(self.count("number of intervals")):
             self.marks += 1
             if self.marks > MARKS:
@@ -147,5 +147,5 @@ class _Reader:
                         "an interval ends at {end:g} s, before it starts at {start:g} s", end=end, start=start
                     )
                 )
-            out.append(Interval(start, end, self.word("interval's text").strip()))
-        return Tier(name, tuple(out), kind == "TextTier")
+            out.append(GridInterval(start, end, self.word("interval's text").strip()))
+        return GridTier(name, tuple(out), kind == "TextTier")

@@ -16,9 +16,9 @@ import numpy as np
 
 from metagraph.graph.model import Project
 from metagraph.speech.lines import Array
-from metagraph.speech.loudness import loudness
+from metagraph.speech.loudness import loudness_of
 from metagraph.speech.pitch import pitch, smooth
-from metagraph.speech.sound import hear, read_sound, syllables
+from metagraph.speech.sound import analyse_sound, read_sound, syllables
 
 # By how much of each above the speaker's own median a voice is as aroused as it can be: LU, of the rate,
 # semitones of range; ours.
@@ -39,13 +39,13 @@ class VoiceFeatures:
     range: float
 
 
-def features(samples: Array, rate: int) -> VoiceFeatures:
+def measure_voice(samples: Array, rate: int) -> VoiceFeatures:
     """Return how a sound `[N]`, -1..1, is said."""
     nan = float("nan")
     if len(samples) < SHORTEST * rate:
         return VoiceFeatures(nan, nan, nan)
-    loud = loudness(samples, rate)
-    heard = hear(samples, rate)
+    loud = loudness_of(samples, rate)
+    heard = analyse_sound(samples, rate)
     beats = syllables(heard)[0]
     spoken = float(beats[-1] - beats[0]) if len(beats) > 1 else 0.0
     tones = smooth(pitch(samples, rate))
@@ -84,7 +84,7 @@ def with_voice_moods(project: Project, folder: str | Path) -> Project:
         path = Path(folder) / line.audio if line.audio is not None else None
         if path is not None and path.is_file():
             samples, rate = read_sound(path, line.channel)
-            heard[ident] = features(samples, rate)
+            heard[ident] = measure_voice(samples, rate)
     told: Mapping[str, float] = dict(zip(heard, arousals(list(heard.values())), strict=True))
     lines = {
         ident: msgspec.structs.replace(line, mood=(0.0, round(told[ident], 2)))

@@ -8,18 +8,18 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from metagraph.common.wording import phrase
-from metagraph.errors import error_words
+from metagraph.errors import describe_error
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import LAYERS, Kind, Layer, Project
 from metagraph.playback.timing.phases import phases
-from metagraph.suggest.jumps.soft_blends import softened
-from metagraph.suggest.proposal import Place, Proposal, Proposals, Rest, plain
+from metagraph.suggest.jumps.soft_blends import soften_blends
+from metagraph.suggest.proposal import Proposal, Proposals, RestMoment, StancePlace, plain_stance_name
 from metagraph.suggest.whole_body import CARRIER
 
 
 @dataclass(frozen=True)
-class Taken:
+class AcceptedProposals:
     """The project with proposals taken over. placed: clips by id. left: clip -> why it was not placed. held:
     stance -> the moment of a clip it is held in, since none rests in it.
     """
@@ -27,12 +27,12 @@ class Taken:
     project: Project
     placed: tuple[str, ...]
     left: Mapping[str, str]
-    held: Mapping[str, Rest] = field(default_factory=dict)
+    held: Mapping[str, RestMoment] = field(default_factory=dict)
 
 
 def accept(
     project: Project, found: Proposals, above: float = 0.0, clips: Collection[str] | None = None
-) -> Taken:
+) -> AcceptedProposals:
     """Return the project with all proposals as sure as `above` placed, of some clips or all. Stances are made
     of the clips that rest in them, or else held in a still moment of another; what belongs to a stance that
     nothing shows is left, with the reason.
@@ -48,17 +48,17 @@ def accept(
         key: key for key, place in found.places.items() if place.there and project.stance(key) is not None
     }
     loops = {
-        plain(s.name): g.of(i, "stance")[0].clip
+        plain_stance_name(s.name): g.of(i, "stance")[0].clip
         for g in project.graphs.values()
         for i, s in g.stances.items()
         if g.of(i, "stance")
     }
     loops |= {
-        plain(found.places[p.stance.value].name): p.clip
+        plain_stance_name(found.places[p.stance.value].name): p.clip
         for p in wanted
         if p.kind.value == "stance" and p.stance is not None
     }
-    before, placed, held = project, list[str](), dict[str, Rest]()
+    before, placed, held = project, list[str](), dict[str, RestMoment]()
     if found.whole and wanted:
         project = edits.set_weight(project, CARRIER, "legs", 1.0)
     for p in sorted(wanted, key=lambda p: (p.kind.value != "stance", -p.confidence)):
@@ -66,9 +66,9 @@ def accept(
             project = _place(project, p, found.places, keys, loops, held)
             placed.append(p.clip)
         except EditError as error:
-            left[p.clip] = error_words(error)
-    project = softened(_begun(before, project), {action.id for action in before.actions()})
-    return Taken(project, tuple(placed), left, held)
+            left[p.clip] = describe_error(error)
+    project = soften_blends(_begun(before, project), {action.id for action in before.actions()})
+    return AcceptedProposals(project, tuple(placed), left, held)
 
 
 def _begun(before: Project, project: Project) -> Project:
@@ -80,7 +80,7 @@ def _begun(before: Project, project: Project) -> Project:
         graph = project.graphs[layer]
         if graph.stances and not before.graphs[layer].stances:
             used = Counter(a.stance for a in graph.actions.values())
-            project = edits.set_start(project, max(graph.stances, key=lambda s: used[s]))
+            project = edits.set_start_stance(project, max(graph.stances, key=lambda s: used[s]))
     if before.base.clip is None:
         starts = [
             (g, g.start)
@@ -98,10 +98,10 @@ def _begun(before: Project, project: Project) -> Project:
 def _place(
     project: Project,
     p: Proposal,
-    places: Mapping[str, Place],
+    places: Mapping[str, StancePlace],
     keys: dict[str, str],
     loops: Mapping[str, str],
-    held: dict[str, Rest],
+    held: dict[str, RestMoment],
 ) -> Project:
     """Place one clip. keys: place -> stance id, of those there are by now. loops: a stance's name -> a clip
     that rests in it, on whatever layer: clips of the whole body rest on all. held: grows by stances that are
@@ -118,7 +118,7 @@ def _place(
             continue
         place = places[belief.value]
         loop = loops.get(
-            plain(place.name),
+            plain_stance_name(place.name),
             place.rest.clip if place.rest is not None and place.rest.clip in project.clips else None,
         )
         if loop is None:
@@ -133,7 +133,7 @@ def _place(
         project = edits.add_stance(project, layer, place.name, [loop])
         made = list(project.graphs[layer].stances)[-1]
         keys[place.key] = made
-        if plain(place.name) not in loops and place.rest is not None:
+        if plain_stance_name(place.name) not in loops and place.rest is not None:
             held[made] = place.rest
             still = {
                 "start": place.rest.start,
@@ -147,7 +147,7 @@ def _place(
         keys[p.stance.value] = list(project.graphs[layer].stances)[-1]
     else:
         end = keys[p.end_stance.value] if kind == "transition" and p.end_stance is not None else None
-        project = edits.place(project, [p.clip], layer, kind, keys[p.stance.value], end)
+        project = edits.place_clips(project, [p.clip], layer, kind, keys[p.stance.value], end)
     action = list(project.graphs[layer].actions.values())[-1]
     changes: dict[str, Any] = {
         "limb": p.limb.value,

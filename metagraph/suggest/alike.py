@@ -31,7 +31,7 @@ WORDS_PART = 0.6  # how much words count beside motion, where there are both
 
 
 @dataclass(frozen=True, eq=False)
-class Example:
+class LabelledExample:
     """A labelled clip. words: of its name, small letters. measures `[d]`: of its motion, nan where one is not
     known; may be empty. labels: field -> what it was labelled as.
     """
@@ -46,7 +46,7 @@ class Example:
         return {"words": list(self.words), "measures": measures, "labels": dict(self.labels)}
 
 
-def example_from(data: Any) -> Example:
+def example_from(data: Any) -> LabelledExample:
     """Return the example plain data says. Raises ValueError naming what is wrong."""
     if not isinstance(data, Mapping):
         raise ValueError("an example should be an object")
@@ -59,7 +59,7 @@ def example_from(data: Any) -> Example:
         isinstance(k, str) and isinstance(v, str) for k, v in labels.items()
     ):
         raise ValueError("labels: should be texts")
-    return Example(
+    return LabelledExample(
         tuple(words), np.array([np.nan if x is None else x for x in measures], float), dict(labels)
     )
 
@@ -73,7 +73,7 @@ class Alike:
     than most are read by their words alone.
     """
 
-    def __init__(self, examples: Sequence[Example]) -> None:
+    def __init__(self, examples: Sequence[LabelledExample]) -> None:
         self.examples = tuple(examples)
         lengths = Counter(len(e.measures) for e in examples if len(e.measures))
         self.width = lengths.most_common(1)[0][0] if lengths else 0

@@ -39,7 +39,7 @@ _LIMBS = ("upper_arm", "lower_arm", "hand", "upper_leg", "lower_leg", "foot")
 
 
 @dataclass(frozen=True, eq=False)
-class Figure:
+class PosedFigure:
     """What of a skeleton is posed. keep: joints, every parent among them; places: role -> its place among
     them. turned: role -> the turn that takes its axes to the character's. tips: side -> the places of the
     fingertips, the farthest from the wrist first.
@@ -54,7 +54,7 @@ class Figure:
 
 
 @lru_cache(maxsize=64)
-def figure_of(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> Figure:
+def pose_figure(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> PosedFigure:
     roles = dict(named)
     wanted = {r: j for r, j in roles.items() if r in (*_CARRIERS, "head") or r.endswith(_LIMBS)}
     if "hips" not in wanted:
@@ -92,7 +92,7 @@ def figure_of(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> Figure:
     )
     axes = _axes_at_rest({r: at[j] for r, j in wanted.items()})
     turned = {r: rotation.multiply(rotation.conjugate(turns[j]), axes) for r, j in wanted.items()}
-    return Figure(
+    return PosedFigure(
         small,
         keep,
         {r: place[j] for r, j in wanted.items()},
@@ -104,7 +104,7 @@ def figure_of(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> Figure:
 
 def _axes_at_rest(at: Mapping[str, Array]) -> Array:
     """Return the turn whose axes are the character's left, up and ahead in its rest pose."""
-    across = left_of(at)
+    across = leftward(at)
     top = at.get("head", at.get("upper_chest", at.get("chest")))
     up = np.array([0.0, 1.0, 0.0]) if top is None else top - at["hips"]
     if across is None or np.linalg.norm(across) < 1e-6 or np.linalg.norm(up) < 1e-6:
@@ -119,7 +119,7 @@ def _axes_at_rest(at: Mapping[str, Array]) -> Array:
     return rotation.from_matrix(np.stack([left, up, np.cross(left, up)], axis=-1))
 
 
-def left_of(at: Mapping[str, Array]) -> Array | None:
+def leftward(at: Mapping[str, Array]) -> Array | None:
     """Return from right to left, of hips and shoulders together; None without either."""
     pairs = [
         at[f"left_{part}"] - at[f"right_{part}"]
@@ -130,7 +130,7 @@ def left_of(at: Mapping[str, Array]) -> Array | None:
 
 
 def points_of(
-    figure: Figure, clips: Sequence[Clip], frames: Sequence[Array]
+    figure: PosedFigure, clips: Sequence[Clip], frames: Sequence[Array]
 ) -> tuple[dict[str, Array], dict[str, Array]]:
     """Return name -> `[F, 3]` of all NAMES there are, each from its ground, and of what is in world space; in
     heights.
@@ -144,7 +144,7 @@ class _Posed:
     role, in heights. turns: `[F, J, 4]`. carrier: the role of what carries the arms.
     """
 
-    def __init__(self, figure: Figure, clips: Sequence[Clip], frames: Sequence[Array]) -> None:
+    def __init__(self, figure: PosedFigure, clips: Sequence[Clip], frames: Sequence[Array]) -> None:
         self.figure = figure
         self.turns, places = figure.small.globals(_pose(figure, clips, frames))
         self.places = places / np.float32(figure.height)
@@ -155,16 +155,20 @@ class _Posed:
 
     def axis(self, role: str, direction: Sequence[float]) -> Array:
         """Return where a direction of the character's points, as a joint has turned."""
-        return rotation.rotate(
+        return rotation.rotate_vectors(
             self.turns[:, self.figure.places[role]],
-            rotation.rotate(self.figure.turned[role], np.array(direction)).astype(np.float32),
+            rotation.rotate_vectors(self.figure.turned[role], np.array(direction)).astype(np.float32),
         )
 
     def arms(self) -> dict[str, Array]:
         """Return the arms' points, as what carries them sees them."""
         p, place, turned = self.p, self.figure.places[self.carrier], self.figure.turned[self.carrier]
         back = rotation.conjugate(rotation.multiply(self.turns[:, place], turned.astype(np.float32)))
-        return {name: rotation.rotate(back, p[name] - p[self.carrier]) for name in NAMES["arms"] if name in p}
+        return {
+            name: rotation.rotate_vectors(back, p[name] - p[self.carrier])
+            for name in NAMES["arms"]
+            if name in p
+        }
 
     def head(self) -> dict[str, Array]:
         """Return the head's points, over what carries it."""
@@ -173,7 +177,7 @@ class _Posed:
         ahead, up = self.axis("head", (0, 0, 1)), self.axis("head", (0, 1, 0))
         middle = self.p["head"] - self.p[self.carrier]
         points = {"head": middle, "nose": middle + AHEAD * ahead, "crown": middle + AHEAD * up}
-        return {name: seen_from(self.facing, v) for name, v in points.items()}
+        return {name: view_from(self.facing, v) for name, v in points.items()}
 
     def body(self) -> dict[str, Array]:
         """Return the body's points, over the ground between the feet."""
@@ -183,13 +187,13 @@ class _Posed:
         else:
             ground = p["hips"] * np.array([1, 0, 1], np.float32)
         legs = [f"{side}_{part}" for side in ("left", "right") for part in ("lower_leg", "foot")]
-        out = {name: seen_from(facing, p[name] - ground) for name in ("hips", *legs) if name in p}
+        out = {name: view_from(facing, p[name] - ground) for name in ("hips", *legs) if name in p}
         trunk = p[self.carrier] - ground
-        out["trunk"] = seen_from(facing, trunk)
-        out["trunk_ahead"] = seen_from(facing, trunk + AHEAD * self.axis(self.carrier, (0, 0, 1)))
+        out["trunk"] = view_from(facing, trunk)
+        out["trunk_ahead"] = view_from(facing, trunk + AHEAD * self.axis(self.carrier, (0, 0, 1)))
         for role in p:
             if role.startswith("joint "):
-                out[role] = seen_from(facing, p[role] - ground)
+                out[role] = view_from(facing, p[role] - ground)
         return out
 
     def fingers(self) -> dict[str, Array]:
@@ -198,7 +202,7 @@ class _Posed:
         for side, some in self.figure.tips.items():
             wrist = f"{side}_hand"
             hand = rotation.conjugate(self.turns[:, self.figure.places[wrist]])
-            out[f"{side}_fingers"] = rotation.rotate(
+            out[f"{side}_fingers"] = rotation.rotate_vectors(
                 hand[:, None], self.places[:, some] - self.p[wrist][:, None]
             )
         return out
@@ -214,7 +218,7 @@ class _Posed:
         return world
 
 
-def _pose(figure: Figure, clips: Sequence[Clip], frames: Sequence[Array]) -> Pose:
+def _pose(figure: PosedFigure, clips: Sequence[Clip], frames: Sequence[Array]) -> Pose:
     """Return the poses of the figure's joints in frames of clips, one after another."""
     small = figure.small
     total = sum(map(len, frames))
@@ -234,15 +238,17 @@ def _pose(figure: Figure, clips: Sequence[Clip], frames: Sequence[Array]) -> Pos
 
 def facing_of(p: Mapping[str, Array], hips: Array, turned: Array) -> Array:
     """Return `[F, 2]` sine and cosine of where the hips and shoulders face, about y from +z."""
-    across = left_of(p)
+    across = leftward(p)
     if across is None:
-        across = rotation.rotate(hips, rotation.rotate(turned, np.array([1.0, 0, 0])).astype(np.float32))
+        across = rotation.rotate_vectors(
+            hips, rotation.rotate_vectors(turned, np.array([1.0, 0, 0])).astype(np.float32)
+        )
     flat = np.stack([-across[:, 2], across[:, 0]], axis=-1)
     length = np.linalg.norm(flat, axis=-1, keepdims=True)
     return np.where(length > 1e-6, flat / np.maximum(length, 1e-6), np.array([0.0, 1.0])).astype(np.float32)
 
 
-def seen_from(facing: Array, v: Array) -> Array:
+def view_from(facing: Array, v: Array) -> Array:
     """Return vectors as seen by somebody who faces there. facing `[..., 2]`, see `facing_of`; v `[...,
     3]`.
     """

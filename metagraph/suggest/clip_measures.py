@@ -38,7 +38,7 @@ def with_tremble(traits: Mapping[str, Traits]) -> dict[str, Traits]:
     """Return traits that know what all clips of their set have: the tremble of a recording, and the breath,
     tell nothing of one clip.
     """
-    moving = [t for t in traits.values() if t.face == 0 and not nothing(t)]
+    moving = [t for t in traits.values() if t.face == 0 and not no_measures(t)]
     if len(moving) < SEVERAL:
         return dict(traits)
     least = {}
@@ -58,7 +58,7 @@ def _beyond_tremble(traits: Traits) -> Mapping[str, float]:
     return beyond if any(beyond.values()) else traits.energy
 
 
-def nothing(traits: Traits) -> bool:
+def no_measures(traits: Traits) -> bool:
     return all(x.peak < 1e-3 for x in traits.layers.values()) and traits.energy["fingers"] < 1e-3
 
 
@@ -66,7 +66,7 @@ def resting(traits: Traits) -> float:
     """Return how much speaks for a stance, a logit: little movement, for long, steady; ends that meet."""
     if traits.frames < 2 or traits.duration <= 0:
         return 3.0
-    if nothing(traits):  # held, or a clip of the face
+    if no_measures(traits):  # held, or a clip of the face
         return 3.0 if traits.duration >= HELD else 0.0
     x = max(traits.layers.values(), key=lambda y: y.peak)
     fastest = max(x.peak, 3 * traits.energy["fingers"], 1e-3)
@@ -85,7 +85,7 @@ def resting(traits: Traits) -> float:
     )
 
 
-def walks(traits: Traits) -> bool:
+def is_walk(traits: Traits) -> bool:
     """Return whether a clip is a cycle of steps, on the spot or over the ground."""
     body = traits.layers["body"]
     return (
@@ -133,7 +133,7 @@ def layer_of(traits: Traits) -> Belief[Layer]:
     return Belief("body", 0.5, share)
 
 
-def moves_most(traits: Traits) -> Belief[Layer]:
+def find_layer_moving_most(traits: Traits) -> Belief[Layer]:
     """Return which layer of a recording of the whole body goes farthest, beside what is usual for a stance of
     it: all of it sways, so that speeds tell little.
     """

@@ -20,7 +20,7 @@ from metagraph.playback.timing.phases import phases
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.jumps import compatibility
 from metagraph.suggest.motion_guess import MotionGuess
-from metagraph.suggest.proposal import Place, Proposal, Rest, words_of
+from metagraph.suggest.proposal import Proposal, RestMoment, StancePlace, name_words
 from metagraph.suggest.traits import Traits
 
 Array = NDArray[Any]
@@ -31,13 +31,13 @@ LONGEST = 2.0  # seconds of such a moment
 MANY = 12  # clips that are looked through for one
 
 
-def timed(
+def with_timing(
     project: Project, proposals: Mapping[str, Proposal], cancelled: Callable[[], bool] | None = None
 ) -> dict[str, Proposal]:
     """Return proposals with timing from the statistics of the user's own clips, where stances have loops to
     measure against.
     """
-    roles = anatomy.roles(project)
+    roles = anatomy.project_roles(project)
     out = dict(proposals)
     for layer in LAYERS:
         mine = [p for p in proposals.values() if p.layer.value == layer]
@@ -65,13 +65,13 @@ def timed(
                 start = frames.get(p.stance.value if p.stance is not None else "")
                 if start is None:
                     continue
-                into = compatibility.costs(stats, motion, start, roles)
+                into = compatibility.transition_costs(stats, motion, start, roles)
                 last = frames.get(p.end_stance.value) if p.end_stance is not None else None
-                times = compatibility.times(
+                times = compatibility.propose_times(
                     stats,
                     motion,
                     into,
-                    None if last is None else compatibility.costs(stats, motion, last, roles),
+                    None if last is None else compatibility.transition_costs(stats, motion, last, roles),
                     None,
                     roles,
                 )
@@ -79,7 +79,7 @@ def timed(
     return out
 
 
-def _with_times(p: Proposal, motion: Clip, times: compatibility.Times) -> Proposal:
+def _with_times(p: Proposal, motion: Clip, times: compatibility.ProposedTimes) -> Proposal:
     loop = p.kind.value == "stance"
     timing = {
         "start": round(times.start, 3),
@@ -119,7 +119,7 @@ def _plays(kind: Kind) -> str:
     return phrase("a gesture plays once") if kind == "gesture" else phrase("a fidget plays once")
 
 
-def masked(project: Project, p: Proposal, traits: Traits | None) -> Proposal:
+def with_moved_joints(project: Project, p: Proposal, traits: Traits | None) -> Proposal:
     """Return a proposal with the joints its clip moves: all its layer reaches, but of a clip of the face only
     those.
     """
@@ -145,7 +145,7 @@ def masked(project: Project, p: Proposal, traits: Traits | None) -> Proposal:
     return replace(p, details={**p.details, "mask": mask})
 
 
-def stroked(project: Project, p: Proposal, motion: MotionGuess | None) -> Proposal:
+def with_stroke(project: Project, p: Proposal, motion: MotionGuess | None) -> Proposal:
     """Return a gesture's proposal with its stroke, as `playback.timing.phases` finds it within the proposed
     timing.
     """
@@ -176,7 +176,7 @@ def _fastest(layer: Layer, seconds: float) -> str:
     return phrase("the trunk is fastest at {seconds:.2f} s", seconds=seconds)
 
 
-def weighted(project: Project, proposals: Mapping[str, Proposal]) -> dict[str, Proposal]:
+def with_likelihoods(project: Project, proposals: Mapping[str, Proposal]) -> dict[str, Proposal]:
     """Return proposals with likelihoods: numbered variants of one thing share one weight, so that many takes
     of it do not crowd out the rest. Those placed before count along.
     """
@@ -210,7 +210,7 @@ def weighted(project: Project, proposals: Mapping[str, Proposal]) -> dict[str, P
 
 
 def _alike(project: Project, clip: str, kind: str, layer: str, stance: str) -> tuple[str, str, str, str]:
-    words = words_of(project.clips[clip].name)
+    words = name_words(project.clips[clip].name)
     while words and words[-1].isdigit():
         words = words[:-1]
     return kind, layer, stance, " ".join(words)
@@ -219,7 +219,7 @@ def _alike(project: Project, clip: str, kind: str, layer: str, stance: str) -> t
 # --- where to stand when nothing rests
 
 
-def rest_of(project: Project, place: Place, proposals: Mapping[str, Proposal]) -> Rest | None:
+def rest_of(project: Project, place: StancePlace, proposals: Mapping[str, Proposal]) -> RestMoment | None:
     """Return the stillest moment in which clips show a stance that none rests in: the first of one that
     begins there, or the last of one that ends there; None where no clip has motion.
     """
@@ -231,7 +231,7 @@ def rest_of(project: Project, place: Place, proposals: Mapping[str, Proposal]) -
                 for b in (p.stance, p.end_stance)
                 if b is not None and b.value == place.key
             ]
-    best: Rest | None = None
+    best: RestMoment | None = None
     for _, clip, first in sorted(ends, key=lambda x: (-x[0], x[1], not x[2]))[:MANY]:
         motion = project.clips[clip].motion
         if motion is None:
@@ -253,7 +253,7 @@ def rest_of(project: Project, place: Place, proposals: Mapping[str, Proposal]) -
                     seconds=long,
                 )
             )
-            best = Rest(clip, round(start, 3), round(end, 3), reason)
+            best = RestMoment(clip, round(start, 3), round(end, 3), reason)
     return best
 
 

@@ -18,10 +18,10 @@ from metagraph.graph import anatomy, edits
 from metagraph.graph.checks.end_gaps import motion_of
 from metagraph.graph.model import Action, Project
 from metagraph.motion import rotation
-from metagraph.motion.character_mesh import Character
+from metagraph.motion.character_mesh import CharacterMesh
 from metagraph.motion.contact_solve import HAND, OBSTACLE, ContactRig
 from metagraph.motion.contact_spans import EASE, HANDS, ContactKey, ContactSpan
-from metagraph.playback.posing.contacts import ends, nearest, parts_of
+from metagraph.playback.posing.contacts import ends, find_body_parts, nearest_between_lines
 from metagraph.playback.posing.rigs import rigs_of
 
 Array = NDArray[Any]
@@ -76,7 +76,7 @@ def find_contacts(project: Project, action: Action) -> tuple[ContactSpan, ...]:
         + np.linalg.norm(at[0, joints[one.hand]] - at[0, joints[one.lower]])
     )
     seen = _Seen(rig, times, turned[:, joints], at[:, joints], a, b, arm)
-    mask = anatomy.mask(project, action)
+    mask = anatomy.action_mask(project, action)
     found: list[ContactSpan] = []
     for side in (1, 0):
         if mask is None or mask[joints[rig.arms[side].hand]] > 0:
@@ -160,7 +160,7 @@ def _runs(on: Array, times: Array) -> list[tuple[int, int]]:
 
 
 def _gap(seen: _Seen, i: int, k: int) -> Array:
-    way, _ = nearest(seen.a[:, i], seen.b[:, i], seen.a[:, k], seen.b[:, k])
+    way, _ = nearest_between_lines(seen.a[:, i], seen.b[:, i], seen.a[:, k], seen.b[:, k])
     return np.asarray(
         np.linalg.norm(way, axis=-1) - seen.rig.capsules[i].radius - seen.rig.capsules[k].radius
     )
@@ -175,7 +175,7 @@ def _hanging(seen: _Seen, side: int) -> Array:
 
 def _beside(seen: _Seen, joint: int, points: Array) -> Array:
     """Return points `[F, 3]` in the space of a joint."""
-    return rotation.rotate(rotation.conjugate(seen.turned[:, joint]), points - seen.at[:, joint])
+    return rotation.rotate_vectors(rotation.conjugate(seen.turned[:, joint]), points - seen.at[:, joint])
 
 
 def _keys(seen: _Seen, side: int, joint: int, i: int, k: int) -> tuple[tuple[ContactKey, ...], str]:
@@ -245,7 +245,7 @@ def _to_surface(seen: _Seen, side: int, joint: int, frame: int) -> tuple[Array, 
     a, b = seen.a[frame], seen.b[frame]
     touching, way = 0, np.array([0.0, 1.0, 0.0])
     for turn in range(ROUNDS):
-        apart, _ = nearest(a[i] + push, b[i] + push, a[k], b[k])
+        apart, _ = nearest_between_lines(a[i] + push, b[i] + push, a[k], b[k])
         gap = np.linalg.norm(apart, axis=1)
         depth = radii[i] + radii[k] - gap
         touching = int(np.argmax(np.where(its, depth, -np.inf)))
@@ -257,7 +257,7 @@ def _to_surface(seen: _Seen, side: int, joint: int, frame: int) -> tuple[Array, 
             push = push + way * (depth[touching] + DEEPEST)
         else:
             break
-    local = rotation.rotate(rotation.conjugate(seen.turned[frame, joint]), push)
+    local = rotation.rotate_vectors(rotation.conjugate(seen.turned[frame, joint]), push)
     return local, _place(seen, side, int(i[touching]), way, frame)
 
 
@@ -275,11 +275,11 @@ def _place(seen: _Seen, side: int, capsule: int, way: Array, frame: int) -> str:
     return "palm" if float(back @ way) > 0 else "back"
 
 
-def measured(project: Project, character: Character | None) -> Project:
+def with_measured_body(project: Project, character: CharacterMesh | None) -> Project:
     """Return a project whose body has the measures of its character's mesh, of its skeleton without one that
     is of that skeleton.
     """
     fits = character is not None and character.skeleton == project.skeleton
     bare = replace(project, touch=msgspec.structs.replace(project.touch, parts=()))
-    parts = parts_of(bare, character) if fits else ()
+    parts = find_body_parts(bare, character) if fits else ()
     return replace(project, touch=msgspec.structs.replace(project.touch, parts=parts))

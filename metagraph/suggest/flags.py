@@ -25,7 +25,7 @@ LOST = 0.5  # confidence, below which a stance is hardly known at all
 WEIGHTS = (-1.969, 1.036, 0.36, 0.527, 1.967, -2.112, 0.158)  # of `measures`, as `fit_flags.py` prints them
 
 
-def measures(p: Proposal) -> Array:
+def proposal_measures(p: Proposal) -> Array:
     """Return what a proposal says of itself `[7]`: 1, logits of kind, of layer and of where a transition ends
     (0 of what is none), whether it is an act, a gesture or fidget, which are the hardest to tell apart,
     whether its name says its kind, and whether its stance is hardly known.
@@ -49,10 +49,10 @@ def measures(p: Proposal) -> Array:
 
 def chance_wrong(p: Proposal) -> float:
     """Return how likely a proposal is wrong in what decides where its clip goes, 0..1."""
-    return 1 / (1 + exp(float(np.clip(measures(p) @ np.array(WEIGHTS), -30, 30))))
+    return 1 / (1 + exp(float(np.clip(proposal_measures(p) @ np.array(WEIGHTS), -30, 30))))
 
 
-def needs_a_look(p: Proposal, left: Container[str] = ()) -> bool:
+def needs_look(p: Proposal, left: Container[str] = ()) -> bool:
     """Return whether somebody should look at a proposal: it may well be wrong, or was not placed. left: clips
     that were not.
     """

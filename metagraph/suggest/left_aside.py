@@ -9,10 +9,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from metagraph.common.wording import phrase
-from metagraph.suggest.clip_measures import nothing, walks
+from metagraph.suggest.clip_measures import is_walk, no_measures
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.motion_guess import MotionGuess
-from metagraph.suggest.proposal import Place, Proposals, plain
+from metagraph.suggest.proposal import Proposals, StancePlace, plain_stance_name
 from metagraph.suggest.stances.known import Stances, likely
 from metagraph.suggest.traits import Traits
 from metagraph.suggest.words.names import NameGuess
@@ -39,7 +39,7 @@ def _talks(traits: Traits | None, motion: MotionGuess | None) -> bool:
         return False
     (begins, one), (ends, other) = motion.begins[0], motion.ends[0]
     stays = one is other and min(begins, ends) > 0.5
-    return stays and traits.travel < FAR and traits.turned < ROUND and not walks(traits)
+    return stays and traits.travel < FAR and traits.turned < ROUND and not is_walk(traits)
 
 
 def _shared(traits: Traits, motion: MotionGuess | None, shapes: Stances | None) -> bool:
@@ -48,7 +48,7 @@ def _shared(traits: Traits, motion: MotionGuess | None, shapes: Stances | None) 
     """
     if motion is None:
         return True
-    if not nothing(traits) or traits.face > 0:
+    if not no_measures(traits) or traits.face > 0:
         return False
     told = [motion.begins]
     if shapes is not None:
@@ -64,7 +64,7 @@ def _shared(traits: Traits, motion: MotionGuess | None, shapes: Stances | None) 
     )
 
 
-def left_aside(
+def explain_skipping(
     said: NameGuess,
     traits: Traits | None,
     motion: MotionGuess | None,
@@ -88,7 +88,7 @@ def left_aside(
         return said.other.reason
     if traits is None or motion is None or motion.chances is None:
         return ""
-    if walks(traits):
+    if is_walk(traits):
         return phrase(
             "walks or runs: its feet pass each other by {stride:.0f} cm, and its end flows into its "
             "beginning",
@@ -114,19 +114,27 @@ def left_aside(
     return ""
 
 
-def taken_up(found: Proposals, clip: str) -> Proposals:
+def take_up_skipped(found: Proposals, clip: str) -> Proposals:
     """Return the proposals with one clip that was left aside among them. Its stances are those of the same
     names that there are now.
     """
     spare = found.spare[clip]
-    places: dict[str, Place] = dict(found.places)
+    places: dict[str, StancePlace] = dict(found.places)
 
     def moved(belief: Belief[str] | None) -> Belief[str] | None:
         if belief is None:
             return None
         old = spare.places[belief.value]
-        same = [k for k, x in places.items() if (x.layer, plain(x.name)) == (old.layer, plain(old.name))]
-        key = belief.value if belief.value in same else next(iter(same), f"new {old.layer} {plain(old.name)}")
+        same = [
+            k
+            for k, x in places.items()
+            if (x.layer, plain_stance_name(x.name)) == (old.layer, plain_stance_name(old.name))
+        ]
+        key = (
+            belief.value
+            if belief.value in same
+            else next(iter(same), f"new {old.layer} {plain_stance_name(old.name)}")
+        )
         places.setdefault(key, replace(old, key=key, there=False))
         return replace(belief, value=key)
 

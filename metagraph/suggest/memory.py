@@ -11,9 +11,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
-from metagraph.suggest.alike import Example, example_from
-from metagraph.suggest.words.names import learn
-from metagraph.suggest.words.patterns import Patterns, PatternsError, forget
+from metagraph.suggest.alike import LabelledExample, example_from
+from metagraph.suggest.words.names import learn_correction
+from metagraph.suggest.words.patterns import Patterns, PatternsError, forget_learned
 
 VERSION: Final = 1
 PROJECTS: Final = 50  # of which examples are kept, the latest
@@ -31,7 +31,7 @@ class Memory:
     """
 
     patterns: Patterns = field(default_factory=Patterns)
-    examples: Mapping[str, tuple[Example, ...]] = field(default_factory=dict)
+    examples: Mapping[str, tuple[LabelledExample, ...]] = field(default_factory=dict)
 
     def corrected(
         self, name: str, field: str, value: str | Sequence[str], names: Sequence[str] = ()
@@ -40,9 +40,9 @@ class Memory:
         stance's or end stance's name, tags as several, else the label. names: the batch it stands in. Raises
         PatternsError for a field or value that there is not.
         """
-        return replace(self, patterns=learn(self.patterns, name, field, value, names))
+        return replace(self, patterns=learn_correction(self.patterns, name, field, value, names))
 
-    def with_project(self, key: str, examples: Sequence[Example]) -> Memory:
+    def with_project(self, key: str, examples: Sequence[LabelledExample]) -> Memory:
         """Return memory with a project's labelled clips in place of what it had of it; none forget it. The
         oldest projects go when there are more than PROJECTS, or EXAMPLES of all; of one that is larger than
         that an even choice is kept.
@@ -55,7 +55,7 @@ class Memory:
             kept.pop(next(iter(kept)))
         return replace(self, examples=kept)
 
-    def others(self, key: str) -> list[Example]:
+    def others(self, key: str) -> list[LabelledExample]:
         """Return the examples of all projects but this one, whose own labels speak for themselves."""
         return [example for k, some in self.examples.items() if k != key for example in some]
 
@@ -66,7 +66,7 @@ class Memory:
         patterns the user wrote stay. projects: the examples, which go whole.
         """
         narrow = field is not None or phrase is not None
-        patterns = forget(self.patterns, field, phrase) if words else self.patterns
+        patterns = forget_learned(self.patterns, field, phrase) if words else self.patterns
         return Memory(patterns, {} if projects and not narrow else self.examples)
 
     def to_json(self) -> dict[str, Any]:
@@ -103,7 +103,7 @@ class Memory:
         return Memory(patterns, {str(key): _examples(str(key), some) for key, some in projects.items()})
 
 
-def _examples(key: str, data: Any) -> tuple[Example, ...]:
+def _examples(key: str, data: Any) -> tuple[LabelledExample, ...]:
     if not isinstance(data, list):
         raise MemoryFormatError(f"'projects', '{key}' should be a list, not {type(data).__name__}")
     out = []

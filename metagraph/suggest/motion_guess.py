@@ -12,9 +12,17 @@ from math import exp, log
 
 from metagraph.common.wording import phrase
 from metagraph.graph.words import LAYERS, Kind, Layer, Limb
-from metagraph.suggest.clip_measures import SUREST, TYPICAL, energy, layer_of, moves_most, resting, walks
+from metagraph.suggest.clip_measures import (
+    SUREST,
+    TYPICAL,
+    energy,
+    find_layer_moving_most,
+    is_walk,
+    layer_of,
+    resting,
+)
 from metagraph.suggest.estimate import Belief
-from metagraph.suggest.stances.known import Shape, Stances, distance, likely, nearest
+from metagraph.suggest.stances.known import Shape, Stances, distance_from_stance, likely, rank_stances
 from metagraph.suggest.traits import LayerTraits, Traits
 
 # of the way of a clip that ends in no other stance, the share from end to end from which on it is a
@@ -67,13 +75,16 @@ def guess(
     x = traits.layers[layer.value]
     posed = x if posture is None else posture
     shapes = stances.get(layer.value, ())
-    starts, ends = nearest(shapes, posed.names, posed.first), nearest(shapes, posed.names, posed.last)
+    starts, ends = (
+        rank_stances(shapes, posed.names, posed.first),
+        rank_stances(shapes, posed.names, posed.last),
+    )
     begins, leaves = likely(shapes, posed.names, posed.first), likely(shapes, posed.names, posed.last)
     moved = _passing(begins, leaves, _sigmoid(_moving(posed, layer.value, starts, ends)))
     calm = starts[0][1].calm if starts and starts[0][0] < 0.5 * TYPICAL[layer.value] else 0.0
-    walking = walks(traits)
+    walking = is_walk(traits)
     rests = 1.0 if walking else resting(traits) + (3.0 if energy(traits) <= 1.05 * calm else 0.0)
-    moves = layer if posture is None else moves_most(traits)
+    moves = layer if posture is None else find_layer_moving_most(traits)
     x = traits.layers[moves.value]
     rest, gesture = _sigmoid(rests), _gesturing(traits, moves)
     chances: dict[Kind, float] = {
@@ -121,7 +132,7 @@ def guess(
     return MotionGuess(
         Belief(kind, min(SUREST, chances[kind], (1 + layer.confidence) / 2), reason[kind]),
         layer,
-        limb_of(traits, layer.value, kind),
+        guess_limb_from_motion(traits, layer.value, kind),
         Belief(
             kind == "stance",
             min(SUREST, chances[kind]),
@@ -219,7 +230,7 @@ def _layer_beside(traits: Traits, stances: Stances) -> Belief[Layer]:
     there is.
     """
     found = layer_of(traits)
-    if walks(traits):
+    if is_walk(traits):
         return Belief(
             "body",
             SUREST,
@@ -231,7 +242,7 @@ def _layer_beside(traits: Traits, stances: Stances) -> Belief[Layer]:
     for layer in LAYERS:
         x, shapes = traits.layers[layer], stances.get(layer, ())
         if shapes and len(x.typical):
-            away = distance(shapes[0], x.names, x.typical)
+            away = distance_from_stance(shapes[0], x.names, x.typical)
             if 0.5 * TYPICAL[layer] < away < float("inf"):
                 unusual[layer] = away
     lower, all_of = traits.energy["hips"] + traits.energy["legs"], energy(traits)
@@ -259,7 +270,7 @@ def _unusual(layer: Layer, length: float) -> str:
     return phrase("rests {length:.0f} cm from the usual pose of the head", length=length)
 
 
-def limb_of(traits: Traits, layer: Layer, kind: Kind) -> Belief[Limb]:
+def guess_limb_from_motion(traits: Traits, layer: Layer, kind: Kind) -> Belief[Limb]:
     """Return the arm that a clip needs; of a head that goes to one side, the side."""
     if kind in ("stance", "transition"):
         both = (

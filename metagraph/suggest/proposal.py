@@ -12,13 +12,13 @@ from metagraph.graph.model import Kind, Layer, Limb
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.stances.known import Shape
 from metagraph.suggest.words.names import Patterns
-from metagraph.suggest.words.tokens import take_apart
+from metagraph.suggest.words.tokens import split_clip_name
 
 _USUAL = Patterns()
 
 
 @dataclass(frozen=True)
-class Rest:
+class RestMoment:
     """A moment of a clip that is still enough to stand in. start, end: seconds of the clip. reason: in
     words.
     """
@@ -30,7 +30,7 @@ class Rest:
 
 
 @dataclass(frozen=True)
-class Place:
+class StancePlace:
     """A stance clips may belong to. key: the project's id, or one of its own for a stance that is not there
     yet. shape: what it looks like, where that is known. rest: where it can be seen, when no clip rests in it.
     """
@@ -40,7 +40,7 @@ class Place:
     name: str
     there: bool = False
     shape: Shape | None = None
-    rest: Rest | None = None
+    rest: RestMoment | None = None
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ class Spare:
     """What a clip that is left aside would be taken for. places: the stances this speaks of, by key."""
 
     proposal: Proposal
-    places: Mapping[str, Place]
+    places: Mapping[str, StancePlace]
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ class Proposals:
     """
 
     proposals: Mapping[str, Proposal]
-    places: Mapping[str, Place]
+    places: Mapping[str, StancePlace]
     aside: Mapping[str, str] = field(default_factory=dict)
     whole: bool = False
     spare: Mapping[str, Spare] = field(default_factory=dict)
@@ -106,11 +106,11 @@ class Proposals:
         return sorted(self.proposals.values(), key=lambda p: (p.confidence, p.clip))
 
 
-def words_of(name: str) -> tuple[str, ...]:
+def name_words(name: str) -> tuple[str, ...]:
     """Return the distinct words of a name, in their order, small letters."""
-    return tuple(dict.fromkeys(take_apart(name, _USUAL).words))
+    return tuple(dict.fromkeys(split_clip_name(name, _USUAL).words))
 
 
-def plain(name: str) -> str:
+def plain_stance_name(name: str) -> str:
     """Return a stance's name without case, order of words or separators."""
-    return " ".join(sorted(take_apart(name, _USUAL).words))
+    return " ".join(sorted(split_clip_name(name, _USUAL).words))

@@ -16,33 +16,54 @@ import numpy as np
 
 from metagraph.common.wording import phrase
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, Action, Layer, Limb, Project
-from metagraph.suggest.accept import Taken, accept
-from metagraph.suggest.alike import Alike, Example
+from metagraph.suggest.accept import AcceptedProposals, accept
+from metagraph.suggest.alike import Alike, LabelledExample
 from metagraph.suggest.clip_measures import layer_of, with_tremble
-from metagraph.suggest.details import masked, rest_of, stroked, timed, weighted
+from metagraph.suggest.details import rest_of, with_likelihoods, with_moved_joints, with_stroke, with_timing
 from metagraph.suggest.estimate import Belief
-from metagraph.suggest.left_aside import MANY, left_aside
+from metagraph.suggest.left_aside import MANY, explain_skipping
 from metagraph.suggest.motion_guess import MotionGuess, guess
-from metagraph.suggest.proposal import Place, Proposal, Proposals, Rest, Spare, plain, words_of
-from metagraph.suggest.stances.known import Shape, discover, discovered, known, nearest, parted, settled
-from metagraph.suggest.stances.places import Heard, Places
+from metagraph.suggest.proposal import (
+    Proposal,
+    Proposals,
+    RestMoment,
+    Spare,
+    StancePlace,
+    name_words,
+    plain_stance_name,
+)
+from metagraph.suggest.stances.known import (
+    Shape,
+    discover,
+    discover_stances,
+    list_known_stances,
+    rank_stances,
+    settle_stances,
+    split_stances,
+)
+from metagraph.suggest.stances.places import ClipEvidence, StancePlaces
 from metagraph.suggest.traits import Traits, traits_of
 from metagraph.suggest.vote_fusion import Agreed, combine
-from metagraph.suggest.whole_body import CARRIER, carried, recorded_whole, whole_of
+from metagraph.suggest.whole_body import (
+    CARRIER,
+    are_whole_body_recordings,
+    is_whole_body_carried,
+    with_whole_body,
+)
 from metagraph.suggest.words.names import NameGuess, Patterns, read_names
 
 __all__ = [
     "SOURCES",
-    "Place",
+    "AcceptedProposals",
     "Proposal",
     "Proposals",
-    "Rest",
+    "RestMoment",
     "Source",
-    "Taken",
+    "StancePlace",
     "accept",
     "examples_of",
     "measures_of",
-    "plain",
+    "plain_stance_name",
     "propose",
 ]
 
@@ -53,7 +74,7 @@ LEADS = 0.8  # of how sure the motion is that a clip called after a stance goes 
 LENT = 0.5  # of a clip that a stance plays, below which it only borrows a moment of it
 
 
-def examples_of(project: Project, traits: Mapping[str, Traits]) -> list[Example]:
+def examples_of(project: Project, traits: Mapping[str, Traits]) -> list[LabelledExample]:
     """Return what a project's labelled clips teach."""
     out = []
     for action in project.actions():
@@ -61,7 +82,7 @@ def examples_of(project: Project, traits: Mapping[str, Traits]) -> list[Example]
         if entry is None:
             continue
         labels: dict[str, str] = {"kind": action.kind, "layer": action.layer, "limb": action.limb}
-        out.append(Example(words_of(entry.name), measures_of(traits.get(action.clip)), labels))
+        out.append(LabelledExample(name_words(entry.name), measures_of(traits.get(action.clip)), labels))
     return out
 
 
@@ -107,7 +128,7 @@ def propose(
     project: Project,
     clips: Sequence[str] | None = None,
     patterns: Patterns | None = None,
-    examples: Iterable[Example] = (),
+    examples: Iterable[LabelledExample] = (),
     sources: Collection[Source] = SOURCES,
     cancelled: Callable[[], bool] | None = None,
     progress: Callable[[int, int], None] | None = None,
@@ -132,24 +153,24 @@ def propose(
         if said.stance is not None and said.stance.confidence >= TOLD
     }
     fresh = not any(True for _ in project.actions())
-    whole = moving and (carried(project) or (fresh and recorded_whole(mine, begun)))
+    whole = moving and (is_whole_body_carried(project) or (fresh and are_whole_body_recordings(mine, begun)))
     standing = {c: t for c, t in mine.items() if called[c].other is None}  # where fights begin nobody stands
     shapes = _shapes(project, traits, standing, whole, called) if moving else {}
     alike = Alike([*examples_of(project, traits), *examples]) if "learned" in sources else Alike([])
     odd = sum(1 for c in chosen if names.get(project.clips[c].name, NameGuess()).other is not None)
-    heard, others, aside = list[Heard](), list[Heard](), dict[str, str]()
+    heard, others, aside = list[ClipEvidence](), list[ClipEvidence](), dict[str, str]()
     for c in chosen:
         name = project.clips[c].name
-        each = Heard(c, name, names.get(name, NameGuess()), traits.get(c))
+        each = ClipEvidence(c, name, names.get(name, NameGuess()), traits.get(c))
         if whole and each.traits is not None and each.traits.face == 0:
-            each.posture = whole_of(each.traits).layers[CARRIER]
+            each.posture = with_whole_body(each.traits).layers[CARRIER]
         if each.traits is not None and moving:
             each.motion = guess(each.traits, shapes, CARRIER if each.posture else None, each.posture)
         if alike.examples:
-            each.learned = alike.guess(words_of(each.name), measures_of(each.traits))
+            each.learned = alike.guess(name_words(each.name), measures_of(each.traits))
         each.said = _leading(each.said, each.motion)
         usual, apart = odd >= MANY * len(chosen), shapes if each.posture is None else None
-        why = left_aside(each.said, each.traits, each.motion, usual, apart)
+        why = explain_skipping(each.said, each.traits, each.motion, usual, apart)
         layer = _layer_of(each)
         each.layer = layer.belief.value if layer is not None else "arms"
         each.beside = each.motion
@@ -160,18 +181,20 @@ def propose(
             others.append(each)
         else:
             heard.append(each)
-    places = Places(project, heard, shapes)
+    places = StancePlaces(project, heard, shapes)
     out = {each.clip: p for each in heard if (p := _proposal(each, places)) is not None}
     out = _somewhere(out, places.by_key)
     spare = _spare(out, others, places)
     if moving:
-        out = timed(project, out, cancelled)
+        out = with_timing(project, out, cancelled)
         motions = {each.clip: each for each in heard}
         out = {
-            c: stroked(project, masked(project, p, motions[c].traits), motions[c].beside)
+            c: with_stroke(project, with_moved_joints(project, p, motions[c].traits), motions[c].beside)
             for c, p in out.items()
         }
-    return Proposals(weighted(project, out), _with_rests(project, places.by_key, out), aside, whole, spare)
+    return Proposals(
+        with_likelihoods(project, out), _with_rests(project, places.by_key, out), aside, whole, spare
+    )
 
 
 def _leading(said: NameGuess, motion: MotionGuess | None) -> NameGuess:
@@ -198,20 +221,22 @@ def _shapes(
     parted where names and poses part alike.
     """
     if whole:
-        every = {c: whole_of(t) if t.face == 0 else t for c, t in traits.items()}
-        there = known(project, every)
-        found = discovered({c: t for c, t in mine.items() if t.face > 0})
+        every = {c: with_whole_body(t) if t.face == 0 else t for c, t in traits.items()}
+        there = list_known_stances(project, every)
+        found = discover_stances({c: t for c, t in mine.items() if t.face > 0})
         found[CARRIER] = discover({c: every[c] for c in mine}, CARRIER, together=True)
     else:
         every = dict(traits)
-        there, found = known(project, traits), discovered(mine)
+        there, found = list_known_stances(project, traits), discover_stances(mine)
     for layer, shapes in found.items():
         if shapes:
             moves = [every[c].layers[layer] for c in mine if whole or layer_of(every[c]).value == layer]
             ends = _ends({c: every[c] for c in mine}, layer, called, whole)
             if len({word for *_, word in ends}) < 2:
-                shapes = settled(shapes, [(x.names, pose) for x in moves for pose in (x.first, x.last)])
-            found[layer] = parted(shapes, ends)
+                shapes = settle_stances(
+                    shapes, [(x.names, pose) for x in moves for pose in (x.first, x.last)]
+                )
+            found[layer] = split_stances(shapes, ends)
     return {
         layer: (*there.get(layer, ()), *_unknown(there.get(layer, ()), found.get(layer, ())))
         for layer in LAYERS
@@ -223,7 +248,9 @@ def _unknown(there: Sequence[Shape], found: Sequence[Shape]) -> list[Shape]:
     return [
         shape
         for shape in found
-        if not any(away <= known_.scale() for away, known_ in nearest(there, shape.names, shape.poses[0]))
+        if not any(
+            away <= known_.scale() for away, known_ in rank_stances(there, shape.names, shape.poses[0])
+        )
     ]
 
 
@@ -246,7 +273,7 @@ def _ends(
     return out
 
 
-def _layer_of(each: Heard) -> Agreed[Layer] | None:
+def _layer_of(each: ClipEvidence) -> Agreed[Layer] | None:
     """Return which layer a clip is for: the carrier's where the whole body was recorded together."""
     if each.posture is not None:
         why = phrase("the whole body was recorded together, so this layer plays all of it")
@@ -254,7 +281,7 @@ def _layer_of(each: Heard) -> Agreed[Layer] | None:
     return each.agreed("layer", len(LAYERS))
 
 
-def _somewhere(proposals: Mapping[str, Proposal], places: dict[str, Place]) -> dict[str, Proposal]:
+def _somewhere(proposals: Mapping[str, Proposal], places: dict[str, StancePlace]) -> dict[str, Proposal]:
     """Return proposals, those that nothing says the stance of in the stance most clips of their layer are in;
     one is made where there is none.
     """
@@ -265,7 +292,7 @@ def _somewhere(proposals: Mapping[str, Proposal], places: dict[str, Place]) -> d
             layer = p.layer.value
             mine = [key for key, place in places.items() if place.layer == layer]
             key = max(mine, key=lambda k: used[k]) if mine else f"new {layer} rest"
-            places.setdefault(key, Place(key, layer, "rest"))
+            places.setdefault(key, StancePlace(key, layer, "rest"))
             p = replace(
                 p,
                 stance=Belief(
@@ -280,7 +307,9 @@ def _somewhere(proposals: Mapping[str, Proposal], places: dict[str, Place]) -> d
     return out
 
 
-def _spare(proposals: Mapping[str, Proposal], others: Iterable[Heard], places: Places) -> dict[str, Spare]:
+def _spare(
+    proposals: Mapping[str, Proposal], others: Iterable[ClipEvidence], places: StancePlaces
+) -> dict[str, Spare]:
     """Return what clips that are left aside would be taken for; they say nothing of the stances there are."""
     by_key = dict(places.by_key)
     mine = {each.clip: _proposal(each, places, True) for each in others}
@@ -295,20 +324,20 @@ def _spare(proposals: Mapping[str, Proposal], others: Iterable[Heard], places: P
 
 
 def _with_rests(
-    project: Project, places: Mapping[str, Place], proposals: Mapping[str, Proposal]
-) -> dict[str, Place]:
+    project: Project, places: Mapping[str, StancePlace], proposals: Mapping[str, Proposal]
+) -> dict[str, StancePlace]:
     """Return the stances, those that no clip rests in with a moment of some clip that shows them."""
     shown = {p.stance.value for p in proposals.values() if p.kind.value == "stance" and p.stance is not None}
-    names = {plain(places[key].name) for key in shown}
+    names = {plain_stance_name(places[key].name) for key in shown}
     return {
         key: place
-        if place.there or key in shown or plain(place.name) in names
+        if place.there or key in shown or plain_stance_name(place.name) in names
         else replace(place, rest=rest_of(project, place, proposals))
         for key, place in places.items()
     }
 
 
-def _proposal(each: Heard, places: Places, anyway: bool = False) -> Proposal | None:
+def _proposal(each: ClipEvidence, places: StancePlaces, anyway: bool = False) -> Proposal | None:
     """Return what is proposed for a clip; nothing where nothing says kind or layer, unless anyway."""
     kind, layer = each.agreed("kind", len(KINDS)), _layer_of(each)
     if kind is None and layer is None and not anyway:

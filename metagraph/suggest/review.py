@@ -17,11 +17,11 @@ from metagraph.common.wording import phrase
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, Layer, Project
-from metagraph.suggest.accept import Taken, accept
-from metagraph.suggest.details import timed
+from metagraph.suggest.accept import AcceptedProposals, accept
+from metagraph.suggest.details import with_timing
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.flags import gain
-from metagraph.suggest.proposal import Place, Proposal, Proposals, plain
+from metagraph.suggest.proposal import Proposal, Proposals, StancePlace, plain_stance_name
 from metagraph.suggest.propose import waiting
 
 Field = Literal["kind", "layer", "stance", "end_stance", "limb", "tags", "timing"]
@@ -84,22 +84,24 @@ class Review:
         To be called after every change of the project: an id that is gone may come again for another stance.
         """
         moved: dict[str, str] = {}
-        places: dict[str, Place] = {}
+        places: dict[str, StancePlace] = {}
         named = {
-            (s.layer, plain(s.name)): s for layer in LAYERS for s in project.graphs[layer].stances.values()
+            (s.layer, plain_stance_name(s.name)): s
+            for layer in LAYERS
+            for s in project.graphs[layer].stances.values()
         }
         for key, place in self.found.places.items():
-            stance = project.stance(key) or named.get((place.layer, plain(place.name)))
+            stance = project.stance(key) or named.get((place.layer, plain_stance_name(place.name)))
             if stance is not None:
                 new = replace(place, key=stance.id, layer=stance.layer, name=stance.name, there=True)
             elif place.there:
-                new = replace(place, key=f"new {place.layer} {plain(place.name)}", there=False)
+                new = replace(place, key=f"new {place.layer} {plain_stance_name(place.name)}", there=False)
             else:
                 new = place
             moved[key] = new.key
             places.setdefault(new.key, new)
         for stance in named.values():
-            places.setdefault(stance.id, Place(stance.id, stance.layer, stance.name, True))
+            places.setdefault(stance.id, StancePlace(stance.id, stance.layer, stance.name, True))
         proposals = {
             clip: replace(p, stance=_moved(p.stance, moved), end_stance=_moved(p.end_stance, moved))
             for clip, p in self.found.proposals.items()
@@ -162,7 +164,7 @@ class Review:
         }
         return min(beliefs, key=lambda n: belief.confidence if (belief := beliefs[n]) is not None else -1.0)
 
-    def take(self, project: Project, clips: Collection[str], above: float = 0.0) -> Taken:
+    def take(self, project: Project, clips: Collection[str], above: float = 0.0) -> AcceptedProposals:
         """Return the project with clips placed as proposed, and resting clips along with them that show a
         stance they need and that is not there yet. A clip that is placed already is placed anew.
         """
@@ -172,12 +174,12 @@ class Review:
         try:
             bare = edits.remove_actions(project, again) if again else project
         except EditError as error:
-            return Taken(project, (), dict.fromkeys(known, str(error)))
+            return AcceptedProposals(project, (), dict.fromkeys(known, str(error)))
         wanted = [c for c in known if self.found.proposals[c].confidence >= above]
         along = {r for c in wanted for r in self._resting(bare, c)}
         taken = accept(bare, self.found, 0.0, {*wanted, *along})
         if (again and taken.left) or not set(wanted) & set(taken.placed):
-            return Taken(
+            return AcceptedProposals(
                 project, (), taken.left
             )  # nothing comes along for nothing, and what was placed is not lost
         return taken
@@ -186,7 +188,7 @@ class Review:
         """Return a clip's proposal with the times the statistics give it as what it is taken for now, and
         those that were said.
         """
-        p = timed(project, self.found.proposals)[clip]
+        p = with_timing(project, self.found.proposals)[clip]
         said = self.said.get(clip, {}).get("timing")
         return replace(p, timing={**p.timing, **said}) if said else p
 
@@ -243,10 +245,10 @@ def _corrected(found: Proposals, clip: str, said: Mapping[Field, Any]) -> Propos
 
     def place(name: str) -> str:
         for key, there in places.items():
-            if there.layer == layer and plain(there.name) == plain(name):
+            if there.layer == layer and plain_stance_name(there.name) == plain_stance_name(name):
                 return key
-        key = f"new {layer} {plain(name)}"
-        places[key] = Place(key, layer, name)
+        key = f"new {layer} {plain_stance_name(name)}"
+        places[key] = StancePlace(key, layer, name)
         return key
 
     stance = p.stance
@@ -254,8 +256,10 @@ def _corrected(found: Proposals, clip: str, said: Mapping[Field, Any]) -> Propos
         stance = Belief(place(said["stance"]), 1.0, SAID)
     elif stance is not None and places[stance.value].layer != layer:
         # The other layer's stance of the same name, if there is one; else where most of its clips are.
-        name = plain(places[stance.value].name)
-        same = next((k for k, x in places.items() if x.layer == layer and plain(x.name) == name), None)
+        name = plain_stance_name(places[stance.value].name)
+        same = next(
+            (k for k, x in places.items() if x.layer == layer and plain_stance_name(x.name) == name), None
+        )
         there = Counter(
             x.stance.value
             for x in found.proposals.values()
@@ -297,7 +301,7 @@ def _decides(p: Proposal) -> tuple[Any, ...]:
     return p.kind.value, p.layer.value, p.stance and p.stance.value, p.end_stance and p.end_stance.value
 
 
-class Pace:
+class ReviewPace:
     """How long decisions take somebody, and what is left of the work."""
 
     def __init__(self) -> None:

@@ -17,7 +17,7 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.rig_controls import rig_controls
 from metagraph.motion.roles import body_parts, find_roles
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.suggest.body_points import facing_of, seen_from
+from metagraph.suggest.body_points import facing_of, view_from
 
 Array = NDArray[Any]
 
@@ -63,25 +63,25 @@ def _rig(skeleton: Skeleton, named: tuple[tuple[str, int], ...]) -> TrackRig:
 _TRACKS: WeakKeyDictionary[Clip, tuple[TrackRig, Array]] = WeakKeyDictionary()
 
 
-def track_of(rig: TrackRig, clip: Clip) -> Array:
+def joint_track(rig: TrackRig, clip: Clip) -> Array:
     """Return where the counted joints are, `[F, J, 3]` float32, metres, from the root as the character faces,
     RATE frames a second.
     """
     known = _TRACKS.get(clip)
     if known is not None and known[0] is rig:
         return known[1]
-    facing, at = stands(rig, poses_of(clip))
-    track = seen_from(facing[:, None], at[:, rig.joints] - at[:, rig.root, None]).astype(np.float32)
+    facing, at = facing_and_standing(rig, clip_poses(clip))
+    track = view_from(facing[:, None], at[:, rig.joints] - at[:, rig.root, None]).astype(np.float32)
     _TRACKS[clip] = rig, track
     return track
 
 
-def poses_of(clip: Clip) -> Pose:
+def clip_poses(clip: Clip) -> Pose:
     """Return a clip's poses, RATE frames a second."""
-    return clip.pose_at(times_of(clip)) if abs(clip.fps - RATE) > 1e-6 else clip.poses()
+    return clip.pose_at(track_seconds(clip)) if abs(clip.fps - RATE) > 1e-6 else clip.poses()
 
 
-def stands(rig: TrackRig, poses: Pose) -> tuple[Array, Array]:
+def facing_and_standing(rig: TrackRig, poses: Pose) -> tuple[Array, Array]:
     """Return where a character faces `[F, 2]`, as `points.facing_of`, and where the joints `TrackRig.keep`
     are `[F, K, 3]`, in the world.
     """
@@ -91,7 +91,7 @@ def stands(rig: TrackRig, poses: Pose) -> tuple[Array, Array]:
     ), at
 
 
-def times_of(clip: Clip) -> Array:
+def track_seconds(clip: Clip) -> Array:
     """Return the seconds `[F]` of a clip's track."""
     if abs(clip.fps - RATE) <= 1e-6:
         return np.arange(clip.frames) / clip.fps
@@ -103,7 +103,7 @@ def velocity_of(track: Array) -> Array:
     return np.gradient(track, 1 / RATE, axis=0) if len(track) > 1 else np.zeros_like(track)
 
 
-def rig_of(clip: Clip, roles: Mapping[str, int] | None) -> TrackRig:
+def track_rig(clip: Clip, roles: Mapping[str, int] | None) -> TrackRig:
     """Return what counts of a clip's skeleton. roles: as found unless given."""
     named = find_roles(clip.skeleton) if roles is None else roles
     return _rig(clip.skeleton, tuple(sorted(named.items())))

@@ -21,7 +21,7 @@ from metagraph.graph.words import LAYERS, Layer
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Skeleton
-from metagraph.suggest.body_points import NAMES, Figure, figure_of, points_of, seen_from
+from metagraph.suggest.body_points import NAMES, PosedFigure, points_of, pose_figure, view_from
 from metagraph.suggest.self_contact import NOTHING, SelfContact, self_contact
 
 Array = NDArray[Any]
@@ -130,7 +130,7 @@ def traits_of(
     """
     if isinstance(source, Project):
         clips = [(ident, entry.motion) for ident, entry in source.clips.items() if entry.motion is not None]
-        own = dict(anatomy.roles(source))
+        own = dict(anatomy.project_roles(source))
         mine = source.skeleton
     else:
         clips, own, mine = [(clip.name, clip) for clip in source], {}, None
@@ -157,7 +157,7 @@ def traits_of(
     return out
 
 
-def traits_known(project: Project) -> dict[str, Traits]:
+def list_known_traits(project: Project) -> dict[str, Traits]:
     """Return clip id -> traits of those clips that were looked at before, at once."""
     found = {
         ident: _KNOWN.get(entry.motion) for ident, entry in project.clips.items() if entry.motion is not None
@@ -183,7 +183,7 @@ def _all(clips: Sequence[Clip], roles: Callable[[Clip], tuple[tuple[str, int], .
         if known is None or known[0] != named:
             groups.setdefault((clip.skeleton, named), []).append(clip)
     for (skeleton, named), some in groups.items():
-        figure = figure_of(skeleton, named)
+        figure = pose_figure(skeleton, named)
         frames = [_frames(clip) for clip in some]
         points, world = points_of(figure, some, frames)
         ends = np.cumsum([0, *(len(f) for f in frames)])
@@ -290,7 +290,7 @@ def _bouts(speed: Array) -> int:
     return count + (1 if rising and top >= least else 0)
 
 
-def _of(figure: Figure, points: Mapping[str, Array], world: Mapping[str, Array], times: Array) -> Traits:
+def _of(figure: PosedFigure, points: Mapping[str, Array], world: Mapping[str, Array], times: Array) -> Traits:
     facing = world["facing"]
     layers: dict[Layer, LayerTraits] = {}
     energy = dict.fromkeys(PARTS, 0.0)
@@ -302,7 +302,7 @@ def _of(figure: Figure, points: Mapping[str, Array], world: Mapping[str, Array],
         tracks = np.stack([points[n] for n in names], axis=1) if names else np.zeros((len(times), 0, 3))
         turned = tracks
         if layer == "body" and names:  # that the whole body turns is a movement
-            turned = seen_from(facing[:1, None], seen_from(facing[:, None] * _BACK, tracks))
+            turned = view_from(facing[:1, None], view_from(facing[:, None] * _BACK, tracks))
         fast = _speeds(turned, times)
         speeds |= dict(zip(names, fast.T, strict=True))
         layers[layer] = _layer(names, tracks, turned, fast, times)

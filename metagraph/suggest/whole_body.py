@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from metagraph.graph.model import Project
 from metagraph.graph.words import LAYERS, Layer
 from metagraph.suggest.body_points import NAMES
-from metagraph.suggest.clip_measures import TYPICAL, layer_of, nothing, resting
+from metagraph.suggest.clip_measures import TYPICAL, layer_of, no_measures, resting
 from metagraph.suggest.stances.known import SETTLED, Shape, discover, likely
 from metagraph.suggest.traits import LayerTraits, Traits
 
@@ -40,12 +40,12 @@ APART: Mapping[Layer, float] = {"arms": 0.02, "head": 0.012, "body": 0.01}  # he
 WIDER = 4.0  # times the spread of its clips' ends that a stance of a layer is away at least
 
 
-def carried(project: Project) -> bool:
+def is_whole_body_carried(project: Project) -> bool:
     """Return whether the carrier's layer plays the whole body of a project."""
     return project.graphs[CARRIER].weight("legs") > 0
 
 
-def whole_of(traits: Traits) -> Traits:
+def with_whole_body(traits: Traits) -> Traits:
     """Return a clip's traits with the whole body's pose in the carrier's place, so that it is compared
     as one.
 
@@ -78,7 +78,7 @@ def whole_of(traits: Traits) -> Traits:
     return replace(traits, layers={**traits.layers, CARRIER: whole})
 
 
-def recorded_whole(traits: Mapping[str, Traits], named: Mapping[str, str] | None = None) -> bool:
+def are_whole_body_recordings(traits: Mapping[str, Traits], named: Mapping[str, str] | None = None) -> bool:
     """Return whether these clips are recordings of the whole body, made in several stances. named: clip ->
     the stance its name begins with.
 
@@ -91,7 +91,7 @@ def recorded_whole(traits: Mapping[str, Traits], named: Mapping[str, str] | None
 def _named_whole(traits: Mapping[str, Traits], named: Mapping[str, str]) -> bool:
     groups: dict[str, list[Layer]] = {}
     for clip, word in named.items():
-        if clip in traits and traits[clip].face == 0 and not nothing(traits[clip]):
+        if clip in traits and traits[clip].face == 0 and not no_measures(traits[clip]):
             moved = layer_of(traits[clip])
             if moved.confidence >= CLEAR:
                 groups.setdefault(word, []).append(moved.value)
@@ -102,9 +102,9 @@ def _named_whole(traits: Mapping[str, Traits], named: Mapping[str, str]) -> bool
 
 def _seen_whole(traits: Mapping[str, Traits]) -> bool:
     moving = {
-        clip: whole_of(t)
+        clip: with_whole_body(t)
         for clip, t in traits.items()
-        if t.face == 0 and not nothing(t) and all(t.layers[layer].names for layer in ("arms", "body"))
+        if t.face == 0 and not no_measures(t) and all(t.layers[layer].names for layer in ("arms", "body"))
     }
     shapes = discover(moving, CARRIER, together=True)
     held: list[tuple[Shape, Layer]] = []  # of clips that stay in a stance, it and the layer they move

@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
-from metagraph.suggest.tracks import RATE, poses_of, rig_of, stands
+from metagraph.suggest.tracks import RATE, clip_poses, facing_and_standing, track_rig
 from metagraph.synthesis.graph import BLEND
 from metagraph.synthesis.retiming import Retiming
 from metagraph.synthesis.search.path import Path
-from metagraph.synthesis.standing_feet import held_feet, standing
+from metagraph.synthesis.standing_feet import find_standing, keep_feet_still
 from metagraph.synthesis.states import States, SynthesisError
 
 Array = NDArray[Any]
@@ -101,9 +101,9 @@ def assemble(
         way = way[retiming.frames]
     if not hold_feet or not len(path.jumps):
         return made
-    each = [standing(c.skeleton, poses_of(c)) for c in takes]
+    each = [find_standing(c.skeleton, clip_poses(c)) for c in takes]
     feet = {side: np.concatenate([one[side] for one in each])[way] for side in each[0]}
-    return held_feet(made, feet)
+    return keep_feet_still(made, feet)
 
 
 def _first(states: States) -> Array:
@@ -113,11 +113,11 @@ def _first(states: States) -> Array:
 
 
 def _frames(takes: Sequence[Clip]) -> _Frames:
-    rig = rig_of(takes[0], None)
+    rig = track_rig(takes[0], None)
     rotations, translations, ground, heading = [], [], [], []
     for clip in takes:
-        poses = poses_of(clip)
-        facing, at = stands(rig, poses)
+        poses = clip_poses(clip)
+        facing, at = facing_and_standing(rig, poses)
         rotations.append(poses.rotations)
         translations.append(poses.translations)
         ground.append(at[:, rig.root][:, [0, 2]])

@@ -113,7 +113,7 @@ def block(work: BlockWork, first: int, cancelled: Callable[[], bool] | None = No
     """Return the transitions of the key states from the `first` on, one after another, targets ascending.
     Raises SynthesisError when it was cancelled.
     """
-    from metagraph.synthesis.kernels import near, pack, thin
+    from metagraph.synthesis.kernels import find_near, pack, thin
 
     count = len(work.into)
     size = min(ROWS, len(work.keys) - first)
@@ -124,7 +124,7 @@ def block(work: BlockWork, first: int, cancelled: Callable[[], bool] | None = No
             raise SynthesisError(CANCELLED)
         rows = work.keys[begin : min(begin + ROWS, first + BLOCK)]
         found = np.empty(len(rows), np.int64)
-        near(
+        find_near(
             work.rows[begin : begin + len(rows)],
             work.blocks,
             work.middles,

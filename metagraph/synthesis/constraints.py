@@ -70,7 +70,7 @@ class WantedSegment:
         return 0 if self.barred is None else int(self.barred[t])
 
 
-def heard(states: States, takes: Sequence[Sequence[Segment]]) -> HeardStates:
+def find_heard_at(states: States, takes: Sequence[Sequence[Segment]]) -> HeardStates:
     """Return what was heard at states, from each take's segments; where segments of a take overlap the later
     one counts, and where there is none it was idle. Raises SynthesisError when there are not as many takes,
     or a segment ends before it starts.
@@ -90,7 +90,7 @@ def heard(states: States, takes: Sequence[Sequence[Segment]]) -> HeardStates:
     return HeardStates(kinds, peaks, edges)
 
 
-def changes(states: States, takes: Sequence[Sequence[Segment]]) -> list[int]:
+def find_change_states(states: States, takes: Sequence[Sequence[Segment]]) -> list[int]:
     """Return the states at which what is heard changes: key states, whatever moves there."""
     out: set[int] = set()
     for number, segments in enumerate(takes):
@@ -101,7 +101,7 @@ def changes(states: States, takes: Sequence[Sequence[Segment]]) -> list[int]:
     return sorted(out)
 
 
-def wanted(
+def list_wanted(
     segments: Sequence[Segment],
     seconds: float,
     tolerance: float = TOLERANCE,

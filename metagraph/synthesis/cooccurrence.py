@@ -66,7 +66,7 @@ def speeds(clip: Clip, roles: Mapping[str, int] | None = None) -> dict[Part, Arr
     def seen(point: Array, joint: int) -> Array:
         """The point as seen from what the joint hangs on, with its origin in the joint."""
         above = max(int(clip.skeleton.parents[joint]), 0)
-        return rotation.rotate(rotation.conjugate(turns[:, above]), point - at[:, joint])
+        return rotation.rotate_vectors(rotation.conjugate(turns[:, above]), point - at[:, joint])
 
     parts: tuple[tuple[Part, str], ...] = (("left_hand", "left_upper_arm"), ("right_hand", "right_upper_arm"))
     for part, shoulder in parts:
@@ -75,8 +75,10 @@ def speeds(clip: Clip, roles: Mapping[str, int] | None = None) -> dict[Part, Arr
     if "head" in named:
         head = named["head"]
         neck = named.get("neck", head)
-        ahead = rotation.rotate(rotation.conjugate(turns[0, head]), np.array([0.0, 0.0, AHEAD]))
-        nose = at[:, head] + rotation.rotate(turns[:, head], np.broadcast_to(ahead, at[:, head].shape))
+        ahead = rotation.rotate_vectors(rotation.conjugate(turns[0, head]), np.array([0.0, 0.0, AHEAD]))
+        nose = at[:, head] + rotation.rotate_vectors(
+            turns[:, head], np.broadcast_to(ahead, at[:, head].shape)
+        )
         out["head"] = _speed(seen(nose, neck)[:, 1:2], clip.fps)
     return out
 
@@ -93,7 +95,7 @@ def activation(speed: Array, share: float = ACTIVE) -> float:
     return low + share * (high - low)
 
 
-def windows(
+def movement_windows(
     segments: Sequence[Segment], length: float, every: Sequence[Segment] | None = None
 ) -> list[tuple[float, float]]:
     """Return where to look for the movement of each segment, seconds: about its middle, WIDE times as long,
@@ -134,7 +136,7 @@ def movement(
     return (first + int(fast[0])) / fps, (first + int(fast[-1])) / fps
 
 
-def table(
+def count_cooccurrence(
     takes: Sequence[Clip], speech: Sequence[Sequence[Segment]], chances: int = CHANCES, seed: int = 1
 ) -> list[CooccurrenceRow]:
     """Return how often each kind of segment went with which movement, over all takes, as the paper's table 1.
@@ -178,7 +180,7 @@ def _matches(
         mine = sorted((s for s in every if s.kind == kind), key=lambda s: s.start)
         idle = {part: activation(speed[part]) for part in parts if part in speed}
         seen = dict.fromkeys(idle, 0.0)  # a movement counts once: the next window begins after it
-        for low, high in windows(mine, clip.duration, every):
+        for low, high in movement_windows(mine, clip.duration, every):
             total += 1
             there = False
             for part, least in idle.items():

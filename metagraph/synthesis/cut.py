@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.motion.clip import Clip
-from metagraph.suggest.tracks import RATE, times_of
+from metagraph.suggest.tracks import RATE, track_seconds
 from metagraph.synthesis.graph import threshold
-from metagraph.synthesis.states import States, SynthesisError, states_of, terms_of
+from metagraph.synthesis.states import States, SynthesisError, read_states, terms_of
 
 Array = NDArray[Any]
 Candidate = tuple[
@@ -54,12 +54,12 @@ def candidates(
             f"clips of {least:g} to {most:g} s cannot be: the longest lasts at least as long as the "
             "shortest, more than 0"
         )
-    states = states_of([clip]) if states is None else states
+    states = read_states([clip]) if states is None else states
     limit = threshold(states).limit if limit is None else limit
     near, apart = _rests(states, limit)
-    speeds = smoothed(states)
+    speeds = smooth_speed(states)
     least_speed = pace(speeds).moves
-    times = times_of(clip)
+    times = track_seconds(clip)
     out: list[Candidate] = []
     n = 0
     while n < len(near) - 1:
@@ -79,7 +79,7 @@ def candidates(
 
 
 @dataclass(frozen=True)
-class Pace:
+class TakePace:
     """How fast a take moves, metres a second. rests: what is no faster rests; moves: what gets as fast moves,
     0 where speeds are of one kind. middle: median.
     """
@@ -89,13 +89,13 @@ class Pace:
     middle: float
 
 
-def smoothed(states: States) -> Array:
+def smooth_speed(states: States) -> Array:
     """Return `[F]` how fast a take's fastest joint is, metres a second, over a sixth of a second."""
     speed = np.linalg.norm(states.velocities, axis=-1).max(-1)
     return np.convolve(np.pad(speed, 2, "edge"), np.ones(5) / 5, "valid")
 
 
-def pace(speeds: Array) -> Pace:
+def pace(speeds: Array) -> TakePace:
     """Return what rest is and what moves by a take's own speeds `[F]`: where their logarithms are of two
     kinds (Otsu), the middle of each; else a share of the median.
     """
@@ -104,21 +104,21 @@ def pace(speeds: Array) -> Pace:
     ordered = np.sort(np.log(np.maximum(speeds, SLOWEST)))
     variance, count = float(ordered.var()), len(ordered)
     if variance < 1e-9:
-        return Pace(still, 0.0, middle)
+        return TakePace(still, 0.0, middle)
     sums, below = np.cumsum(ordered), np.arange(1, count)
     slow, fast = sums[:-1] / below, (sums[-1] - sums[:-1]) / (count - below)
     between = below * (count - below) * (slow - fast) ** 2
     best = int(between.argmax())
     if between[best] / (count**2 * variance) < TWO_KINDS:
-        return Pace(still, 0.0, middle)
-    return Pace(max(still, float(np.exp(slow[best]))), float(np.exp(fast[best])), middle)
+        return TakePace(still, 0.0, middle)
+    return TakePace(max(still, float(np.exp(slow[best]))), float(np.exp(fast[best])), middle)
 
 
 def uncut(clip: Clip, limit: float | None = None, least: float = LEAST, most: float = MOST) -> str:
     """Return why `candidates` finds nothing in a take, in words. Arguments and errors as there."""
-    states = states_of([clip])
+    states = read_states([clip])
     limit = threshold(states).limit if limit is None else limit
-    speeds = smoothed(states)
+    speeds = smooth_speed(states)
     found, places = pace(speeds), moments(states)
     if len(places) < 2:
         slow = 100 * float(np.quantile(speeds, 0.05))
@@ -144,7 +144,7 @@ def moments(states: States) -> Array:
     """
     if len(states.velocities) < 3:
         return np.zeros(0, int)
-    smooth = smoothed(states)
+    smooth = smooth_speed(states)
     slow = smooth <= pace(smooth).rests
     out: list[int] = []
     for at in np.argsort(smooth, kind="stable"):

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.suggest.jumps.johnson import JohnsonSB, fit
+from metagraph.suggest.jumps.johnson import JohnsonSB, fit_johnson
 from metagraph.synthesis.blocks import THIS_MACHINE, BlockMakers, transitions, work_of
 from metagraph.synthesis.states import LEVEL, STEP, States, SynthesisError, costs_apart, key_states
 
@@ -75,11 +75,11 @@ def threshold(states: States, k: int = STEP, level: float = LEVEL) -> Threshold:
     if high - low < 1e-9:
         return Threshold(k, level, costs, None, high, observed)
     margin = MARGIN * (high - low)
-    distribution = fit(costs, max(0.0, low - margin), high + margin)
+    distribution = fit_johnson(costs, max(0.0, low - margin), high + margin)
     return Threshold(k, level, costs, distribution, distribution.quantile(level), observed)
 
 
-def build(
+def build_graph(
     states: States,
     limit: Threshold | None = None,
     keys: Array | None = None,
@@ -114,9 +114,9 @@ def largest(graph: MotionGraph, spent: bool = False) -> MotionGraph:
     way to every other. spent: nobody needs the graph any more; what is left takes its memory. Raises
     SynthesisError when no two states are connected.
     """
-    from metagraph.synthesis.kernels import components, cut
+    from metagraph.synthesis.kernels import cut_transitions, find_components
 
-    component, count = components(graph.starts, graph.targets, ~graph.states.last)
+    component, count = find_components(graph.starts, graph.targets, ~graph.states.last)
     sizes = np.bincount(component, minlength=count)
     if sizes.max() < 2:
         raise SynthesisError(
@@ -128,7 +128,7 @@ def largest(graph: MotionGraph, spent: bool = False) -> MotionGraph:
     if kept.all():
         return graph
     targets, costs = (graph.targets, graph.costs) if spent else (graph.targets.copy(), graph.costs.copy())
-    starts = cut(graph.starts, targets, costs, kept)
+    starts = cut_transitions(graph.starts, targets, costs, kept)
     targets, costs = targets[: starts[-1]], costs[: starts[-1]]
     if 2 * len(targets) < len(graph.targets):  # else the memory of all of them stays
         targets, costs = targets.copy(), costs.copy()

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.conversation.model import Word
-from metagraph.graph.vocabulary import Vocabulary, tokens
+from metagraph.graph.vocabulary import Vocabulary, split_tokens
 from metagraph.suggest.tracks import RATE
 from metagraph.synthesis.constraints import TOLERANCE
 from metagraph.synthesis.graph import BLEND
@@ -48,7 +48,7 @@ def word_wish(text: str) -> WordWish:
     "big, huge" (for both, of either). Raises ValueError where a side names no word.
     """
     left, equals, right = text.partition("=")
-    said, alike = (tuple(w.strip() for w in part.split(",") if tokens(w)) for part in (left, right))
+    said, alike = (tuple(w.strip() for w in part.split(",") if split_tokens(w)) for part in (left, right))
     if not said or (equals and not alike):
         raise ValueError(
             f"'{text.strip()}' names no word: say big, or big = huge, tall, or big, huge where each may "
@@ -79,12 +79,12 @@ class WordPlace:
         return bool(self.near[np.arange(len(self.near)), np.asarray(way)[slice(*self.frames)]].all())
 
 
-def spans(words: Sequence[Word], phrases: Sequence[str]) -> list[tuple[float, float, str]]:
+def find_phrase_spans(words: Sequence[Word], phrases: Sequence[str]) -> list[tuple[float, float, str]]:
     """Return start, end and text of each phrase that is said, by start: the longest where several begin, none
     within another.
     """
     vocabulary, ordered = Vocabulary(phrases), sorted(words, key=lambda w: w.start)
-    parts = [tokens(w.text) for w in ordered]
+    parts = [split_tokens(w.text) for w in ordered]
     out, n = [], 0
     while n < len(ordered):
         count = vocabulary.at(parts, n) if parts[n] else 0
@@ -124,9 +124,9 @@ def word_places(
         middles = [
             (number, (a + b) / 2 * RATE)
             for number, take in enumerate(takes)
-            for a, b, _ in spans(take.words, (*wish.said, *wish.alike))
+            for a, b, _ in find_phrase_spans(take.words, (*wish.said, *wish.alike))
         ]
-        for a, b, text in spans(new.words, wish.said):
+        for a, b, text in find_phrase_spans(new.words, wish.said):
             middle = ((a + b) / 2 - start) * RATE
             first, after = max(0, round((a - start) * RATE)), min(frames, round((b - start) * RATE))
             if 0 <= middle < frames and not taken[first:after].any():
@@ -174,7 +174,7 @@ def word_cost(places: Sequence[WordPlace], frames: int, price: float, limit: flo
     return FrameCost("words", at, np.concatenate(rows).astype(np.float32))
 
 
-def only_words(places: Sequence[WordPlace]) -> dict[int, Array]:
+def only_states_of_words(places: Sequence[WordPlace]) -> dict[int, Array]:
     """Return, as `WantedSegment.only` has it, the states that alone may come at each word some take says."""
     return {p.frames[0] + n: near for p in places if p.known for n, near in enumerate(p.near)}
 
@@ -193,7 +193,7 @@ class WordShown:
     there: float | None = None
 
 
-def words_shown(places: Sequence[WordPlace], states: States, way: Array) -> tuple[WordShown, ...]:
+def find_words_shown(places: Sequence[WordPlace], states: States, way: Array) -> tuple[WordShown, ...]:
     """Return what became of each word by the states `[T]` of a path."""
     out = []
     for p in places:
@@ -211,11 +211,13 @@ def unsaid(wishes: Sequence[WordWish], new: SpokenTake, start: float, seconds: f
     return tuple(
         wish.name
         for wish in wishes
-        if not any(start <= (a + b) / 2 < start + seconds for a, b, _ in spans(new.words, wish.said))
+        if not any(
+            start <= (a + b) / 2 < start + seconds for a, b, _ in find_phrase_spans(new.words, wish.said)
+        )
     )
 
 
-def words_told(shown: Sequence[WordShown], never: Sequence[str] = ()) -> str:
+def describe_words(shown: Sequence[WordShown], never: Sequence[str] = ()) -> str:
     """Return what became of words, in words; "" where none was wished. never: `unsaid`."""
     parts = []
     if shown:

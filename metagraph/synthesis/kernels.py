@@ -11,15 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from metagraph.common.compiling import compiler
+from metagraph.common.compiling import find_compiler
 
 Array = Any
 
 LANES = 64  # wide enough that the loops cost little, narrow enough that most blocks end early
 EVERY = 8  # terms between looks at whether a block is done with
 
-compiled = compiler(nogil=True, fastmath=True, error_model="numpy")
-compiled_exactly = compiler(
+compiled = find_compiler(nogil=True, fastmath=True, error_model="numpy")
+compiled_exactly = find_compiler(
     nogil=True, error_model="numpy"
 )  # where infinite means out of reach: fast arithmetic takes it that nothing is
 
@@ -81,7 +81,7 @@ def lay(terms: Array, far: Any, blocks: Array, middles: Array, spread: Array) ->
 
 
 @compiled
-def near(
+def find_near(
     rows: Array,
     blocks: Array,
     middles: Array,
@@ -184,7 +184,7 @@ def thin(counts: Array, targets: Array, costs: Array, most: Any) -> tuple[Array,
 
 
 @compiled
-def cut(starts: Array, targets: Array, costs: Array, kept: Array) -> Array:
+def cut_transitions(starts: Array, targets: Array, costs: Array, kept: Array) -> Array:
     """Leave of transitions, as `MotionGraph` has them, those from and to states that are kept `[F]`, in the
     memory where they are, and return where those of each state begin then `[F + 1]`.
     """
@@ -204,7 +204,7 @@ def cut(starts: Array, targets: Array, costs: Array, kept: Array) -> Array:
 
 
 @compiled
-def components(starts: Array, targets: Array, follows: Array) -> tuple[Array, int]:
+def find_components(starts: Array, targets: Array, follows: Array) -> tuple[Array, int]:
     """Return which strongly connected component each state is of, and how many there are (Tarjan, without
     recursion).
 

@@ -46,7 +46,7 @@ class SpokenTake:
         return np.asarray(getattr(self.prosody, measure), float)
 
 
-def standardised(recordings: Sequence[SpokenTake], measure: Measure) -> list[Array]:
+def standardise_prosody(recordings: Sequence[SpokenTake], measure: Measure) -> list[Array]:
     """Return of each recording how far each segment is from its speaker's usual, in spreads; NaN where that
     is not known.
 
@@ -81,7 +81,7 @@ def of_states(states: States, takes: Sequence[SpokenTake], measure: Measure) -> 
     if len(takes) != len(states.starts) - 1:
         raise SynthesisError(f"{len(states.starts) - 1} takes have states, but {len(takes)} have speech")
     out = np.full(len(states), np.nan)
-    for number, (take, values) in enumerate(zip(takes, standardised(takes, measure), strict=True)):
+    for number, (take, values) in enumerate(zip(takes, standardise_prosody(takes, measure), strict=True)):
         first, after = int(states.starts[number]), int(states.starts[number + 1])
         for s, value in zip(take.segments, values, strict=True):
             a, b = first + round(s.start * RATE), first + round(s.end * RATE)
@@ -95,7 +95,7 @@ def of_speech(new: SpokenTake, start: float, seconds: float, measure: Measure) -
     """
     frames = max(1, round(seconds * RATE))
     out = np.full(frames, np.nan)
-    for s, value in zip(new.segments, standardised([new], measure)[0], strict=True):
+    for s, value in zip(new.segments, standardise_prosody([new], measure)[0], strict=True):
         a, b = round((s.start - start) * RATE), round((s.end - start) * RATE)
         out[max(0, a) : max(0, min(frames, b))] = value
     return out

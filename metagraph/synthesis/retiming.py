@@ -16,12 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.motion.clip import Clip
-from metagraph.suggest.tracks import RATE, poses_of, times_of
+from metagraph.suggest.tracks import RATE, clip_poses, track_seconds
 from metagraph.synthesis.constraints import EDGE, STRESS, HeardStates, WantedSegment
 from metagraph.synthesis.cooccurrence import activation, speeds
 from metagraph.synthesis.graph import BLEND
 from metagraph.synthesis.search.frame_costs import FrameCost
-from metagraph.synthesis.standing_feet import standing
+from metagraph.synthesis.standing_feet import find_standing
 from metagraph.synthesis.states import SynthesisError
 
 Array = NDArray[Any]
@@ -70,7 +70,7 @@ class Retiming:
         )
 
 
-def checked_share(most: float) -> float:
+def check_share(most: float) -> float:
     """Return a share by which speed may change. Raises SynthesisError where it is none."""
     if not 0 <= most <= HIGHEST:
         raise SynthesisError(f"speed may change by 0 to {HIGHEST:.0%}, not by {most:.0%}")
@@ -86,13 +86,13 @@ def retimable(takes: Sequence[Clip]) -> Array:
     """
     out = []
     for clip in (c for c in takes if c.frames >= 2):
-        times, poses = times_of(clip), poses_of(clip)
+        times, poses = track_seconds(clip), clip_poses(clip)
         free = np.ones(len(times), bool)
         own = np.arange(clip.frames) / clip.fps
         for part, speed in speeds(clip).items():
             if part != "head":
                 free &= ~_strokes(np.interp(times, own, speed))
-        for stands in standing(clip.skeleton, poses).values():
+        for stands in find_standing(clip.skeleton, poses).values():
             free &= stands
         out.append(free)
     return np.concatenate(out)
@@ -132,7 +132,7 @@ def retime(
     there. How far each is moved is the best by that (dynamic programming): squares of what they are then off
     are least, and none is farther off than it was by more than a frame's rounding.
     """
-    checked_share(most)
+    check_share(most)
     pairs = _pairs(way, heard, wanted.places, reach)
     frames = len(way)
     if not pairs or most == 0:
@@ -256,7 +256,7 @@ def timing_cost(
     return FrameCost("timing", at, (price * limit * rows).astype(np.float32))
 
 
-def keeps_to(way: Array, moments: Array, heard: HeardStates, wanted: WantedSegment) -> bool:
+def keeps_constraints(way: Array, moments: Array, heard: HeardStates, wanted: WantedSegment) -> bool:
     """Return whether a path that is shown so, moments `[T]` of its states, has what is wanted: kinds, events
     in their windows and no others, words. What is between frames counts as at the nearest.
     """

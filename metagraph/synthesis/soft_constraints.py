@@ -19,11 +19,11 @@ from metagraph.synthesis.iconic_words import (
     WordPlace,
     WordShown,
     WordWish,
+    describe_words,
+    find_words_shown,
     unsaid,
     word_cost,
     word_places,
-    words_shown,
-    words_told,
 )
 from metagraph.synthesis.prosody_costs import (
     MEASURES,
@@ -35,8 +35,8 @@ from metagraph.synthesis.prosody_costs import (
     prosody_cost,
     prosody_match,
 )
-from metagraph.synthesis.retiming import Retiming, checked_share, retimable, retime
-from metagraph.synthesis.search.frame_costs import FrameCosts, together
+from metagraph.synthesis.retiming import Retiming, check_share, retimable, retime
+from metagraph.synthesis.search.frame_costs import FrameCosts, join_costs
 from metagraph.synthesis.search.path import Path
 from metagraph.synthesis.states import States, SynthesisError
 
@@ -62,7 +62,7 @@ class SoftWish:
             value = getattr(self, name)
             if not 0 <= value <= 1000:
                 raise SynthesisError(f"the weight of {name} is 0 to 1000, not {value:g}")
-        checked_share(self.retime)
+        check_share(self.retime)
 
     @property
     def measures(self) -> tuple[Measure, ...]:
@@ -140,7 +140,7 @@ class SoftMaterial:
             known.append((measure, of_state, of_frame))
         places = word_places(wish.words, self.states, self.takes, new, start, seconds, tolerance)
         frames = max(1, round(seconds * RATE))
-        charged = together([*kinds, word_cost(places, frames, wish.price, self.limit)])
+        charged = join_costs([*kinds, word_cost(places, frames, wish.price, self.limit)])
         never = unsaid(wish.words, new, start, seconds)
         return SoftConstraints(charged, places, wish.hard, self.free, wish.retime, tuple(known), never)
 
@@ -170,7 +170,7 @@ class SoftReport:
     def told(self) -> str:
         """Return it in words, "" where nothing was asked for."""
         parts = [m.words() for m in self.matches]
-        if words := words_told(self.words, self.unsaid):
+        if words := describe_words(self.words, self.unsaid):
             parts.append(words)
         if self.paid:
             parts.append(f"paid {', '.join(f'{cost:.3g} m for {name}' for name, cost in self.paid.items())}")
@@ -193,7 +193,7 @@ def soft_report(
     return SoftReport(
         paid,
         tuple(m for m in matches if m is not None),
-        words_shown(soft.places, states, way),
+        find_words_shown(soft.places, states, way),
         soft.unsaid,
         retiming.words() if retiming is not None else "",
         retiming.off if retiming is not None else None,

@@ -31,7 +31,7 @@ FADE = 0.2  # seconds in which it is let go, and taken
 FARTHEST = 0.1  # metres it is held back at most, likewise; beyond it goes along
 
 
-def standing(skeleton: Skeleton, poses: Pose) -> dict[str, Array]:
+def find_standing(skeleton: Skeleton, poses: Pose) -> dict[str, Array]:
     """Return when each foot stands in a take of RATE frames a second, left and right `[F]`; nothing of what
     has no legs.
     """
@@ -63,7 +63,7 @@ def _long(there: Array, least: int) -> Array:
     return out
 
 
-def held_feet(clip: Clip, when: Mapping[str, Array]) -> Clip:
+def keep_feet_still(clip: Clip, when: Mapping[str, Array]) -> Clip:
     """Return a clip whose feet do not slide while they stand. when: each foot does, `[F]`."""
     roles = find_roles(clip.skeleton)
     size = max(clip.skeleton.height, 1e-3) / TALL

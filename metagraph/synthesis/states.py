@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.motion.clip import Clip
-from metagraph.suggest.tracks import RATE, rig_of, track_of, velocity_of
+from metagraph.suggest.tracks import RATE, joint_track, track_rig, velocity_of
 
 Array = NDArray[Any]
 
@@ -73,7 +73,7 @@ def terms_of(states: States, which: Array) -> Array:
     return out
 
 
-def states_of(
+def read_states(
     clips: Sequence[Clip], roles: Mapping[str, int] | None = None, velocity: float | None = None
 ) -> States:
     """Return the states of takes of one skeleton. velocity: w_v, else what brings velocities to the range of
@@ -90,8 +90,8 @@ def states_of(
     short = [c.name for c in clips if c.frames < 2]
     if len(short) == len(clips):
         raise SynthesisError("every take has only one frame; a motion graph needs motion")
-    rig = rig_of(clips[0], roles)
-    tracks = [track_of(rig, c) for c in clips if c.frames >= 2]
+    rig = track_rig(clips[0], roles)
+    tracks = [joint_track(rig, c) for c in clips if c.frames >= 2]
     places = np.concatenate(tracks).astype(np.float32)
     velocities = np.concatenate([velocity_of(t) for t in tracks]).astype(np.float32)
     starts = np.concatenate([[0], np.cumsum([len(t) for t in tracks])])
@@ -102,14 +102,14 @@ def states_of(
 def with_velocity(states: States, velocity: float | None) -> States:
     """Return states with another w_v; None: that which brings velocities to the range of places."""
     if velocity is None:
-        near, later = pairs_apart(states, STEP - 1)
+        near, later = list_pairs_apart(states, STEP - 1)
         p = _distance(states.places, near, later, states.weights)
         v = _distance(states.velocities, near, later, states.weights)
         velocity = float(p.mean() / v.mean()) if len(v) and v.mean() > 1e-9 else 1 / RATE
     return replace(states, velocity=velocity)
 
 
-def pairs_apart(states: States, frames: int) -> tuple[Array, Array]:
+def list_pairs_apart(states: States, frames: int) -> tuple[Array, Array]:
     """Return `[n]` states and `[n]` those so many frames later in the same take."""
     keep = np.ones(len(states), bool)
     for start in states.starts[1:]:
@@ -131,7 +131,7 @@ def costs_apart(states: States, k: int = STEP) -> Array:
     """Return c_(i, i+k) `[n]` of all frames that have one so much later (equations 3 and 4): frame i beside
     frame i + k - 1.
     """
-    near, later = pairs_apart(states, k - 1)
+    near, later = list_pairs_apart(states, k - 1)
     costs = _distance(states.places, near, later, states.weights)
     return costs + states.velocity * _distance(states.velocities, near, later, states.weights)
 

@@ -53,7 +53,7 @@ def _balls(turns: Array, places: Array) -> Array:
         ring = np.stack(
             [(wide - 0.03) * np.cos(angles), 0 * angles + up, forwards + (deep - 0.03) * np.sin(angles)], -1
         )
-        for p in places[joint] + rotation.rotate(turns[joint], ring):
+        for p in places[joint] + rotation.rotate_vectors(turns[joint], ring):
             out.append(np.array([*p, 0.032, 0]))
     head = at("Head")
     for p, r in (
@@ -62,10 +62,9 @@ def _balls(turns: Array, places: Array) -> Array:
         ((0, 0.0, 0.05), 0.040),
         ((0, -0.05, -0.01), 0.05),
     ):
-        out.append(np.array([*(places[head] + rotation.rotate(turns[head], np.array(p))), r, 0]))
-    out.append(
-        np.array([*(places[head] + rotation.rotate(turns[head], np.array([0, 0.075, 0.112]))), 0.014, 3])
-    )
+        out.append(np.array([*(places[head] + rotation.rotate_vectors(turns[head], np.array(p))), r, 0]))
+    nose = places[head] + rotation.rotate_vectors(turns[head], np.array([0, 0.075, 0.112]))
+    out.append(np.array([*nose, 0.014, 3]))
     return np.array(out)
 
 

@@ -10,10 +10,10 @@ import msgspec
 import numpy as np
 
 from metagraph import engines
-from metagraph.engines.export import write
-from metagraph.engines.vectors import every_case, write_vectors
+from metagraph.engines.export import write_project_files
+from metagraph.engines.vectors import list_cases, write_vectors
 from metagraph.graph.model import Project
-from metagraph.motion.character_mesh import Character, Material, Surface
+from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, Surface
 from sample_clips.make.conformance_projects import (
     BOTH_EYES,
     sparse,
@@ -52,7 +52,7 @@ STANDING = (
 FOLDER = Path(engines.__file__).with_name("conformance")
 
 
-def _face(project: Project, morphs: tuple[str, ...]) -> Character:
+def _face(project: Project, morphs: tuple[str, ...]) -> CharacterMesh:
     """Return a mesh of one triangle whose corner the morph targets move."""
     skeleton = project.skeleton
     assert skeleton is not None
@@ -62,7 +62,7 @@ def _face(project: Project, morphs: tuple[str, ...]) -> Character:
     joints[:, 0] = skeleton.index("Head")
     shifts = np.zeros((len(morphs), 3, 3))
     shifts[:, 2, 1] = 0.01
-    return Character(
+    return CharacterMesh(
         "face",
         skeleton,
         corners,
@@ -71,7 +71,7 @@ def _face(project: Project, morphs: tuple[str, ...]) -> Character:
         joints,
         weights,
         np.array([[0, 1, 2]]),
-        (Material("grey"),),
+        (MeshMaterial("grey"),),
         (Surface(0, 1, 0),),
         morphs,
         shifts,
@@ -94,18 +94,18 @@ def main() -> None:
     for project in (stick(), varied(), sparse(), standing(), stepping(), *touched, *still()):
         folder = FOLDER / project.name
         shutil.rmtree(folder, ignore_errors=True)
-        made = write(
+        made = write_project_files(
             project, folder, character=_face(project, project.face.morphs) if project.face.morphs else None
         )
         if project.name == "varied":
             without_authors(made.json)
         chosen = None
         if project.life.on and not project.graphs["body"].actions:  # all else stands in "sparse"
-            chosen = [case for case in every_case(project) if case.name in LIVING]
+            chosen = [case for case in list_cases(project) if case.name in LIVING]
         if project.name == "standing":  # all else in "stick"
-            chosen = [case for case in every_case(project) if case.name.startswith(STANDING)]
+            chosen = [case for case in list_cases(project) if case.name.startswith(STANDING)]
         if project.name == "stepping":
-            chosen = [case for case in every_case(project) if case.name.startswith("feet")]
+            chosen = [case for case in list_cases(project) if case.name.startswith("feet")]
         path = write_vectors(made.json, chosen)
         print(
             f"{path.parent.name}: {path.stat().st_size / 1e3:.0f} kB of vectors, "

@@ -105,7 +105,7 @@ def stick_skeleton(more: tuple[str, ...] = (), legs: bool = False) -> Skeleton:
         if up >= 0:
             back = rotation.conjugate(turns[up])
             local_r[n] = rotation.multiply(back, turns[n])
-            local_t[n] = rotation.rotate(back, positions[n] - positions[up])
+            local_t[n] = rotation.rotate_vectors(back, positions[n] - positions[up])
     return Skeleton(tuple(names), np.array(parents), local_r, local_t)
 
 
@@ -213,7 +213,7 @@ class Builder:
     ) -> str:
         """Place a clip; timing and more: fields that differ from what placing gives."""
         placed = self._clip(clip)
-        self.project = edits.place(self.project, [placed], layer, kind, stance, to)
+        self.project = edits.place_clips(self.project, [placed], layer, kind, stance, to)
         ident = [*self.project.graphs[layer].actions][-1]
         if timing:
             action = self.project.action(ident)
@@ -442,7 +442,7 @@ def _near(
     turned, at = project.skeleton.globals(clip.pose_at(seconds))
     joint, wrist = project.skeleton.index(to), project.skeleton.index(f"{hand.capitalize()}Hand")
     back = rotation.conjugate(turned[joint])
-    place = rotation.rotate(back, at[wrist] - at[joint]) + chance.uniform(-0.08, 0.08, 3)
+    place = rotation.rotate_vectors(back, at[wrist] - at[joint]) + chance.uniform(-0.08, 0.08, 3)
     turn = rotation.multiply(rotation.multiply(back, turned[wrist]), rotation.exp(chance.normal(0.0, 0.3, 3)))
     return ContactKey(
         round(seconds, 3), tuple(place.round(4).tolist()), tuple(rotation.normalize(turn).tolist())
@@ -519,8 +519,8 @@ def standing() -> Project:
     body, arms = project.graphs["body"], project.graphs["arms"]
     stand, lean = body.stances
     shared = [a.clip for a in arms.actions.values() if a.kind == "gesture"]
-    project = edits.place(project, [shared[0], shared[2]], "body", "fidget", stand)
-    project = edits.place(project, [shared[1]], "body", "stance", stand)
+    project = edits.place_clips(project, [shared[0], shared[2]], "body", "fidget", stand)
+    project = edits.place_clips(project, [shared[1]], "body", "stance", stand)
     project = edits.update_actions(project, [[*project.graphs["body"].actions][-1]], likelihood=4.0)
     loops = {a.id: {"timing": replace(a.timing, blend_in=0.3)} for a in arms.of(arms.start or "", "stance")}
     project = edits.update_each(project, loops)

@@ -66,7 +66,7 @@ def _moved(weight: Array, by: tuple[float, float, float]) -> Array:
 def _jaw(f: Face, degrees: float) -> Array:
     turn = rotation.from_axis_angle(np.array([1.0, 0, 0]), np.radians(degrees))
     away = f.p - JOINT["Jaw"]
-    return np.asarray(f.jaw[:, None] * (rotation.rotate(np.tile(turn, (len(away), 1)), away) - away))
+    return np.asarray(f.jaw[:, None] * (rotation.rotate_vectors(np.tile(turn, (len(away), 1)), away) - away))
 
 
 def _smile(f: Face, s: float) -> Array:
@@ -103,7 +103,7 @@ def _turned(f: Face, name: str, axis: int, degrees: float, bulge: float = 0.0) -
     away = f.p - JOINT[("Left" if name.startswith("Left") else "Right") + "Eye"]
     turn = np.tile(rotation.from_axis_angle(np.eye(3)[axis], np.radians(degrees)), (len(away), 1))
     share = f.of.get(name, np.zeros(len(away)))
-    return np.asarray(share[:, None] * ((1 + bulge) * rotation.rotate(turn, away) - away))
+    return np.asarray(share[:, None] * ((1 + bulge) * rotation.rotate_vectors(turn, away) - away))
 
 
 def _lids(f: Face, s: float, upper: float, lower: float, bulge: float = 0.0) -> Array:

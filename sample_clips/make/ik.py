@@ -67,7 +67,7 @@ def arm(wrist: Any, pole: Any, collar: Any) -> tuple[Array, Array, Array]:
     wrist: its place from the upper chest's joint, metres. pole: where the elbow points. collar: the
     collarbone's rotation.
     """
-    root = _COLLAR + rotation.rotate(collar, _SHOULDER)
+    root = _COLLAR + rotation.rotate_vectors(collar, _SHOULDER)
     first, second, hinge = two_bones(root, np.asarray(wrist, float), np.asarray(pole, float), _UPPER, _LOWER)
     upper = rotation.multiply(frame(first, hinge), _ARM_REST)
     lower = rotation.multiply(frame(second, hinge), _ARM_REST)
@@ -89,7 +89,7 @@ def collarbone(upper: Any, collar: Any, shrug: float = 0.0, reach: float = 0.0) 
     """Return how the left collarbone follows an upper arm: it rises with it and comes forwards when it
     reaches across.
     """
-    direction = rotation.rotate(rotation.multiply(collar, upper), ARM_AXIS)
+    direction = rotation.rotate_vectors(rotation.multiply(collar, upper), ARM_AXIS)
     angle = np.degrees(np.arccos(np.clip(-direction[..., 1], -1, 1)))  # of the upper arm from hanging
     lift = shrug + 0.16 * np.maximum(0, angle - 32)
     forwards = reach + 5.0 * np.maximum(0, direction[..., 2]) - 9.0 * np.minimum(0, direction[..., 0] - 0.1)
@@ -107,7 +107,7 @@ def share_twist(lower: Any, hand: Any) -> tuple[Array, Array]:
     """Move most of the hand's turning about the forearm into the forearm; both are left local rotations
     `[..., 4]`.
     """
-    twist = rotation.power(twist_of(hand, ARM_AXIS), FOREARM_SHARE)
+    twist = rotation.scale_rotation(twist_of(hand, ARM_AXIS), FOREARM_SHARE)
     return rotation.multiply(lower, twist), rotation.multiply(rotation.conjugate(twist), hand)
 
 
@@ -120,7 +120,7 @@ def leg(
     foot: the foot's rotation in model space.
     """
     offsets = [SKELETON.rest_translations[at(side + joint)] for joint in ("UpperLeg", "LowerLeg", "Foot")]
-    root = hips_place + rotation.rotate(hips, offsets[0])
+    root = hips_place + rotation.rotate_vectors(hips, offsets[0])
     upper, lower = float(np.linalg.norm(offsets[1])), float(np.linalg.norm(offsets[2]))
     first, second, hinge = two_bones(root, ankle, knee, upper, lower)
     x_axis = np.array([1.0, 0, 0])
@@ -139,7 +139,7 @@ def out_of_reach(side: str, hips: Array, hips_place: Array, ankle: Array) -> Arr
     from `SOFT_REACH` before that on, so that it sets in gently.
     """
     offsets = [SKELETON.rest_translations[at(side + joint)] for joint in ("UpperLeg", "LowerLeg", "Foot")]
-    way = hips_place + rotation.rotate(hips, offsets[0]) - ankle
+    way = hips_place + rotation.rotate_vectors(hips, offsets[0]) - ankle
     most = FULL_REACH * float(np.linalg.norm(offsets[1]) + np.linalg.norm(offsets[2]))
     aside = way[..., 0] ** 2 + way[..., 2] ** 2
     over = way[..., 1] - np.sqrt(np.maximum(1e-6, most**2 - aside))

@@ -105,11 +105,11 @@ class Posture:
 def elbow_of(hand: Hand) -> tuple[Array, float]:
     """Return where a hand's elbow is, (out, up, forwards) in metres, and how far the wrist is from it."""
     collar, upper, _ = (arm_rotations(hand)[name] for name in ("Shoulder", "UpperArm", "LowerArm"))
-    shoulder = REST[at("LeftShoulder")] + rotation.rotate(
+    shoulder = REST[at("LeftShoulder")] + rotation.rotate_vectors(
         collar, REST[at("LeftUpperArm")] - REST[at("LeftShoulder")]
     )
     bone = REST[at("LeftLowerArm")] - REST[at("LeftUpperArm")]
-    elbow = shoulder + rotation.rotate(rotation.multiply(collar, upper), bone)
+    elbow = shoulder + rotation.rotate_vectors(rotation.multiply(collar, upper), bone)
     return elbow, float(np.linalg.norm(np.array(hand.at) - elbow))
 
 
@@ -144,7 +144,7 @@ def solve(posture: Posture) -> Array:
     """Return local rotations `[J, 4]` of everything but the legs, which `channels` and `legs` place frame by
     frame.
     """
-    out = rotation.identity((JOINTS,))
+    out = rotation.identity_rotations((JOINTS,))
     out[at("Hips")] = turned(posture.hips)
     for names, shares, angles in ((SPINE, SPINE_SHARE, posture.spine), (NECK, NECK_SHARE, posture.head)):
         for name, share in zip(names, shares, strict=True):
@@ -178,8 +178,8 @@ def legs(rotations: Array, numbers: Array) -> tuple[Array, Array]:
         yaw = about((0, 1, 0), sign * turn)
         foot = rotation.multiply(yaw, about((1, 0, 0), heel))
         ball = ik.BALL[side] + np.stack([sign * sideways, lift, forwards], -1)
-        ankle = ball + rotation.rotate(foot, ik.ANKLE[side] - ik.BALL[side])
-        knee = rotation.rotate(about((0, 1, 0), sign * (turn * 0.8 + 2)), np.array([0.0, 0, 1.0]))
+        ankle = ball + rotation.rotate_vectors(foot, ik.ANKLE[side] - ik.BALL[side])
+        knee = rotation.rotate_vectors(about((0, 1, 0), sign * (turn * 0.8 + 2)), np.array([0.0, 0, 1.0]))
         targets.append((side, ankle, knee, foot, heel))
     sinks = [ik.out_of_reach(side, hips, root, ankle) for side, ankle, *_ in targets]
     root[:, 1] -= np.max(sinks, axis=0)  # feet stay, hips give

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.motion.character_mesh import Character, Material, Surface
+from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, Surface
 from sample_clips.make import face_targets, pieces, shapes, wardrobe
 from sample_clips.make import mannequin_weights as weights
 from sample_clips.make.build import built
@@ -130,7 +130,7 @@ def sculpted(part: shapes.Part) -> tuple[Array, Array]:
     return project(part.field, positions), triangles
 
 
-def mannequin_character(look: Look = MANNEQUIN, sculpt: Sculpt = sculpted) -> Character:
+def mannequin_character(look: Look = MANNEQUIN, sculpt: Sculpt = sculpted) -> CharacterMesh:
     """Build a character from nothing (about half a minute; the same to the bit every time)."""
     parts = wardrobe.parts(look)
     order = [name for name, _, _ in MATERIALS]
@@ -161,10 +161,10 @@ def mannequin_character(look: Look = MANNEQUIN, sculpt: Sculpt = sculpted) -> Ch
     body = np.concatenate([built(p.positions, p.weights, look.build) for p in made])
     normals = _turned_along(normals, positions, body, triangles)
     image = look.image()
-    materials = tuple(Material(name, (1, 1, 1, 1), image, rough) for name, _, rough in MATERIALS)
+    materials = tuple(MeshMaterial(name, (1, 1, 1, 1), image, rough) for name, _, rough in MATERIALS)
     sizes = [sum(len(p.triangles) for p in made if p.material == name) for name in order]
     firsts = np.cumsum([0, *sizes])
-    return Character(
+    return CharacterMesh(
         look.name,
         SKELETON,
         body.astype(np.float32),

@@ -54,7 +54,8 @@ def _inside_torso(points: Array, turns: Array, places: Array) -> Array:
     local, rows = [], []
     for name, up, wide, deep, forwards in TORSO:
         joint = at(name)
-        p = rotation.rotate(rotation.conjugate(turns[:, None, joint]), points - places[:, None, joint])
+        back = rotation.conjugate(turns[:, None, joint])
+        p = rotation.rotate_vectors(back, points - places[:, None, joint])
         local.append(p - np.array([0, up, forwards]))
         rows.append((wide, deep))
     q = np.stack(local)  # [S, F, N, 3]

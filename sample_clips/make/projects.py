@@ -21,7 +21,7 @@ from metagraph.graph.conversation.edits import add_conversation
 from metagraph.graph.conversation.model import Conversation
 from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import LAYERS, Kind, Layer, Limb, Project, Timing
-from metagraph.suggest.find_contacts import measured, with_contacts
+from metagraph.suggest.find_contacts import with_contacts, with_measured_body
 from sample_clips.make.babble import sample_lines
 from sample_clips.make.catalogue import BASE, RECIPES, SEATED, Entry, catalogue
 from sample_clips.make.numbered_ids import numbered_ids
@@ -128,9 +128,8 @@ def _finished(name: str, project: Project, entries: Sequence[Entry], starts: Map
             ids[(layer, name)] = list(project.graphs[layer].stances)[-1]
     for entry in sorted(entries, key=lambda e: ("stance", "gesture", "fidget", "transition").index(e.kind)):
         project = _place(project, entry, clips[entry.name], ids)
-    project = with_contacts(
-        measured(project, read_character(HERE / "mannequin.glb")), list(project.graphs["arms"].actions)
-    )
+    project = with_measured_body(project, read_character(HERE / "mannequin.glb"))
+    project = with_contacts(project, list(project.graphs["arms"].actions))
     project = replace(project, touch=msgspec.structs.replace(project.touch, guard=True))
     lines = {
         name: msgspec.structs.replace(line, asks=WITH_LINES.get(name, ()))
@@ -159,7 +158,7 @@ def _place(project: Project, entry: Entry, clip: str, ids: dict[tuple[str, str],
     stance = ids[(entry.layer, _words(entry.stance))]
     end = ids[(entry.layer, _words(entry.end_stance))] if entry.kind == "transition" else None
     before = set(project.graphs[layer].actions)
-    project = edits.place(project, [clip], layer, kind, stance, end)
+    project = edits.place_clips(project, [clip], layer, kind, stance, end)
     made = next(i for i in project.graphs[layer].actions if i not in before)
     length = project.clips[clip].duration
     if kind == "stance":

@@ -24,7 +24,7 @@ from metagraph.mimicry.signatures import BodySignature
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.plan import Plan
-from metagraph.playback.planning.running_plan import perform
+from metagraph.playback.planning.running_plan import plan_performance
 
 SAMPLE = Path(__file__).resolve().parents[1] / "sample.metagraph.yaml"
 OUT = Path(__file__).resolve().parents[1] / "keypoints"
@@ -113,7 +113,7 @@ def played(
         for layer, rows in script.items()
         for n, (at, stance) in enumerate(rows)
     ]
-    return project, perform(project, asks, SECONDS, SEED)
+    return project, plan_performance(project, asks, SECONDS, SEED)
 
 
 def truth(

@@ -48,7 +48,7 @@ def hanging(rotations: Array, base: Array, share: float) -> Array:
         collar, upper = at(side + "Shoulder"), at(side + "UpperArm")
         leans = []
         for turn in (turned[:, at("UpperChest")], upright[:, at("UpperChest")]):
-            up = rotation.rotate(turn, np.broadcast_to(np.array([0.0, 1.0, 0.0]), (len(turn), 3)))
+            up = rotation.rotate_vectors(turn, np.broadcast_to(np.array([0.0, 1.0, 0.0]), (len(turn), 3)))
             leans.append(np.degrees(np.arctan2(up[:, 2], up[:, 1])))
         back = about((1, 0, 0), -share * (leans[0] - leans[1]))
         inside = rotation.multiply(rotation.conjugate(turned[:, collar]), back)
@@ -86,7 +86,7 @@ def drag(rotations: Array, amount: float = 1.0) -> Array:
         velocity = np.gradient(places[:, hand], 1 / FPS, axis=0)
         # In the hand's own axes: backwards and forwards of the palm it flaps, towards the thumb it hardly
         # gives.
-        local = rotation.rotate(rotation.conjugate(turns[:, hand]), velocity)
+        local = rotation.rotate_vectors(rotation.conjugate(turns[:, hand]), velocity)
         local = local if side == "Left" else flipped(local)
         curl_way, side_way = local @ PALM, local @ THUMB_SIDE
         lag = (
@@ -113,9 +113,9 @@ def pin(rotations: Array, side: str, joint: str, weight: Array | float = 1.0) ->
     turns, places = globals_of(rotations)
     chest, hand, base = at("UpperChest"), at(side + "Hand"), at(joint)
     inverse = rotation.conjugate
-    grip = rotation.rotate(inverse(turns[0, base]), places[0, hand] - places[0, base])
+    grip = rotation.rotate_vectors(inverse(turns[0, base]), places[0, hand] - places[0, base])
     grip_turn = rotation.multiply(inverse(turns[0, base]), turns[0, hand])
-    held = places[:, base] + rotation.rotate(turns[:, base], grip)
+    held = places[:, base] + rotation.rotate_vectors(turns[:, base], grip)
     held_turn = rotation.multiply(turns[:, base], grip_turn)
     w = np.broadcast_to(np.asarray(weight, float), (len(out),))
     wrist = places[:, hand] + w[:, None] * (held - places[:, hand])
@@ -131,10 +131,10 @@ def reach(
     """
     inverse = rotation.conjugate
     to_chest = inverse(turns[:, chest])
-    wrist_c = rotation.rotate(to_chest, wrist - places[:, chest])
+    wrist_c = rotation.rotate_vectors(to_chest, wrist - places[:, chest])
     shoulder, elbow = places[:, at(side + "UpperArm")], places[:, at(side + "LowerArm")]
     middle = (shoulder + places[:, at(side + "Hand")]) / 2
-    pole = rotation.rotate(to_chest, elbow - middle)
+    pole = rotation.rotate_vectors(to_chest, elbow - middle)
     collar = out[:, at(side + "Shoulder")]
     turn_c = rotation.multiply(to_chest, hand_turn)
     if side == "Right":

@@ -24,7 +24,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMenu, QMessageBox, QWidget
 from shiboken6 import isValid
 
-from app.main import prepare
+from app.main import prepare_application
 from tests.app.handles import Handles
 from tests.app.shared_window import SharedWindow, close, settle
 from tests.run_notes import NOTES
@@ -88,7 +88,7 @@ def qapp() -> object:
     # Characters are drawn in software here: at a screen's rate that leaves little time for anything else.
     character_panel.FRAME = character_panel.SOFT_FRAME = review_stage.FRAME = 80
     gl_view.ImageView.coarse = 3
-    app = prepare()
+    app = prepare_application()
     yield app
 
 
@@ -299,21 +299,21 @@ def drive(
     most tests.
     """
     import app.shell.window
-    from app.look.theme import Theme, apply, style_sheet
+    from app.look.theme import WindowTheme, apply_theme, style_sheet
     from app.main import make_window
     from app.stage.thumbnails import Thumbnails
 
-    def styled(app: QApplication, look: Theme) -> None:
+    def styled(app: QApplication, look: WindowTheme) -> None:
         """The application outlives each window here: the same style again would only polish every widget
         anew.
         """
         if app.styleSheet() != style_sheet(look):
-            apply(app, look)
+            apply_theme(app, look)
 
     def unexpected(*args: object, **kwargs: object) -> object:
         raise AssertionError(f"an unexpected question: {args[1:3]}")
 
-    monkeypatch.setattr(app.shell.window, "apply", styled)
+    monkeypatch.setattr(app.shell.window, "apply_theme", styled)
     monkeypatch.setattr(QMessageBox, "question", unexpected)
     monkeypatch.setattr(QMessageBox, "warning", unexpected)
     own = wants_own_window(request.node)

@@ -84,9 +84,9 @@ def _talk(name: str) -> Open:
 
 
 def _new_talk(w: Handles, _: Path) -> None:
-    from app.features.conversation.conversation_commands import converse
+    from app.features.conversation.conversation_commands import ask_for_conversation
 
-    converse(w.shell, [ROOT / "conversation" / "talk.ogg", ROOT / "conversation" / "talk.json"])
+    ask_for_conversation(w.shell, [ROOT / "conversation" / "talk.ogg", ROOT / "conversation" / "talk.json"])
 
 
 def _annotation(w: Handles, _: Path) -> None:

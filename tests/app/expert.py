@@ -16,10 +16,10 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QInputDialog, QLineEdit
 
 from metagraph.graph import edits
-from metagraph.graph.edits import limb_of
+from metagraph.graph.edits import guess_limb
 from metagraph.graph.manual.machine import ANY
 from metagraph.graph.model import LIMBS, Project
-from metagraph.research.study.machines.by_hand import Drawing, Way, Work, works
+from metagraph.research.study.machines.by_hand import MachineDrawing, Way, Work, works
 from metagraph.research.study.machines.finding import Words
 from metagraph.suggest.review import DECIDING
 from tests.app.participant import LEFT, Participant, Task
@@ -39,7 +39,7 @@ class Expert(Participant):
         some = works(reference)
         library = [(c, reference.clips[c].name) for w in some for c in w.clips]
         guessed = {
-            c: limb_of(n) if w.layer == "arms" else "both"
+            c: guess_limb(n) if w.layer == "arms" else "both"
             for w in some
             for c, n in zip(w.clips, w.names, strict=True)
         }
@@ -48,7 +48,7 @@ class Expert(Participant):
         self.searched: str | None = None
         self.looked = 0.0
         self.canvas = self.drive.editor.canvas
-        Drawing(way, self, library).draw(some, guessed, look)
+        MachineDrawing(way, self, library).draw(some, guessed, look)
 
     # --- clips
 

@@ -15,13 +15,13 @@ SIZE = (1280, 720)
 
 
 def main() -> None:
-    from app.main import make_window, prepare
+    from app.main import make_window, prepare_application
     from app.project.files import SAMPLE
     from tests.app.handles import Handles
     from tests.app.painted_walk import walk
 
     QStandardPaths.setTestModeEnabled(True)
-    app = prepare()
+    app = prepare_application()
     drive = Handles(make_window())
     drive.window.resize(*SIZE)
     drive.window.show()

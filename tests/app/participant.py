@@ -21,10 +21,10 @@ from PySide6.QtWidgets import QApplication, QScrollArea
 
 from app.features.study.operator_events import Hands
 from metagraph.graph import edits
-from metagraph.graph.edits import limb_of
-from metagraph.graph.expand import ends_in
+from metagraph.graph.edits import guess_limb
+from metagraph.graph.expand import find_end_stance
 from metagraph.graph.model import LAYERS, LIMBS, Layer, Project
-from metagraph.research.study.machines.klm import predicted
+from metagraph.research.study.machines.klm import predict_seconds
 from metagraph.research.study.machines.normal_machine import normal
 from metagraph.research.study.scores.machines import Score, score
 
@@ -87,7 +87,7 @@ def task(sample: Project, clips: int) -> Task:
             stances[action.stance] = list(reference.graphs[action.layer].stances)[-1]
         else:
             end = stances[action.end_stance] if action.kind == "transition" else None
-            reference = edits.place(
+            reference = edits.place_clips(
                 reference, [action.clip], action.layer, action.kind, stances[action.stance], end
             )
     return Task(bare, reference)
@@ -170,7 +170,7 @@ class Participant:
             condition,
             len(project.clips),
             counts,
-            predicted(counts),
+            predict_seconds(counts),
             time.monotonic() - started,
             time.process_time() - ours,
             found,
@@ -289,7 +289,7 @@ class Participant:
             for target in mine:
                 if (
                     source.id != target.id
-                    and ends_in(source) == target.stance
+                    and find_end_stance(source) == target.stance
                     and (whole or "stance" in (source.kind, target.kind))
                 ):
                     out.append((source.id, target.id))
@@ -329,7 +329,7 @@ class Participant:
         if action.kind == "stance":
             self.think()
             self._press(inspector.loop)
-        if action.limb != limb_of(self.given.project.clips[action.clip].name) and action.layer == "arms":
+        if action.limb != guess_limb(self.given.project.clips[action.clip].name) and action.layer == "arms":
             self.think()
             self._press(inspector.limb.button(LIMBS.index(action.limb)))
 

@@ -73,7 +73,9 @@ AT_WORK: dict[str, Callable[[QDialog, Path], None]] = {
 def told(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Faults that were told."""
     out: list[str] = []
-    monkeypatch.setattr(faults, "tell", lambda error, where: out.append(f"{type(error).__name__}: {error}"))
+    monkeypatch.setattr(
+        faults, "report_error", lambda error, where: out.append(f"{type(error).__name__}: {error}")
+    )
     return out
 
 

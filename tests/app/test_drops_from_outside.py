@@ -68,7 +68,7 @@ def test_files_are_dropped_on_a_lane_and_are_asked_for_there(toys, drop):
     toys.session.transport.set_playing(False)
     toys.pause(100)
     lanes = toys.timeline.lanes
-    from app.widgets.lane_geometry import lanes as places
+    from app.widgets.lane_geometry import place_lanes as places
 
     y = round(places(lanes.height())["arms"].center().y())
     at = QPoint(round(lanes.scale().x(4.0)), y)

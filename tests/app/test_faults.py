@@ -26,9 +26,9 @@ ROOT = Path(__file__).resolve().parents[2]
 
 @pytest.fixture(autouse=True)
 def anew():
-    faults.forget()
+    faults.forget_faults()
     yield
-    faults.forget()
+    faults.forget_faults()
 
 
 @pytest.fixture
@@ -43,7 +43,7 @@ def raised(work, where="window"):
     try:
         work()
     except Exception as error:
-        faults.tell(error, where)
+        faults.report_error(error, where)
 
 
 def zero():
@@ -58,7 +58,7 @@ def test_a_fault_is_told_once_and_counted(told):
         raised(zero)
     raised(lambda: {}["secret name"])
     assert [fault.what for fault in told] == ["ZeroDivisionError: division by zero", "KeyError: '…'"]
-    assert told[0].count == 5 and "5 times" in faults.report()
+    assert told[0].count == 5 and "5 times" in faults.format_fault_report()
 
 
 def test_endless_different_faults_are_not_kept_for_ever(told):
@@ -69,8 +69,12 @@ def test_endless_different_faults_are_not_kept_for_ever(told):
 
 @pytest.mark.parametrize("error", [EditError("no such stance"), FileError("a.bvh", "is broken")])
 def test_what_says_in_words_what_can_be_done_is_no_fault(told, error):
-    faults.tell(error, "window")
-    assert told == [error] and "broken" not in faults.report() and "stance" not in faults.report()
+    faults.report_error(error, "window")
+    assert (
+        told == [error]
+        and "broken" not in faults.format_fault_report()
+        and "stance" not in faults.format_fault_report()
+    )
 
 
 @pytest.mark.parametrize(
@@ -87,7 +91,7 @@ def test_what_says_in_words_what_can_be_done_is_no_fault(told, error):
     ],
 )
 def test_names_and_places_are_left_out(words, left):
-    assert faults.plain_words(words) == left
+    assert faults.strip_quotes(words) == left
 
 
 def test_a_report_tells_versions_actions_and_places_of_ours_alone(told):
@@ -103,7 +107,7 @@ def test_a_report_tells_versions_actions_and_places_of_ours_alone(told):
             raise StrangeError("Anna's own words")  # noqa: B904 - what was raised before is told, too
 
     raised(strange)
-    text = faults.report()
+    text = faults.format_fault_report()
     assert "Metagraph 0." in text and "PySide6" in text and "  " in text and "export" in text
     assert "StrangeError" in text and "Anna" not in text and "division by zero" not in told[0].what
     assert "tests/app/test_faults.py:" in text and "and then" in text
@@ -139,7 +143,7 @@ def test_a_job_that_fails_unforeseen_or_unheard_is_told(qtbot, told):
     assert sorted(type(x).__name__ for x in told) == ["Fault", "FileError"], (
         "what was heard and foreseen is not"
     )
-    assert "Anna" not in faults.report()
+    assert "Anna" not in faults.format_fault_report()
     jobs.stop()
 
 
@@ -168,7 +172,7 @@ if what == "segfault":
 if what == "child":
     import subprocess
     subprocess.run([sys.executable, "-c", "from app.faults import install_in_child; install_in_child(); {}['Anna']"])
-    faults.of_children(Path(sys.argv[1])); print(told)
+    faults.read_child_faults(Path(sys.argv[1])); print(told)
 """
 
 
@@ -198,9 +202,9 @@ def test_what_ended_the_program_is_found_by_the_next_start_once(tmp_path):
     mine.write_text("of a window that is open")
     killed = tmp_path / f"crash-{process_mark().split('-')[0]}-{ended()}-1.txt"
     killed.write_text("")
-    text = faults.left_behind(tmp_path)
+    text = faults.read_crash_reports(tmp_path)
     assert "Segmentation fault" in text and "of a window" not in text and str(ROOT) not in text
-    assert faults.left_behind(tmp_path) == "" and mine.exists() and not killed.exists()
+    assert faults.read_crash_reports(tmp_path) == "" and mine.exists() and not killed.exists()
 
 
 # --- what is shown
@@ -263,7 +267,7 @@ def test_the_report_is_saved_where_one_chooses(qtbot, teller, tmp_path, monkeypa
 
 
 def test_a_crash_of_the_last_time_is_offered(qtbot, teller, monkeypatch):
-    monkeypatch.setattr(faults, "left_behind", lambda folder: "Fatal Python error: Segmentation fault")
+    monkeypatch.setattr(faults, "read_crash_reports", lambda folder: "Fatal Python error: Segmentation fault")
     teller.offer_left()
     dialog = dialog_of(qtbot, teller)
     assert "ended by itself" in dialog.windowTitle() and "Segmentation" in dialog.text.toPlainText()

@@ -15,7 +15,7 @@ from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QPushButton, QWidget
 
 import app
-from app.guard import answers, is_guarded, overridden
+from app.guard import has_known_answer, is_guarded, is_overridden
 
 ROOT = Path(__file__).resolve().parents[2]
 NOT_PYTHON = ("staticMetaObject",)
@@ -42,12 +42,12 @@ def test_every_override_of_ours_is_guarded_and_has_an_answer():
     found = 0
     for cls in classes():
         for name, function in vars(cls).items():
-            if overridden(cls, name) and name not in NOT_PYTHON:
+            if is_overridden(cls, name) and name not in NOT_PYTHON:
                 found += 1
                 assert is_guarded(function), (
                     f"{cls.__qualname__}.{name}: was its class made before the guard?"
                 )
-                assert answers(name), (
+                assert has_known_answer(name), (
                     f"say in app/guard.py what {cls.__qualname__}.{name} answers when it fails"
                 )
     assert found > 200

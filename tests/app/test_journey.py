@@ -18,7 +18,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog, QMessageBox
 
-from metagraph.engines.export import schema_text
+from metagraph.engines.export import export_schema_text
 from metagraph.engines.reading import read_export
 from metagraph.formats.store import open_project
 from metagraph.graph import requests as a
@@ -40,7 +40,9 @@ def export_and_check(drive, folder: Path) -> None:
     drive.wait(lambda: dialog.open_button.isEnabled(), 60)
     dialog.reject()
     written = next(folder.glob("*.json"))
-    jsonschema.Draft202012Validator(json.loads(schema_text())).validate(json.loads(written.read_bytes()))
+    jsonschema.Draft202012Validator(json.loads(export_schema_text())).validate(
+        json.loads(written.read_bytes())
+    )
     again, project = read_export(written), drive.document.project
     assert again.graphs == project.graphs
     assert again.base == project.base

@@ -89,11 +89,11 @@ def test_a_menu_that_was_closed_is_gone(drive):
     open_sample(drive, drive.wait)
     project = drive.document.project
     drive.session.selection.select_clips((next(iter(project.clips)),))
-    from app.widgets.request_menu import request_menu
+    from app.widgets.request_menu import make_request_menu
 
     def makers():
         yield lambda: drive.library.acts.menu(next(iter(project.clips.values())))
-        yield lambda: request_menu(drive.timeline, drive.performance, 4.0)
+        yield lambda: make_request_menu(drive.timeline, drive.performance, 4.0)
 
     for make in makers():
         seen: list[ref[QMenu]] = []

@@ -18,7 +18,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication, QInputDialog, QLabel, QMessageBox, QToolTip, QWidget
 
-from app.features.study.study_screen import rich
+from app.features.study.study_screen import format_markdown
 from app.project.files import SAMPLE
 from app.shell.workspaces import WORKSPACES
 from tests.app.every_dialog import DIALOGS, opened
@@ -181,7 +181,7 @@ def test_a_studys_text_shows_html_as_written_and_a_picture_as_its_words(
         f"<div style='background-image:url({picture})'>d</div>\n\n"
         f"- ![in a list]({picture})\n\n| a |\n|---|\n| ![in a table]({picture}) |\n\n[1]: {picture}\n"
     )
-    label = QLabel(rich(text, 15), drive.window)
+    label = QLabel(format_markdown(text, 15), drive.window)
     label.setTextFormat(Qt.TextFormat.RichText)
     label.show()
     drive.pause(20)

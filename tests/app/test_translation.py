@@ -32,10 +32,10 @@ from metagraph.formats.conversations.files import read_conversation
 from metagraph.formats.imports import import_files
 from metagraph.formats.store import open_project
 from metagraph.graph import edits
-from metagraph.graph.check import check
+from metagraph.graph.check import check_project
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
-from metagraph.suggest.details import timed
+from metagraph.suggest.details import with_timing
 from metagraph.suggest.propose import propose
 from tests.app.catalogue_texts import catalogue_texts
 from tests.speech import talk
@@ -117,7 +117,7 @@ def test_what_checks_find_is_said_in_the_language_and_stays_english_for_programs
 ) -> None:
     project = toy.project()
     project = edits.update_actions(project, [toy.id(project, "rest beat lf")], likelihood=-1.0)
-    (found,) = [p for p in check(project) if p.code == "likelihood"]
+    (found,) = [p for p in check_project(project) if p.code == "likelihood"]
     assert (
         tr_phrase(found.message)
         == found.message
@@ -150,16 +150,16 @@ def test_an_import_is_told_in_the_language_whatever_files_are_left_out(english: 
     (tmp_path / "worse.glb").write_bytes(b"noise")
     result = import_files(Project(), tmp_path, [tmp_path])
     translation.choose("de")
-    assert tr_phrase(import_words.said(result)) == (
+    assert tr_phrase(import_words.describe_import(result)) == (
         "0 Clips importiert. Weggelassen: 2 Dateien, die nicht zu brauchen sind"
     )
-    lines = [tr_phrase(line) for line in import_words.counted(result.failures)]
+    lines = [tr_phrase(line) for line in import_words.count_alike(result.failures)]
     assert lines[0] == (
         "bad.bvh, ihre ersten Bytes: sie ist etwas anderes, nicht eine BVH-Datei. "
         f"Clips werden gelesen aus {', '.join(clip_suffixes())}."
     )
     assert lines[1].startswith("worse.glb, ihre ersten Bytes: sie ist ")
-    assert import_words.said(result) == "Imported 0 clips. Left out: 2 files that cannot be used"
+    assert import_words.describe_import(result) == "Imported 0 clips. Left out: 2 files that cannot be used"
 
 
 def test_what_targets_write_and_lose_is_said_in_the_language(english: None) -> None:
@@ -194,7 +194,7 @@ def test_why_clips_are_taken_for_what_they_are_is_said_in_the_language(english: 
         clips = {c: replace(e, name=f"take {n}") for n, (c, e) in enumerate(project.clips.items())}
         project = Project(clips=clips, skeleton=project.skeleton)
     found = propose(project)
-    every = timed(project, found.proposals).values()
+    every = with_timing(project, found.proposals).values()
     said = list(found.aside.values())
     said += [place.rest.reason for place in found.places.values() if place.rest is not None]
     for p in every:

@@ -26,7 +26,7 @@ from metagraph.motion.contact_solve import ContactRig, HandGoal
 from metagraph.motion.contact_spans import contact_key, contact_weight
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.planner import make_plan
-from metagraph.playback.posing.contacts import depths, goals_at, solved
+from metagraph.playback.posing.contacts import contact_depths, goals_at, pose_with_contacts
 from metagraph.suggest.find_contacts import find_contacts
 from tests.posing import contact_rig, pose_at
 
@@ -42,7 +42,7 @@ def measured(rig: ContactRig, pose: Pose, goals: Goals, fps: float) -> tuple[flo
     """Return the deepest, the 95 % level (both mm), the share of time deeper than DEEP, and how fast held
     hands slip over what they touch, mm/s, on average.
     """
-    deep = np.maximum(0, depths(rig, pose).max(-1))
+    deep = np.maximum(0, contact_depths(rig, pose).max(-1))
     slips = []
     joints = list(rig.joints)
     part = Pose(pose.rotations, pose.translations)
@@ -55,7 +55,9 @@ def measured(rig: ContactRig, pose: Pose, goals: Goals, fps: float) -> tuple[flo
             for frame, goal in ((n, a), (n + 1, b)):
                 turned, at = _globals(rig, part, joints, frame)
                 hand = at[rig.arms[goal.arm].hand] - at[goal.to]
-                off.append(rotation.rotate(rotation.conjugate(turned[goal.to]), hand) - np.array(goal.at))
+                off.append(
+                    rotation.rotate_vectors(rotation.conjugate(turned[goal.to]), hand) - np.array(goal.at)
+                )
             slips.append(float(np.linalg.norm(off[1] - off[0])) * fps)
     slip = float(np.mean(slips)) * 1000 if slips else 0.0
     return float(deep.max()) * 1000, float(np.percentile(deep, 95)) * 1000, float((deep > DEEP).mean()), slip
@@ -65,7 +67,7 @@ def _globals(rig: ContactRig, pose: Pose, joints: list[int], frame: int) -> tupl
     turned, at = pose.rotations[frame, joints].astype(float), pose.translations[frame, joints].astype(float)
     for n, above in enumerate(rig.parents):
         if above >= 0:
-            at[n] = at[above] + rotation.rotate(turned[above], at[n])
+            at[n] = at[above] + rotation.rotate_vectors(turned[above], at[n])
             turned[n] = rotation.multiply(turned[above], turned[n])
     return turned, at
 
@@ -157,7 +159,7 @@ def shared(name: str, pattern: str, most: int) -> None:
             for t in times.tolist()
         ]
         pose = entry.motion.poses()
-        after = solved(pose, rig, goals)
+        after = pose_with_contacts(pose, rig, goals)
         rows.append([measured(rig, p, goals, entry.motion.fps) for p in (pose, after)] + [[len(times)] * 4])
     found = np.array(rows)
     weight = found[:, 2, :1]

@@ -18,7 +18,7 @@ from pathlib import Path
 from statistics import median
 from time import perf_counter
 
-from metagraph.engines.export import export
+from metagraph.engines.export import export_project
 from metagraph.engines.reading import read_export
 from metagraph.formats.store import open_project
 from metagraph.playback.planner import make_plan
@@ -102,7 +102,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as made:
         folder = Path(made)
         sample = open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project
-        json_path = export(sample, folder / "export").json
+        json_path = export_project(sample, folder / "export").json
         files = [str(json_path), str(json_path.with_suffix(".glb"))]
         source = folder / "bench.cpp"
         source.write_text(CPP)

@@ -19,7 +19,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from metagraph.engines import contract as c
 from metagraph.engines.export_document import to_document
-from metagraph.graph.expand import size
+from metagraph.graph.expand import count_machine_size
 from metagraph.graph.model import LAYERS, Action, ClipEntry, Kind, MetaGraph, Project, Stance, Timing
 from tests.projects import SKELETON
 
@@ -77,7 +77,7 @@ def main() -> None:
         names = tuple(entry.name for entry in made.clips.values())
         plain = msgspec.json.encode(to_document(made, "size.glb", names))
         listed = msgspec.json.encode(to_document(made, "size.glb", names, True))
-        whole, stances = size(made), sum(len(g.stances) for g in made.graphs.values())
+        whole, stances = count_machine_size(made), sum(len(g.stances) for g in made.graphs.values())
         writing = median(
             lambda made=made, names=names: msgspec.json.encode(to_document(made, "size.glb", names))
         )

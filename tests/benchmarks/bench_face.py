@@ -33,16 +33,16 @@ from metagraph.graph.face.rig import with_morphs
 from metagraph.graph.life import Life
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Say
-from metagraph.motion.character_mesh import Character
+from metagraph.motion.character_mesh import CharacterMesh
 from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.graphemes import spelled
 from metagraph.playback.life.lips import mouth
 from metagraph.playback.life.mouth import MouthPiece
 from metagraph.playback.life.track import Speech, Track
-from metagraph.playback.life.voice import Voice, voiced
+from metagraph.playback.life.voice import Voice, make_voice
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.planning.extend_performance import hear
+from metagraph.playback.planning.extend_performance import hear_asks
 from metagraph.playback.planning.mood import MOODS
 from metagraph.speech.phones import pieces_of
 from metagraph.speech.textgrid import read_textgrid
@@ -69,7 +69,7 @@ VOWELS = ("aa", "E", "I", "O", "U")
 FRAME = 0.04
 
 
-def lip_points(body: Character) -> tuple[Array, Array]:
+def lip_points(body: CharacterMesh) -> tuple[Array, Array]:
     """Return the vertices in the middle of the upper and of the lower lip."""
     names = list(body.morphs)
     shifts = body.morph_positions
@@ -83,7 +83,7 @@ def lip_points(body: Character) -> tuple[Array, Array]:
     return moved("mouthUpperUp"), moved("mouthLowerDown")
 
 
-def lip_gap(body: Character, weights: dict[str, float]) -> float:
+def lip_gap(body: CharacterMesh, weights: dict[str, float]) -> float:
     """Return how much farther apart than at rest the lips are, mm."""
     upper, lower = lip_points(body)
     moved = sum(
@@ -110,12 +110,12 @@ def targets(row: Array, morphs: dict[str, Any]) -> dict[str, float]:
     return {name: min(1.0, value) for name, value in out.items()}
 
 
-def measured(body: Character, said: list[tuple[list[MouthPiece], float]]) -> dict[str, Array]:
+def measured(body: CharacterMesh, said: list[tuple[list[MouthPiece], float]]) -> dict[str, Array]:
     """Return for each kind of sound rows of (most of its shape, most in a frame, least gap mm)."""
     morphs = find_morphs(body.morphs)
     out: dict[str, list[list[float]]] = {"p b m": [], "f v": [], "vowels": []}
     for pieces, length in said:
-        voice = voiced(pieces, length, np.zeros(0), np.zeros(0))
+        voice = make_voice(pieces, length, np.zeros(0), np.zeros(0))
         for piece in pieces:
             kind = {"PP": "p b m", "FF": "f v"}.get(piece.viseme, "vowels" if piece.viseme in VOWELS else "")
             if not kind or piece.strength < 0.6:
@@ -131,7 +131,7 @@ def measured(body: Character, said: list[tuple[list[MouthPiece], float]]) -> dic
     return {kind: np.array(rows) for kind, rows in out.items()}
 
 
-def moving(project: Project, body: Character, plan: Plan) -> Array:
+def moving(project: Project, body: CharacterMesh, plan: Plan) -> Array:
     """Return how high the left corner of the mouth and the left brow's inner end are above their rest,
     `[N, 2]` mm.
     """
@@ -149,7 +149,7 @@ def moving(project: Project, body: Character, plan: Plan) -> Array:
     return np.array(out) * 1e3
 
 
-def faces(body: Character) -> None:
+def faces(body: CharacterMesh) -> None:
     project = with_morphs(open_project(SAMPLES / "sample.metagraph.yaml").project, body.morphs)
     pixel = 1080 / (1.1 * float(np.ptp(body.positions[:, 1])) * 1e3)
     print(f"a minute of the face: least..most mm above rest; {pixel:.2f} pixels a mm at 1080 lines")
@@ -160,7 +160,7 @@ def faces(body: Character) -> None:
         plan = make_plan(felt, 60.0, idle=False)
         if name == "talk":
             asks = [Say(id=f"s{n}", at=5.0 * n, text=line) for n, line in enumerate(LINES)]
-            plan = hear(felt, plan, 0.0, asks, 60.0, idle=False)
+            plan = hear_asks(felt, plan, 0.0, asks, 60.0, idle=False)
         rows = moving(felt, body, plan)
         corner, brow = ([x.min(), x.max(), np.ptp(x) * pixel] for x in rows.T)
         print(

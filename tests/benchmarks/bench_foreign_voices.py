@@ -21,17 +21,22 @@ sys.path.insert(0, str(ROOT))
 import numpy as np  # noqa: E402
 from msgspec.structs import replace as changed  # noqa: E402
 
-from app.cli.command_output import opened  # noqa: E402
+from app.cli.command_output import open_for_command  # noqa: E402
 from metagraph.formats.conversations.files import read_conversation  # noqa: E402
 from metagraph.formats.conversations.languages import Speaking  # noqa: E402
-from metagraph.generation.features import conversation_activity, features, frames_of  # noqa: E402
+from metagraph.generation.features import compute_features, conversation_activity, frames_of  # noqa: E402
 from metagraph.generation.performing import side_sound  # noqa: E402
-from metagraph.generation.poses import poses_of  # noqa: E402
-from metagraph.generation.statistics import Performance, measures, mismatched, performance  # noqa: E402
+from metagraph.generation.poses import encode_clip  # noqa: E402
+from metagraph.generation.statistics import (  # noqa: E402
+    MotionSample,
+    compute_measures,
+    make_motion_sample,
+    mismatch_speech,
+)
 from metagraph.generation.stored import Model, read_model  # noqa: E402
-from metagraph.generation.takes import Source, Take, _marks  # noqa: E402
-from metagraph.research.generation.evaluation import Manner, generated  # noqa: E402
-from metagraph.research.generation.planted import AGAIN, performed  # noqa: E402
+from metagraph.generation.takes import Take, TakeSource, _marks  # noqa: E402
+from metagraph.research.generation.evaluation import SamplingManner, generate_poses  # noqa: E402
+from metagraph.research.generation.planted import AGAIN, perform_planted  # noqa: E402
 from sample_clips.make import talk as maker  # noqa: E402
 
 SHOWN = ("speed", "acceleration", "distance", "still", "trembling", "role", "stroke", "nods_responses")
@@ -80,7 +85,7 @@ def turns(language: str, seed: int) -> tuple[maker.Turn, ...]:
 
 def takes(model: Model, folder: Path) -> tuple[list[Take], list[Take]]:
     """Return takes of all languages, and the same speech performed anew."""
-    opened_as = opened(ROOT / "sample_clips" / "sample.metagraph.yaml")
+    opened_as = open_for_command(ROOT / "sample_clips" / "sample.metagraph.yaml")
     project = getattr(opened_as, "project", opened_as)
     found, again = [], []
     for n, pair in enumerate(PAIRS):
@@ -96,12 +101,12 @@ def takes(model: Model, folder: Path) -> tuple[list[Take], list[Take]]:
         for side in (0, 1):
             samples, _ = side_sound(read, side, folder)
             count = frames_of(samples.shape[1])
-            heard = features(samples, conversation_activity(read, side, count), model.card.tracks)
+            heard = compute_features(samples, conversation_activity(read, side, count), model.card.tracks)
             for seed, into in ((n, found), (n + AGAIN, again)):
-                clip = performed(project, changed(read, seed=seed), side)
-                poses = poses_of(model.rig, clip, 25.0)
+                clip = perform_planted(project, changed(read, seed=seed), side)
+                poses = encode_clip(model.rig, clip, 25.0)
                 take = Take(
-                    Source(f"{language} {side + 1}", (), ""), poses[:count], heard, _marks(read, side)
+                    TakeSource(f"{language} {side + 1}", (), ""), poses[:count], heard, _marks(read, side)
                 )
                 into.append(take.part(0, min(len(poses), count)))
     return found, again
@@ -111,25 +116,28 @@ def main(path: Path, seeds: int) -> None:
     model = read_model(path)
     with TemporaryDirectory() as folder:
         recorded, again = takes(model, Path(folder))
-    true = [performance(model.rig, t.poses, t) for t in recorded]
+    true = [make_motion_sample(model.rig, t.poses, t) for t in recorded]
     print(f"{path.name}: {len(true)} sides, {sum(t.seconds for t in recorded) / 60:.1f} min, {seeds} seeds")
     print(f"{'':24}" + "".join(f"{name.replace('nods_', '')[:10]:>12}" for name in SHOWN))
 
     def show(name: str, values: dict[str, float]) -> None:
         print(f"{name:24}" + "".join(f"{values[s]:12.2f}" for s in SHOWN), flush=True)
 
-    show("driver", measures(true, true))
-    show("driver again", measures([performance(model.rig, t.poses, t) for t in again], true))
-    show("to other speech", measures(mismatched(true), true))
-    made: list[list[Performance]] = []
+    show("driver", compute_measures(true, true))
+    show("driver again", compute_measures([make_motion_sample(model.rig, t.poses, t) for t in again], true))
+    show("to other speech", compute_measures(mismatch_speech(true), true))
+    made: list[list[MotionSample]] = []
     for seed in range(1, seeds + 1):
-        poses = [generated(model, t.features, seed, n, Manner(seeds=1)) for n, t in enumerate(recorded)]
-        made.append([performance(model.rig, p, t) for p, t in zip(poses, recorded, strict=True)])
+        poses = [
+            generate_poses(model, t.features, seed, n, SamplingManner(seeds=1))
+            for n, t in enumerate(recorded)
+        ]
+        made.append([make_motion_sample(model.rig, p, t) for p, t in zip(poses, recorded, strict=True)])
     for n, language in enumerate(WORDS):
         both = slice(2 * n, 2 * n + 2)
-        of = [measures(m[both], true[both]) for m in made]
+        of = [compute_measures(m[both], true[both]) for m in made]
         show(language, {s: float(np.mean([v[s] for v in of])) for s in SHOWN})
-    of = [measures(m, true) for m in made]
+    of = [compute_measures(m, true) for m in made]
     show("all", {s: float(np.mean([v[s] for v in of])) for s in SHOWN})
 
 

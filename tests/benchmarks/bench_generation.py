@@ -22,10 +22,10 @@ sys.path.insert(0, str(ROOT))
 
 import numpy as np  # noqa: E402
 
-from metagraph.generation.features import conversation_activity, features, frames_of  # noqa: E402
+from metagraph.generation.features import compute_features, conversation_activity, frames_of  # noqa: E402
 from metagraph.generation.loudness import gain_of  # noqa: E402
 from metagraph.generation.networks import FPS, parameters, sizes_of  # noqa: E402
-from metagraph.generation.sampler import Sampler, poses_to, whole  # noqa: E402
+from metagraph.generation.sampler import TakeSampler, poses_to, sample_whole  # noqa: E402
 from tests.generation.makers import babble, conversation, untrained  # noqa: E402
 
 SYSTEMS = (
@@ -46,7 +46,7 @@ def main(seconds: float) -> None:
     gains = [gain_of(channel, 16000) for channel in sound]
     measured = time.process_time() - began
     began = time.process_time()
-    frames = features(sound, told, gains=gains)
+    frames = compute_features(sound, told, gains=gains)
     heard = time.process_time() - began
     print(f"{seconds:g} s: loudness {seconds / measured:.0f} x real time, features {seconds / heard:.0f} x")
     for kind, name, share in SYSTEMS:
@@ -57,18 +57,18 @@ def main(seconds: float) -> None:
         speeds = [
             count / FPS / min(spent(run) for _ in range(3))
             for run in (
-                lambda model=model, n=count, size=size: whole(model, sound[:, :size], told[:n]),
+                lambda model=model, n=count, size=size: sample_whole(model, sound[:, :size], told[:n]),
                 lambda model=model, n=count: poses_to(model, frames[:n]),
             )
         ]
-        sampler = Sampler(model, gains=gains)
+        sampler = TakeSampler(model, gains=gains)
         worst, total, made = 0.0, 0.0, 0
         for n in range(count):
             began = time.process_time()
             made += len(sampler.push(sound[:, n * 640 : (n + 1) * 640], told[n : n + 1]))
             took = time.process_time() - began
             worst, total = max(worst, took), total + took
-        live = Sampler(model, gains=gains, lookahead=5)
+        live = TakeSampler(model, gains=gains, lookahead=5)
         pieces = []
         for n in range(count):
             live.feed(sound[:, n * 640 : (n + 1) * 640], told[n : n + 1])

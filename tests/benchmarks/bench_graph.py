@@ -20,8 +20,8 @@ sys.path.insert(0, str(ROOT))
 
 from metagraph.formats.store import open_project  # noqa: E402
 from metagraph.graph import edits  # noqa: E402
-from metagraph.graph.check import check  # noqa: E402
-from metagraph.graph.expand import connections, size  # noqa: E402
+from metagraph.graph.check import check_project  # noqa: E402
+from metagraph.graph.expand import count_machine_size, list_connections  # noqa: E402
 from metagraph.graph.model import KINDS, LAYERS, ClipEntry, Layer, Project  # noqa: E402
 
 
@@ -38,7 +38,7 @@ def large(actions: int, layers: Sequence[Layer], stances: int) -> Project:
             for s in range(stances):
                 some = own[k::4][s::stances]
                 if some:
-                    project = edits.place(
+                    project = edits.place_clips(
                         project,
                         some,
                         layer,
@@ -71,8 +71,8 @@ def bench_edits(project: Project, title: str) -> None:
             p, gestures[:100], timing={"blend_in": 0.1 + i * 1e-3}
         ),
         "likelihood": lambda p, i: edits.update_actions(p, [gestures[-i]], likelihood=2.0 + i),
-        "place": lambda p, i: edits.place(p, [f"c{i}"], "arms", "gesture", stances[3]),
-        "place 100": lambda p, i: edits.place(
+        "place": lambda p, i: edits.place_clips(p, [f"c{i}"], "arms", "gesture", stances[3]),
+        "place 100": lambda p, i: edits.place_clips(
             p, [f"c{n}" for n in range(100)], "arms", "fidget", stances[i % 20]
         ),
         "move": lambda p, i: edits.move_actions(p, [gestures[i]], "fidget", stances[(i + 1) % 20]),
@@ -114,19 +114,22 @@ def main() -> None:
 
     sample = open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project
     start = time.perf_counter()
-    check(sample)
+    check_project(sample)
     first = (time.perf_counter() - start) * 1e3
     print(f"\n{'':42} {'median':>8}  ms")
     print(f"  {'check, sample (152 clips), first':40} {first:8.1f}")
-    print(f"  {'check, sample, again':40} {median(lambda: check(sample), 9):8.1f}")
-    print(f"  {f'check, {actions} actions without motion':40} {median(lambda: check(spread), 5):8.1f}")
-    counted = size(spread)
-    print(f"  {f'expand.size: {counted.connections} connections':40} {median(lambda: size(spread), 9):8.2f}")
+    print(f"  {'check, sample, again':40} {median(lambda: check_project(sample), 9):8.1f}")
+    print(
+        f"  {f'check, {actions} actions without motion':40} {median(lambda: check_project(spread), 5):8.1f}"
+    )
+    counted = count_machine_size(spread)
+    seconds = median(lambda: count_machine_size(spread), 9)
+    print(f"  {f'expand.size: {counted.connections} connections':40} {seconds:8.2f}")
     arms = spread.graphs["arms"]
-    listed = sum(1 for _ in connections(spread, arms))
+    listed = sum(1 for _ in list_connections(spread, arms))
     print(
         f"  {f'expand.connections, listing {listed}':40} "
-        f"{median(lambda: sum(1 for _ in connections(spread, arms)), 3):8.1f}"
+        f"{median(lambda: sum(1 for _ in list_connections(spread, arms)), 3):8.1f}"
     )
 
 

@@ -71,23 +71,23 @@ def main(count: int = 1000, pictures: int = 500) -> None:
     from PySide6.QtTest import QTest
 
     from app.features.library.library_panel import LibraryPanel
-    from app.main import prepare
+    from app.main import prepare_application
     from app.project.document import Document
     from app.project.jobs import Jobs
     from app.stage import kept_pictures
     from app.stage.figures import Figures
-    from app.stage.session import Session
+    from app.stage.session import StageSession
     from app.stage.thumbnails import Thumbnails
     from metagraph.graph.editing.marks import mark, mark_of
 
-    app = prepare()
+    app = prepare_application()
     folder = Path(tempfile.mkdtemp()) / "pictures"
     kept_pictures.pictures_folder = lambda: folder
     project = clips_of(count)
     print(f"{count} clips, panel of {SIZE[0]} x {SIZE[1]}; ms: median, worst")
     for opening in ("first", "second"):
         document, jobs = Document(), Jobs()
-        session = Session(document)
+        session = StageSession(document)
         drawn = Thumbnails(document, session, Figures(document, jobs))
         came: list[str] = []
         drawn.ready.connect(came.append)

@@ -151,7 +151,7 @@ def flood(seconds: float) -> None:
     from metagraph.live.live_session import LiveSession
     from metagraph.live.relay import Relay
     from metagraph.live.server import Server
-    from metagraph.live.wire import Batch, Result, exchange
+    from metagraph.live.wire import BatchResult, RequestBatch, exchange
     from tests.posing import pose_at
 
     project = open_project(SAMPLE).project
@@ -189,7 +189,7 @@ def flood(seconds: float) -> None:
             process, ours = spawn(int(str(ready.websocket).rpartition(":")[2]), listed, seconds)
             begin = time.monotonic()
 
-            def step(batch: Batch | None) -> Result:
+            def step(batch: RequestBatch | None) -> BatchResult:
                 start = time.perf_counter()
                 out = exchange(session, time.monotonic() - begin, batch)
                 ticks.append(time.perf_counter() - start)

@@ -14,14 +14,14 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
 from metagraph.formats.store import open_project  # noqa: E402
-from metagraph.graph.conversation.model import Segment, heard_by  # noqa: E402
+from metagraph.graph.conversation.model import Segment, segments_heard_by  # noqa: E402
 from metagraph.motion.clip import Clip  # noqa: E402
-from metagraph.research.exhibits.material import made  # noqa: E402
-from metagraph.research.generation.planted_speech import converse  # noqa: E402
-from metagraph.research.motion_graph.extending_evaluation import rows_of, table_of  # noqa: E402
-from metagraph.synthesis.constraints import changes, heard  # noqa: E402
-from metagraph.synthesis.graph import build  # noqa: E402
-from metagraph.synthesis.states import key_states, states_of  # noqa: E402
+from metagraph.research.exhibits.material import make_conversations  # noqa: E402
+from metagraph.research.generation.planted_speech import make_planted_speech  # noqa: E402
+from metagraph.research.motion_graph.extending_evaluation import rows_as_text, score_extending  # noqa: E402
+from metagraph.synthesis.constraints import find_change_states, find_heard_at  # noqa: E402
+from metagraph.synthesis.graph import build_graph  # noqa: E402
+from metagraph.synthesis.states import key_states, read_states  # noqa: E402
 from tests.synthesis.talking import speech, talking  # noqa: E402
 
 TAKES, LONG = 8, 60.0  # and seconds of each
@@ -34,11 +34,13 @@ def measured(
     new: Sequence[Segment],
     seconds: float,
 ) -> None:
-    states = states_of(takes)
-    graph = build(states, keys=key_states(states, changes=changes(states, said)))
+    states = read_states(takes)
+    graph = build_graph(states, keys=key_states(states, changes=find_change_states(states, said)))
     kept, edges = graph.size
     print(f"{words}: {kept:,} states, {edges:,} transitions; {seconds:g} s of other speech")
-    print(table_of(list(rows_of([(graph, heard(states, said), new, seconds)]))), flush=True)
+    print(
+        rows_as_text(list(score_extending([(graph, find_heard_at(states, said), new, seconds)]))), flush=True
+    )
 
 
 def main() -> None:
@@ -47,13 +49,13 @@ def main() -> None:
     takes = [talking(f"take{n}", said[n], LONG, n) for n in range(TAKES)]
     measured("somebody made up who talks", takes, said, speech(seconds, 99), seconds)
     project = open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project
-    talks = made(project, TAKES, LONG)
+    talks = make_conversations(project, TAKES, LONG)
     clips = [clip for talk in talks if (clip := talk.clips[0]) is not None]
-    new = heard_by(converse(seconds, 777, 888, "new").conversation, 0)
+    new = segments_heard_by(make_planted_speech(seconds, 777, 888, "new").conversation, 0)
     measured(
         "the sample project in conversation",
         clips,
-        [heard_by(t.conversation, 0) for t in talks],
+        [segments_heard_by(t.conversation, 0) for t in talks],
         new,
         seconds,
     )

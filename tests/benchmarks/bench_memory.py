@@ -175,9 +175,9 @@ def in_use() -> float:
 def windows(count: int = 5, dialogs: int = 1) -> None:
     from PySide6.QtCore import QSettings
 
-    from app.main import prepare
+    from app.main import prepare_application
 
-    prepare()
+    prepare_application()
     with tempfile.TemporaryDirectory() as folder:
         os.environ.update(XDG_DATA_HOME=folder, XDG_CONFIG_HOME=folder)
         QSettings.setDefaultFormat(QSettings.Format.IniFormat)

@@ -18,7 +18,7 @@ sys.path.insert(0, str(ROOT))
 
 from metagraph.formats.keypoints.reader import read_keypoints  # noqa: E402
 from metagraph.formats.store import open_project  # noqa: E402
-from metagraph.mimicry.keypoint_layouts import Keypoints  # noqa: E402
+from metagraph.mimicry.keypoint_layouts import KeypointTrack  # noqa: E402
 from metagraph.mimicry.mimic import Mimic  # noqa: E402
 from metagraph.mimicry.performing import mimic_performance  # noqa: E402
 from metagraph.playback.planner import make_plan  # noqa: E402
@@ -42,7 +42,7 @@ def main() -> None:
     seen = {name: read_keypoints(path) for name, path in files.items()}
     plan = make_plan(project, 60.0)
 
-    def frames(keypoints: Keypoints) -> Callable[[], object]:
+    def frames(keypoints: KeypointTrack) -> Callable[[], object]:
         mimic, points = Mimic(project), keypoints.points[:, :, : keypoints.dims]
         rows = list(zip(keypoints.times.tolist(), points, keypoints.confidence, strict=True))[:200]
         return lambda: [mimic.feed(t + begin, p, c) for t, p, c in rows]

@@ -28,7 +28,7 @@ from metagraph.graph.model import Project
 from metagraph.graph.requests import Feel, Gesture
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.planning.extend_performance import hear
+from metagraph.playback.planning.extend_performance import hear_asks
 from metagraph.playback.planning.mood import MOODS
 from metagraph.playback.timing.phases import phases
 from tests.posing import pose_at
@@ -58,7 +58,7 @@ def measured(project: Project, seed: int) -> list[float]:
     """Return what `MEASURES` names of two minutes of what the models perform."""
     plan = make_plan(project, SECONDS, seed=seed)
     times = np.arange(0, SECONDS, 1 / FPS)
-    skeleton, roles = project.skeleton, anatomy.roles(project)
+    skeleton, roles = project.skeleton, anatomy.project_roles(project)
     assert skeleton is not None
     turned, at = skeleton.globals(pose_at(plan, project, times))
     arms = plan.layers["arms"]
@@ -131,7 +131,7 @@ def strokes(project: Project) -> None:
         for seed in range(4):
             asks = [Gesture(id=f"g{n}", stroke=6.0 + 7.0 * n) for n in range(16)]
             mood = Feel(id="mood", at=0.0, mood=name)  # type: ignore[arg-type]
-            plan = hear(project, Plan(seed, 0.0), 0.0, [mood, *asks], 125.0, idle=False)
+            plan = hear_asks(project, Plan(seed, 0.0), 0.0, [mood, *asks], 125.0, idle=False)
             for cue in plan.layers["arms"].cues:
                 if cue.meta.startswith("g"):
                     late = cue.start + (phases(project, cue.action).stroke - cue.entry) / cue.tempo

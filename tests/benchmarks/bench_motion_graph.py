@@ -30,11 +30,11 @@ sys.path.insert(0, str(ROOT))
 
 
 from metagraph.graph.conversation.model import SOUNDS, Segment  # noqa: E402
-from metagraph.synthesis.constraints import HeardStates, wanted  # noqa: E402
-from metagraph.synthesis.graph import MotionGraph, Threshold, build, largest, threshold  # noqa: E402
-from metagraph.synthesis.search.exact_search import best  # noqa: E402
+from metagraph.synthesis.constraints import HeardStates, list_wanted  # noqa: E402
+from metagraph.synthesis.graph import MotionGraph, Threshold, build_graph, largest, threshold  # noqa: E402
+from metagraph.synthesis.search.exact_search import find_best_path  # noqa: E402
 from metagraph.synthesis.search.greedy_search import greedy  # noqa: E402
-from metagraph.synthesis.states import States, key_states, states_of, terms_of, with_velocity  # noqa: E402
+from metagraph.synthesis.states import States, key_states, read_states, terms_of, with_velocity  # noqa: E402
 
 Array = Any
 ROWS = 12  # the straightforward one compares
@@ -108,8 +108,8 @@ def compared(name: str, states: States, limit: float) -> MotionGraph:
     """Print one line, ours beside the straightforward one."""
     keys = key_states(states)
     given = Threshold(3, 0.95, np.zeros(0), None, limit, limit)
-    ours, graph = timed(lambda: build(states, given, keys))
-    whole = build(states, given, keys, connected=False)
+    ours, graph = timed(lambda: build_graph(states, given, keys))
+    whole = build_graph(states, given, keys, connected=False)
     rows = keys[np.linspace(0, len(keys) - 1, ROWS).astype(int)]
     plain = straightforward(states, keys, limit)
     theirs, found = timed(lambda: plain(rows), 3)
@@ -134,7 +134,7 @@ def components(states: States, limit: float) -> None:
     from scipy.sparse import csr_matrix
     from scipy.sparse.csgraph import connected_components
 
-    whole = build(states, Threshold(3, 0.95, np.zeros(0), None, limit, limit), connected=False)
+    whole = build_graph(states, Threshold(3, 0.95, np.zeros(0), None, limit, limit), connected=False)
     ours, graph = timed(lambda: largest(whole))
     rows = np.repeat(np.arange(len(states), dtype=np.int32), np.diff(whole.starts))
     follows = np.flatnonzero(~states.last).astype(np.int32)
@@ -177,8 +177,8 @@ def speech(frames: int, seed: int = 3) -> tuple[HeardStates, list[Segment]]:
 def searched(name: str, graph: MotionGraph) -> None:
     """Print how long a path for 15 s takes, exact and greedy, and how much dearer the greedy one's are."""
     sound, segments = speech(len(graph.states))
-    want = wanted(segments, 15.0)
-    exact, path = timed(lambda: best(graph, sound, want), 2)
+    want = list_wanted(segments, 15.0)
+    exact, path = timed(lambda: find_best_path(graph, sound, want), 2)
     print(
         f"\n15 s of speech, {name}: exact {exact:.2f} s, cost {path.cost:.3f}, {len(path.jumps)} transitions"
     )
@@ -209,11 +209,11 @@ MOST = 200  # transitions kept of a state
 
 def one_size(size: int) -> dict[str, Any]:
     """Build a graph of so many frames; return what it took. Meant for a process of its own."""
-    build(synthetic(3000))  # compiles
+    build_graph(synthetic(3000))  # compiles
     states = synthetic(size)
     keys = key_states(states)
     given = Threshold(3, 0.95, np.zeros(0), None, limit_for(states, keys, SHARE), 0.0)
-    seconds, graph = timed(lambda: build(states, given, keys, MOST), 3 if size < 300_000 else 1)
+    seconds, graph = timed(lambda: build_graph(states, given, keys, MOST), 3 if size < 300_000 else 1)
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
     rows = keys[np.linspace(0, len(keys) - 1, 3).astype(int)]
     theirs = 0.0
@@ -333,17 +333,17 @@ def main() -> None:
     )
     print(f"| {' | '.join((*heads, 'edges that differ'))} |")
     print("|---|---|---|---|---|---|---|---|---|---|")
-    build(synthetic(3000))  # compiles
+    build_graph(synthetic(3000))  # compiles
     states = synthetic(50_568)
     keys = key_states(states)
     limits = {share: limit_for(states, keys, share) for share in (0.11, 0.01)}
     graphs = {share: compared(f"synthetic, {share:.0%}", states, limit) for share, limit in limits.items()}
     data = ROOT.parent / "shared" / "data" / "bandai-namco-1"
     if data.is_dir():
-        from metagraph.formats.clips import read_clips
+        from metagraph.formats.clips import read_clip_file
 
-        takes = [clip for path in sorted(data.glob("*.bvh")) for clip in read_clips(path)]
-        real = states_of([t for t in takes if t.skeleton == takes[0].skeleton])
+        takes = [clip for path in sorted(data.glob("*.bvh")) for clip in read_clip_file(path)]
+        real = read_states([t for t in takes if t.skeleton == takes[0].skeleton])
         for k in (2, 3, 4):
             try:
                 compared(f"bandai-namco-1, k = {k}", real, threshold(real, k).limit)

@@ -18,7 +18,7 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from metagraph.research.study.machines.klm import predicted  # noqa: E402
+from metagraph.research.study.machines.klm import predict_seconds  # noqa: E402
 from metagraph.suggest.propose import propose  # noqa: E402
 from tests.benchmarks.bench_labels import real_sets  # noqa: E402
 from tests.label_zoo.measure import LabelSet, meanings, none_of_the_four, verdict  # noqa: E402
@@ -61,7 +61,7 @@ def path_of(one: LabelSet, sources: tuple[str, ...]) -> dict[str, Any]:
     looked = sum(e.duration for e in project.clips.values())
     return {
         "clips": len(project.clips), "proposed": len(found.proposals), "wrong": wrong, "fields": fields,
-        "hands": hands, "looked": looked, "seconds": predicted({**hands, "L": looked}),
+        "hands": hands, "looked": looked, "seconds": predict_seconds({**hands, "L": looked}),
     }  # fmt: skip
 
 
@@ -77,7 +77,7 @@ def main() -> None:
         for words, sources in (("tell", ("name", "motion")), ("hidden", ("motion",))):
             row = path_of(one, sources)
             operators = " ".join(f"{n:.0f} {k}" for k, n in row["hands"].items())
-            hands = predicted(row["hands"])
+            hands = predict_seconds(row["hands"])
             cells = [one.name, words, row["clips"], row["proposed"], row["wrong"], row["fields"], operators]
             cells += [f"{hands:.0f} s", f"{row['looked']:.0f} s", f"{row['seconds'] / 60:.1f} min"]
             print(f"| {' | '.join(map(str, cells))} |", flush=True)

@@ -25,7 +25,7 @@ from metagraph.graph.model import LAYERS, Project  # noqa: E402
 from metagraph.playback.life.schedule import Schedule, schedule  # noqa: E402
 from metagraph.playback.life.track import LookAt, Speech, track_of  # noqa: E402
 from metagraph.playback.plan import Plan  # noqa: E402
-from metagraph.playback.planner import extend, make_plan  # noqa: E402
+from metagraph.playback.planner import extend_plan, make_plan  # noqa: E402
 from tests.posing import pose_at  # noqa: E402
 
 
@@ -45,7 +45,9 @@ def crowded(project: Project, copies: int) -> Project:
     for layer in LAYERS:
         for action in list(project.graphs[layer].actions.values()):
             if action.kind in ("gesture", "fidget"):
-                project = edits.place(project, [action.clip] * copies, layer, action.kind, action.stance)
+                project = edits.place_clips(
+                    project, [action.clip] * copies, layer, action.kind, action.stance
+                )
     return project
 
 
@@ -145,12 +147,12 @@ def main() -> None:
     )
     row(
         "extend an hour's plan by a minute",
-        [clock(lambda: extend(sample, hour, 3590, (), 3660)) for _ in range(7)],
+        [clock(lambda: extend_plan(sample, hour, 3590, (), 3660)) for _ in range(7)],
     )
     day = make_plan(sample, 36000)
     row(
         "extend a plan of ten hours by a minute",
-        [clock(lambda: extend(sample, day, 35990, (), 36060)) for _ in range(7)],
+        [clock(lambda: extend_plan(sample, day, 35990, (), 36060)) for _ in range(7)],
     )
 
     times = np.random.default_rng(1).uniform(0, 3600, 400)

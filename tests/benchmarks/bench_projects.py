@@ -18,11 +18,11 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from metagraph.engines.export import export  # noqa: E402
+from metagraph.engines.export import export_project  # noqa: E402
 from metagraph.engines.reading import read_export  # noqa: E402
 from metagraph.formats.project.data import from_data, to_data  # noqa: E402
 from metagraph.formats.project.journal import Journal, journal_path  # noqa: E402
-from metagraph.formats.project.text import read, to_text  # noqa: E402
+from metagraph.formats.project.text import read_text_data, to_text  # noqa: E402
 from metagraph.formats.recovery import recover  # noqa: E402
 from metagraph.formats.store import SUFFIX, open_project, read_project, save_project  # noqa: E402
 from metagraph.graph import edits  # noqa: E402
@@ -41,7 +41,7 @@ def large(actions: int) -> Project:
                 clips = [a.clip for a in bucket][: max(0, actions - count)]
                 end = bucket[0].end_stance
                 if clips:
-                    project = edits.place(project, clips, layer, kind, stance, end)
+                    project = edits.place_clips(project, clips, layer, kind, stance, end)
                     count += len(clips)
     return project
 
@@ -68,7 +68,7 @@ def main() -> None:
         print(f"{sum(1 for _ in project.actions()):,} actions, {len(text) / 1e6:.2f} MB")
         print(f"save               {save:8.0f} ms")
         print(f"open               {median(lambda: read_project(path)):8.0f} ms")
-        print(f"  text -> data     {median(lambda: read(text)):8.0f} ms")
+        print(f"  text -> data     {median(lambda: read_text_data(text)):8.0f} ms")
         print(f"  data -> project  {median(lambda: from_data(data)):8.0f} ms")
         print(f"  data -> text     {median(lambda: to_text(data)):8.0f} ms")
         journal = Journal(journal_path(path), path)
@@ -95,12 +95,9 @@ def main() -> None:
             "read"
         )
         mesh = SAMPLE.with_name("mannequin.glb")
-        made = export(sample, folder / "export", expanded=True, character=mesh)
-        print(
-            "export the sample  "
-            f"{median(lambda: export(sample, folder / 'export', expanded=True, character=mesh)):8.0f} ms",
-            end=", ",
-        )
+        made = export_project(sample, folder / "export", expanded=True, character=mesh)
+        taken = median(lambda: export_project(sample, folder / "export", expanded=True, character=mesh))
+        print(f"export the sample  {taken:8.0f} ms", end=", ")
         print(f"JSON {made.json.stat().st_size / 1e6:.2f} MB, GLB {made.glb.stat().st_size / 1e6:.2f} MB")
         print(f"read it back       {median(lambda: read_export(made.json)):8.0f} ms")
 

@@ -16,7 +16,7 @@ sys.path.insert(0, str(ROOT))
 
 from metagraph.formats.store import open_project  # noqa: E402
 from metagraph.graph import requests as a  # noqa: E402
-from metagraph.playback.planning.running_plan import perform  # noqa: E402
+from metagraph.playback.planning.running_plan import plan_performance  # noqa: E402
 
 EVERY = 4.0  # seconds between two requests
 
@@ -43,7 +43,7 @@ def main() -> None:
         asks, times = session(count), []
         for _ in range(3):
             begun = time.process_time()
-            perform(project, asks, count * EVERY + 8.0)
+            plan_performance(project, asks, count * EVERY + 8.0)
             times.append(time.process_time() - begun)
         print(f"{count:5} requests in {count * EVERY / 60:5.1f} min   {statistics.median(times):6.2f} s")
 

@@ -20,18 +20,24 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
 from metagraph.graph.conversation.model import Segment  # noqa: E402
-from metagraph.research.motion_graph.search_evaluation import Beside, Setting, Trials, cut, evaluate  # noqa: E402
+from metagraph.research.motion_graph.search_evaluation import (  # noqa: E402
+    Beside,
+    Setting,
+    Trials,
+    cut_segments,
+    evaluate_search,
+)
 from metagraph.speech.prosody import prosody  # noqa: E402
 from metagraph.synthesis.assemble import assemble  # noqa: E402
-from metagraph.synthesis.constraints import changes, heard  # noqa: E402
+from metagraph.synthesis.constraints import find_change_states, find_heard_at  # noqa: E402
 from metagraph.synthesis.cooccurrence import speeds  # noqa: E402
-from metagraph.synthesis.graph import build  # noqa: E402
+from metagraph.synthesis.graph import build_graph  # noqa: E402
 from metagraph.synthesis.iconic_words import word_wish  # noqa: E402
 from metagraph.synthesis.prosody_costs import SpokenTake  # noqa: E402
 from metagraph.synthesis.search.path_quality import quality  # noqa: E402
-from metagraph.synthesis.search.relaxing import Searching, answer  # noqa: E402
+from metagraph.synthesis.search.relaxing import Searching, answer_speech  # noqa: E402
 from metagraph.synthesis.soft_constraints import SoftMaterial, SoftWish, soft_report  # noqa: E402
-from metagraph.synthesis.states import key_states, states_of  # noqa: E402
+from metagraph.synthesis.states import key_states, read_states  # noqa: E402
 from tests.synthesis.talking import VOICE, aloud, speech, talking  # noqa: E402
 
 WORDS = (word_wish("big"), word_wish("round = river"))
@@ -65,9 +71,9 @@ def wishes(takes: int = 8, windows: int = 16) -> None:
         talking(f"take {n}", said, 60, n, sizes=[1 + 0.5 * step for step in steps])
         for n, (said, steps, _) in enumerate(made)
     ]
-    states, speeches = states_of(clips), [said for said, *_ in made]
-    graph = build(states, keys=key_states(states, changes=changes(states, speeches)))
-    sound, spoken = heard(states, speeches), [one for *_, one in made]
+    states, speeches = read_states(clips), [said for said, *_ in made]
+    graph = build_graph(states, keys=key_states(states, changes=find_change_states(states, speeches)))
+    sound, spoken = find_heard_at(states, speeches), [one for *_, one in made]
     new = [recorded(100 + n, 30, -20.0) for n in range(windows)]
 
     def material(wish: SoftWish) -> SoftMaterial:
@@ -85,7 +91,9 @@ def wishes(takes: int = 8, windows: int = 16) -> None:
             for said, heights, one in new:
                 searching = Searching(search)  # type: ignore[arg-type]
                 soft, begun = offer.constraints(one, 0.0, SECONDS), time.perf_counter()
-                found = answer(graph, sound, cut(said, 0, SECONDS), SECONDS, None, searching, soft=soft)
+                found = answer_speech(
+                    graph, sound, cut_segments(said, 0, SECONDS), SECONDS, None, searching, soft=soft
+                )
                 took += time.perf_counter() - begun
                 known = told.constraints(one, 0.0, SECONDS)
                 report = soft_report(soft, states, found.path, found.retiming)
@@ -122,7 +130,9 @@ def scarce() -> None:
             clips = [talking(f"take {n}", s, seconds, n) for n, s in enumerate(said)]
             exactly = (Setting("a frame", tolerance=0.034),)
             wish = SoftWish(retime=share)
-            (row,) = evaluate(clips, said, exactly, Trials(("exact",), 10, 5), beside=Beside(wish)).rows
+            (row,) = evaluate_search(
+                clips, said, exactly, Trials(("exact",), 10, 5), beside=Beside(wish)
+            ).rows
             found, cases = found + row.found, cases + row.cases
         print(f"within a frame, speed changed by up to {share:.0%}: {found} of {cases} windows find motion")
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from metagraph.playback.life.streamed_voice import StreamedVoice
-from metagraph.speech.sound import hear, read_sound, shapes_heard
+from metagraph.speech.sound import analyse_sound, guess_mouth_shapes, read_sound
 
 ROOT = Path(__file__).resolve().parents[2]
 SHARED = ROOT.parent / "shared" / "data" / "praatio-speech"
@@ -47,7 +47,9 @@ def main() -> None:
         samples, rate = read_sound(path, None)
         samples = np.asarray(samples)[: round(LONGEST * rate)]
         count = int(len(samples) / rate / STEP)
-        whole = [(p.start, p.end, p.viseme, p.strength) for p in shapes_heard(hear(samples, rate))]
+        whole = [
+            (p.start, p.end, p.viseme, p.strength) for p in guess_mouth_shapes(analyse_sound(samples, rate))
+        ]
         began = time.process_time()
         voice, marks = StreamedVoice(float(rate)), []
         for n in range(0, len(samples), round(PIECE * rate)):

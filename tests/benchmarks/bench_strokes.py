@@ -20,7 +20,7 @@ from metagraph.formats.store import open_project
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Gesture, Go
 from metagraph.playback.plan import Plan
-from metagraph.playback.planning.extend_performance import answers, hear
+from metagraph.playback.planning.extend_performance import answer_asks, hear_asks
 from metagraph.playback.timing.phases import phases
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / "sample.metagraph.yaml"
@@ -42,13 +42,13 @@ def sentence(draw: random.Random, count: int) -> list[tuple[float, str]]:
 def tried(project: Project, wanted: list[tuple[float, str]], late: float | None, seed: int) -> Counter[str]:
     """Return how many strokes were on time, late, and refused, and the worst lateness in ms."""
     stay = Go(id="stay", layer="arms", stance="hands at sides", stay=True)
-    plan = hear(project, Plan(seed, 0.0), 0.0, [stay], BEGIN + 20)
+    plan = hear_asks(project, Plan(seed, 0.0), 0.0, [stay], BEGIN + 20)
     given = {} if late is None else {"late": late}
     asks = [
         Gesture(id=f"g{n}", tags=(tag,), stroke=BEGIN + at, **given) for n, (at, tag) in enumerate(wanted)
     ]
-    plan = hear(project, plan, BEGIN, asks, BEGIN + 20)
-    told = answers(plan, [a.id for a in asks])
+    plan = hear_asks(project, plan, BEGIN, asks, BEGIN + 20)
+    told = answer_asks(plan, [a.id for a in asks])
     at = {}
     for cue in plan.layers["arms"].cues:
         at[cue.meta] = cue.start + phases(project, cue.action).stroke - cue.entry

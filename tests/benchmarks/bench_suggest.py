@@ -22,17 +22,17 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
 from metagraph.errors import FileError  # noqa: E402
-from metagraph.formats.clips import find_clip_files, read_clips  # noqa: E402
+from metagraph.formats.clips import find_clip_files, read_clip_file  # noqa: E402
 from metagraph.formats.store import open_project  # noqa: E402
 from metagraph.graph import edits  # noqa: E402
 from metagraph.graph.model import LAYERS, Project  # noqa: E402
 from metagraph.motion import rotation  # noqa: E402
 from metagraph.motion.clip import Clip  # noqa: E402
-from metagraph.suggest.alike import Alike, Example  # noqa: E402
-from metagraph.suggest.jumps.compatibility import matrix  # noqa: E402
+from metagraph.suggest.alike import Alike, LabelledExample  # noqa: E402
+from metagraph.suggest.jumps.compatibility import compatibility_matrix  # noqa: E402
 from metagraph.suggest.motion_guess import guess  # noqa: E402
 from metagraph.suggest.propose import accept, examples_of, propose  # noqa: E402
-from metagraph.suggest.stances.known import discovered, distance, known  # noqa: E402
+from metagraph.suggest.stances.known import discover_stances, distance_from_stance, list_known_stances  # noqa: E402
 from metagraph.suggest.traits import Traits, traits_of  # noqa: E402
 
 SAMPLE = ROOT / "sample_clips" / "sample.metagraph.yaml"
@@ -69,7 +69,9 @@ def right(
             for m in shape.members:
                 if m in truth and truth[m]["kind"] is not None:
                     x = traits[m].layers[shape.layer]
-                    ends = distance(shape, x.names, x.last) < distance(shape, x.names, x.first)
+                    ends = distance_from_stance(shape, x.names, x.last) < distance_from_stance(
+                        shape, x.names, x.first
+                    )
                     votes[
                         truth[m]["end_stance" if ends and truth[m]["kind"] == "transition" else "stance"]
                     ] += 1
@@ -116,7 +118,7 @@ def others() -> Sequence[tuple[str, Truth, dict[str, Clip]]]:
         groups: dict[str, dict[str, Clip]] = {}
         for file in find_clip_files(folder):
             try:
-                for clip in read_clips(file):
+                for clip in read_clip_file(file):
                     groups.setdefault(clip.skeleton.fingerprint, {})[clip.name] = clip
             except FileError:
                 continue  # a character without clips
@@ -158,8 +160,8 @@ def main() -> None:
     print(f"{'names hidden':33}" + " ".join(f"{f:>16}" for f in FIELDS))
     wrong: list[str] = []
     for name, stances in (
-        ("sample, its stances known", known(project, traits)),
-        ("sample, stances discovered", discovered(traits)),
+        ("sample, its stances known", list_known_stances(project, traits)),
+        ("sample, stances discovered", discover_stances(traits)),
     ):
         good, count, wrong = right(truth, traits, stances)
         print(row(name, good, count))
@@ -170,14 +172,14 @@ def main() -> None:
             if e.motion is not None
         }
         found = {ident: traits_of([clip])[clip.name] for ident, clip in slow.items()}
-        good, count, _ = right(truth, found, discovered(found))
+        good, count, _ = right(truth, found, discover_stances(found))
         print(row(f"sample, joints drift {degrees} degrees", good, count))
     totals: dict[str, tuple[Counter[str], Counter[str]]] = {}
     for name, told, clips in others():
         if name == "sample_clips":
             continue
         found = traits_of(clips.values())
-        good, count, _ = right(told, found, discovered(found))
+        good, count, _ = right(told, found, discover_stances(found))
         before = totals.setdefault(name, (Counter(), Counter()))
         before[0].update(good)
         before[1].update(count)
@@ -193,7 +195,7 @@ def main() -> None:
     start = time.perf_counter()
     found = traits_of(many)
     middle = time.perf_counter()
-    stances = discovered(found)
+    stances = discover_stances(found)
     later = time.perf_counter()
     for t in found.values():
         guess(t, stances)
@@ -216,9 +218,9 @@ def main() -> None:
         f"{time.perf_counter() - middle:.2f} s; {time.process_time() - busy:.2f} s of a processor"
     )
     some = examples_of(project, traits)
-    examples = [Example((*e.words, f"w{n % 40}"), e.measures, e.labels) for n in range(33) for e in some][
-        :5000
-    ]
+    examples = [
+        LabelledExample((*e.words, f"w{n % 40}"), e.measures, e.labels) for n in range(33) for e in some
+    ][:5000]
     start = time.perf_counter()
     alike = Alike(examples)
     for e in examples[:1000]:
@@ -226,11 +228,11 @@ def main() -> None:
     print(f"asking {len(examples)} labelled clips about 1000: {time.perf_counter() - start:.2f} s")
     start = time.perf_counter()
     for layer in LAYERS:
-        matrix(project, layer)
+        compatibility_matrix(project, layer)
     first = time.perf_counter() - start
     start = time.perf_counter()
     for layer in LAYERS:
-        matrix(project, layer)
+        compatibility_matrix(project, layer)
     print(
         f"compatibility of {len(project.clips)} clips with all stances: {first:.2f} s, again "
         f"{time.perf_counter() - start:.2f} s"

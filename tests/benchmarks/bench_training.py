@@ -22,7 +22,7 @@ import msgspec  # noqa: E402
 import torch  # noqa: E402
 
 from metagraph.generation.networks import parameters, sizes_of  # noqa: E402
-from metagraph.generation.train_plan import Settings  # noqa: E402
+from metagraph.generation.train_plan import TrainingSettings  # noqa: E402
 from metagraph.generation.training.flow_net import ControlNet  # noqa: E402
 from metagraph.generation.training.learner import Learner  # noqa: E402
 from tests.generation.training.planting import plan, take  # noqa: E402
@@ -49,7 +49,7 @@ def main(steps: int) -> None:
 
     for kind, each, known in SYSTEMS:
         ControlNet.heard = alone if each else shared  # type: ignore[method-assign]
-        settings = Settings(known=known)
+        settings = TrainingSettings(known=known)
         sizes = sizes_of(kind)
         own = Learner(
             msgspec.structs.replace(plan(takes[:1], takes[1:], kind, sizes=sizes), settings=settings),

@@ -24,11 +24,11 @@ sys.path.insert(0, str(ROOT))
 import numpy as np  # noqa: E402
 from numpy.typing import NDArray  # noqa: E402
 
-from metagraph.generation.features import RATE, features  # noqa: E402
-from metagraph.generation.statistics import measures, mismatched, performance  # noqa: E402
+from metagraph.generation.features import RATE, compute_features  # noqa: E402
+from metagraph.generation.statistics import compute_measures, make_motion_sample, mismatch_speech  # noqa: E402
 from metagraph.generation.stored import read_model  # noqa: E402
-from metagraph.generation.take_files import find_takes, read_speech, read_takes  # noqa: E402
-from metagraph.research.generation.evaluation import Manner, generated, unseen  # noqa: E402
+from metagraph.generation.take_files import find_takes, read_speech, read_take_batch  # noqa: E402
+from metagraph.research.generation.evaluation import SamplingManner, generate_poses, unseen  # noqa: E402
 
 Array = NDArray[Any]
 
@@ -112,27 +112,27 @@ def main(path: Path, folder: Path, count: int) -> None:
     files, _ = find_takes([folder])
     held = {t.name for t in model.card.held_out}
     files = [f for f in files if f.clip.stem in held][:count] or files[:count]
-    batch = read_takes(files, model.rig, tracks=model.card.tracks)
+    batch = read_take_batch(files, model.rig, tracks=model.card.tracks)
     takes, _ = unseen(model, batch.takes)
     by_name = {f.clip.stem: f for f in files}
-    true = [performance(model.rig, t.poses, t) for t in takes]
+    true = [make_motion_sample(model.rig, t.poses, t) for t in takes]
     print(f"{path.name}: {len(takes)} takes, {sum(t.seconds for t in takes) / 60:.1f} min")
     print(f"{'':28}" + "".join(f"{name.replace('nods_', '')[:10]:>12}" for name in SHOWN))
 
     def show(name: str, values: dict[str, float]) -> None:
         print(f"{name:28}" + "".join(f"{values[s]:12.2f}" for s in SHOWN), flush=True)
 
-    show("recorded motion", measures(true, true))
-    show("motion to other speech", measures(mismatched(true), true))
+    show("recorded motion", compute_measures(true, true))
+    show("motion to other speech", compute_measures(mismatch_speech(true), true))
     for name, change in HEARD.items():
         made = []
         for n, take in enumerate(takes):
             samples = change(read_speech(by_name[take.source.name]).samples)
-            sound = features(samples, np.zeros((0, 4)), model.card.tracks)[: len(take.features), :-4]
+            sound = compute_features(samples, np.zeros((0, 4)), model.card.tracks)[: len(take.features), :-4]
             heard = replace(take, features=np.concatenate([sound, take.features[:, -4:]], 1))
-            poses = generated(model, heard.features, 1, n, Manner(seeds=1))
-            made.append(performance(model.rig, poses, take))
-        show(name, measures(made, true))
+            poses = generate_poses(model, heard.features, 1, n, SamplingManner(seeds=1))
+            made.append(make_motion_sample(model.rig, poses, take))
+        show(name, compute_measures(made, true))
 
 
 if __name__ == "__main__":

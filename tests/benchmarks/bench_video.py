@@ -15,10 +15,10 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from app.cli.render_command import Shot, draw_to, figure_of  # noqa: E402
+from app.cli.render_command import Shot, draw_to, load_figure  # noqa: E402
 from app.project.files import SAMPLE  # noqa: E402
 from app.project.opening import open_whole  # noqa: E402
-from app.stage.playback_source import Shown  # noqa: E402
+from app.stage.playback_source import ShownPlayback  # noqa: E402
 from metagraph.playback.planner import make_plan  # noqa: E402
 
 SIZE, RATE = (640, 360), 30
@@ -26,8 +26,8 @@ SIZE, RATE = (640, 360), 30
 
 def main(seconds: float = 10.0, rounds: int = 3) -> None:
     project = open_whole(SAMPLE).project
-    shown = Shown(project, make_plan(project, seconds), seconds)
-    seen = [(figure_of(project, SAMPLE.parent), shown)]
+    shown = ShownPlayback(project, make_plan(project, seconds), seconds)
+    seen = [(load_figure(project, SAMPLE.parent), shown)]
     walls, used = [], []
     with tempfile.TemporaryDirectory() as folder:
         for _ in range(rounds):

@@ -29,12 +29,12 @@ KINDS = ("plain", "packed")
 def main() -> None:
     path = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "sample_clips" / "sample.metagraph.yaml"
     project = open_whole(path).project
-    web_tools.kept = lambda: ROOT / "tests"
+    web_tools.web_tools_folder = lambda: ROOT / "tests"
     character = path.parent / project.character if project.character else None
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         for kind in KINDS:
-            made = registry.write(
+            made = registry.write_for_target(
                 project, "web", folder / kind, Contents(character, compress=kind == "packed")
             )
             (glb,) = (p.read_bytes() for p in made.files if p.suffix == ".glb")

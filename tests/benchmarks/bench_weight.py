@@ -51,7 +51,7 @@ class Watched:
     """What joints do over times `[N]`: hips, feet, knees' angles and hands."""
 
     def __init__(self, plan: Plan, project: Project, times: Array, alive: bool = True) -> None:
-        roles, skeleton = anatomy.roles(project), project.skeleton
+        roles, skeleton = anatomy.project_roles(project), project.skeleton
         assert skeleton is not None
         self.feet = [joint for side in feet_joints(project) for joint in side]
         legs = [[roles[f"{s}_{p}"] for p in ("upper_leg", "lower_leg", "foot")] for s in SIDES]
@@ -168,7 +168,7 @@ def shared_project(name: str) -> Project | None:
         print(f"{name}: not there")
         return None
     project = import_files(Project(), None, files).into(Project())
-    roles, still, high = anatomy.roles(project), {}, {}
+    roles, still, high = anatomy.project_roles(project), {}, {}
     for entry in [*project.clips.values()][:MOST]:
         if (
             entry.motion is not None
@@ -183,7 +183,7 @@ def shared_project(name: str) -> Project | None:
     for layer in ("body", "arms"):
         project = edits.add_stance(project, layer, "stance", [calm])
         some = others if layer == "arms" else others[:6]
-        project = edits.place(project, some, layer, "gesture", [*project.graphs[layer].stances][-1])
+        project = edits.place_clips(project, some, layer, "gesture", [*project.graphs[layer].stances][-1])
     height = project.skeleton.height if project.skeleton is not None else 0.0
     print(f"{name}: {len(still)} clips, {height:.2f} m high")
     return project

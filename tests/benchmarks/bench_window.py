@@ -36,8 +36,8 @@ import sys, time
 started = float(sys.argv[1])
 import gc
 gc.disable()  # as `run_window` does
-from app.main import open_window, prepare
-app = prepare()
+from app.main import open_window, prepare_application
+app = prepare_application()
 window = open_window(None, sample=True)
 gc.enable()
 window.resize(1680, 1020)
@@ -122,9 +122,9 @@ def many_lines(project: object) -> object:
 def stalls() -> None:
     from PySide6.QtCore import Qt, QTimer
 
-    from app.main import prepare
+    from app.main import prepare_application
 
-    prepare()
+    prepare_application()
     from app.main import make_window
     from metagraph.graph import edits
     from tests.app.handles import Handles
@@ -202,7 +202,7 @@ def large(project: object, count: int) -> object:
                 for kind in ("gesture", "fidget"):
                     clips = [a.clip for a in actions if a.stance == stance and a.kind == kind]
                     if clips:
-                        project = edits.place(project, clips, layer, kind, stance)
+                        project = edits.place_clips(project, clips, layer, kind, stance)
     return project
 
 
@@ -219,7 +219,7 @@ def changes(
             lambda p: edits.update_actions(p, (action,), timing={"blend_in": 0.1 + next(numbers) / 1000}),
         ),
         ("likelihood", lambda p: edits.update_actions(p, (action,), likelihood=1 + next(numbers) / 1000)),
-        ("drop 20 clips", lambda p: edits.place(p, clips, layer, "fidget", stance)),
+        ("drop 20 clips", lambda p: edits.place_clips(p, clips, layer, "fidget", stance)),
         ("rename a stance", lambda p: edits.rename_stance(p, stance, f"stance {next(numbers)}")),
         ("base pose", lambda p: edits.set_base(p, clips[0], next(numbers))),
         ("undo", None),
@@ -229,9 +229,9 @@ def changes(
 def edit_latency() -> None:
     from PySide6.QtWidgets import QApplication
 
-    from app.main import prepare
+    from app.main import prepare_application
 
-    prepare()
+    prepare_application()
     from app.main import make_window
     from tests.app.handles import Handles
 
@@ -277,9 +277,9 @@ def edit_latency() -> None:
 def resting() -> None:
     from PySide6.QtCore import QEventLoop, QTimer
 
-    from app.main import prepare
+    from app.main import prepare_application
 
-    prepare()
+    prepare_application()
     from app.main import make_window
     from tests.app.handles import Handles
 
@@ -350,9 +350,9 @@ def proposing() -> None:
     from PySide6.QtCore import Qt, QTimer
     from PySide6.QtWidgets import QApplication
 
-    from app.main import prepare
+    from app.main import prepare_application
 
-    prepare()
+    prepare_application()
     from app.main import make_window
     from metagraph.suggest.propose import accept, propose
     from tests.app.handles import Handles

@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from metagraph.common import compiling
-from metagraph.common.compiling import CompilerError, compiler
+from metagraph.common.compiling import CompilerError, find_compiler
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -25,8 +25,8 @@ class Setup:
     def __init__(self, monkeypatch: pytest.MonkeyPatch, works: bool, said: str = "") -> None:
         self.started: list[list[str]] = []
         self.works, self.said, self.is_there = works, said, False
-        monkeypatch.setattr(compiling, "run", self)
-        monkeypatch.setattr(compiling, "there", lambda: self.is_there)
+        monkeypatch.setattr(compiling, "run_program", self)
+        monkeypatch.setattr(compiling, "is_numba_installed", lambda: self.is_there)
 
     def __call__(self, command: list[str], **more: Any) -> tuple[int, str]:
         self.started.append(command)
@@ -45,7 +45,7 @@ def ours(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
 def test_a_loop_is_compiled_by_the_options_given() -> None:
     pytest.importorskip("numba")
 
-    @compiler(nogil=True)
+    @find_compiler(nogil=True)
     def twice(x: float) -> float:
         return 2 * x
 
@@ -57,11 +57,11 @@ def test_run_py_installs_it_into_the_environment_it_made_and_says_so(
 ) -> None:
     pytest.importorskip("numba")
     setup = Setup(monkeypatch, works=True)
-    compiler()
+    find_compiler()
     assert setup.started == [[sys.executable, "-I", str(ROOT / "run.py"), "install"]]
     said = capsys.readouterr()
     assert "Installing the compiler" in said.err and not said.out  # there may be JSON on the other
-    compiler()
+    find_compiler()
     assert len(setup.started) == 1
 
 
@@ -72,7 +72,7 @@ def test_two_threads_that_need_it_install_it_once(ours: Path, monkeypatch: pytes
 
     def need(_: int) -> None:
         together.wait(10)
-        compiler()
+        find_compiler()
 
     with ThreadPoolExecutor(2) as pool:
         list(pool.map(need, range(2)))
@@ -92,7 +92,7 @@ def test_without_a_network_the_reason_and_the_command_for_later_are_told_and_it_
             CompilerError,
             match=r"found for numba\).*run\.py install",
         ):
-            compiler()
+            find_compiler()
     assert len(setup.started) == 2
 
 
@@ -102,12 +102,12 @@ def test_an_environment_of_somebody_else_is_left_alone_and_its_command_is_told(
     setup = Setup(monkeypatch, works=True)
     monkeypatch.setattr(sys, "prefix", str(tmp_path))
     with pytest.raises(CompilerError) as told:
-        compiler()
+        find_compiler()
     assert f'"{sys.executable}" -m pip install "numba>=' in str(told.value) and not setup.started
     monkeypatch.setattr(compiling, "ROOT", tmp_path)  # nor where there is no run.py
     (tmp_path / ".installed").write_text("")
     with pytest.raises(CompilerError, match="pip install"):
-        compiler()
+        find_compiler()
     assert not setup.started
 
 

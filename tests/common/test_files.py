@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from metagraph.common import files
-from metagraph.common.files import check_file, guarded, is_file, is_text, opened, read_file
+from metagraph.common.files import check_file, guard_reader, is_file, is_text, open_file, read_file
 from metagraph.errors import FileError
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="Windows has none of these")
@@ -83,9 +83,9 @@ def test_names_in_no_encoding_are_read_and_told_in_words(tmp_path: Path) -> None
 
 def test_an_error_while_reading_is_told_and_one_of_the_reader_is_not_mistaken_for_it(tmp_path: Path) -> None:
     path = _empty(tmp_path)
-    with pytest.raises(FileError), opened(path, 1):
+    with pytest.raises(FileError), open_file(path, 1):
         raise OSError(5, "Input/output error")
-    with pytest.raises(ValueError, match="the reader's own"), opened(path, 1):
+    with pytest.raises(ValueError, match="the reader's own"), open_file(path, 1):
         raise ValueError("the reader's own")
     assert check_file(path, 1) == path
 
@@ -103,7 +103,7 @@ def test_an_error_while_reading_is_told_and_one_of_the_reader_is_not_mistaken_fo
 def test_whatever_a_reader_trips_over_names_the_file(
     error: Exception, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    @guarded
+    @guard_reader
     def read(path: Path | str) -> None:
         raise error
 
@@ -118,7 +118,7 @@ def test_whatever_a_reader_trips_over_names_the_file(
 
 @pytest.mark.parametrize("error", [CancelledError(), KeyboardInterrupt(), FileError("a", "b")])
 def test_what_is_no_fault_of_the_file_goes_on(error: BaseException, monkeypatch: pytest.MonkeyPatch) -> None:
-    @guarded
+    @guard_reader
     def read(path: Path | str) -> None:
         raise error
 

@@ -11,19 +11,25 @@ import msgspec
 import pytest
 
 from metagraph.common import network_paths
-from metagraph.common.network_paths import closed, is_closed, leads_away, original, reason
+from metagraph.common.network_paths import (
+    close_path,
+    explain_refusal,
+    is_closed,
+    make_escape_check,
+    original_path,
+)
 from metagraph.errors import FileError
 from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.formats.store import (
     absolute,
-    closed_paths,
-    moved,
+    list_closed_paths,
+    move_project,
     open_project,
     read_project,
-    reopened,
+    reopen_paths,
     save_project,
 )
-from metagraph.research.study.study_plan import from_text
+from metagraph.research.study.study_plan import parse_study_plan
 
 STUDY = Path(__file__).parents[2] / "sample_clips" / "study" / "study.yaml"
 STRANGE = [
@@ -51,17 +57,17 @@ def not_allowed() -> Iterator[None]:
 
 @pytest.mark.parametrize("name", STRANGE)
 def test_a_strange_name_is_known_closed_and_given_back_as_it_was(name: str) -> None:
-    assert reason(name) is not None
-    path = closed(name)
-    assert is_closed(path) and original(path) == name
-    assert reason(path) is None and not Path(path).is_absolute() and ".." not in Path(path).parts
+    assert explain_refusal(name) is not None
+    path = close_path(name)
+    assert is_closed(path) and original_path(path) == name
+    assert explain_refusal(path) is None and not Path(path).is_absolute() and ".." not in Path(path).parts
     network_paths.allow(True)
-    assert closed(name) == name
+    assert close_path(name) == name
 
 
 @pytest.mark.parametrize("name", ORDINARY)
 def test_an_ordinary_name_stays_as_it_is(name: str) -> None:
-    assert reason(name) is None and closed(name) == name and original(name) == name
+    assert explain_refusal(name) is None and close_path(name) == name and original_path(name) == name
 
 
 def _project(folder: Path, name: str) -> Path:
@@ -89,20 +95,20 @@ def test_a_project_touches_none_of_them_and_saves_them_as_they_were(
     opened = os.open
     monkeypatch.setattr(os, "open", lambda p, *more, **k: touched.append(str(p)) or opened(p, *more, **k))
     found = open_project(path)
-    assert closed_paths(found.project) == (name,)
+    assert list_closed_paths(found.project) == (name,)
     assert any("were not opened" in note for note in found.notes)
     assert not any("missing" in note for note in found.notes)
     assert touched and all(t == str(path) for t in touched)
     save_project(found.project, path)
     text = path.read_text()
     assert network_paths.FOLDER not in text
-    assert reopened(read_project(path)).clips["c1"].path == name
+    assert reopen_paths(read_project(path)).clips["c1"].path == name
     for project in (
-        moved(found.project, path, tmp_path / "b" / "q.metagraph.yaml"),
+        move_project(found.project, path, tmp_path / "b" / "q.metagraph.yaml"),
         absolute(found.project, tmp_path),
     ):
         save_project(project, tmp_path / "q.metagraph.yaml")
-        assert closed_paths(read_project(tmp_path / "q.metagraph.yaml")) == (name,)
+        assert list_closed_paths(read_project(tmp_path / "q.metagraph.yaml")) == (name,)
 
 
 def test_a_file_that_is_there_is_opened_only_when_that_is_allowed(tmp_path: Path) -> None:
@@ -152,9 +158,9 @@ def test_a_gltf_file_never_names_another_computer(
 def test_a_study_names_none_unless_that_is_allowed(name: str) -> None:
     text = re.sub(r"(?m)^  clips:\n(  - .*\n)+", lambda _: f"  clips: '{name}'\n", STUDY.read_text(), count=1)
     with pytest.raises(FileError, match="another computer"):
-        from_text(text)
+        parse_study_plan(text)
     network_paths.allow(True)
-    from_text(text)
+    parse_study_plan(text)
 
 
 def _climbing(folder: Path) -> list[str]:
@@ -187,29 +193,29 @@ def test_what_climbs_to_another_computer_is_closed_too(
     for name in names:
         path = _project(tmp_path / "a", name)
         found = open_project(path)
-        assert closed_paths(found.project) == (name,)
+        assert list_closed_paths(found.project) == (name,)
         assert any("another computer" in note for note in found.notes)
         save_project(found.project, path)
         text = path.read_text()
         assert network_paths.FOLDER not in text
-        assert reopened(read_project(path)).clips["c1"].path == name
+        assert reopen_paths(read_project(path)).clips["c1"].path == name
     outside = re.compile(r"/(net|misc|afs|Network)/")
     assert not any(outside.match(os.path.normpath(t)) for t in touched)
     network_paths.allow(True)
-    assert not closed_paths(open_project(path).project)
+    assert not list_closed_paths(open_project(path).project)
 
 
 def test_folders_of_such_names_elsewhere_are_ordinary(tmp_path: Path) -> None:
     for name in ("net/server/x.bvh", "../misc/x.bvh", "../net/a/x.bvh", "loop/x.bvh", "a\0b", "../../x"):
-        assert reason(name, tmp_path / "a") is None
+        assert explain_refusal(name, tmp_path / "a") is None
     if os.name != "nt":
         (tmp_path / "loop").symlink_to("loop")
-        assert reason("loop/x.bvh", tmp_path) is None
+        assert explain_refusal("loop/x.bvh", tmp_path) is None
 
 
 @pytest.mark.skipif(os.name == "nt", reason="such places are of other systems")
 def test_a_project_that_lies_on_another_computer_reaches_its_own_files() -> None:
-    away = leads_away(Path("/net/server/share/project"))
+    away = make_escape_check(Path("/net/server/share/project"))
     assert not away("clips/x.bvh") and not away("../x.bvh") and not away("/net/server/x.bvh")
     assert away("../../../other/x.bvh") and away("/net/other/x.bvh") and away("/afs/server/x.bvh")
 
@@ -220,7 +226,7 @@ def test_other_files_that_climb_there_are_refused(tmp_path: Path) -> None:
     name = names[0]
     text = re.sub(r"(?m)^  clips:\n(  - .*\n)+", lambda _: f"  clips: '{name}'\n", STUDY.read_text(), count=1)
     with pytest.raises(FileError, match="another computer"):
-        from_text(text, tmp_path / "study.yaml")
+        parse_study_plan(text, tmp_path / "study.yaml")
     (tmp_path / "a.gltf").write_bytes(_gltf(name))
     with pytest.raises(FileError, match="another computer"):
         read_gltf_clips(tmp_path / "a.gltf")

@@ -145,7 +145,7 @@ def test_a_child_finds_what_its_parent_does_and_nothing_of_the_working_folder(
     for entry in (str(tmp_path), "", "."):
         monkeypatch.syspath_prepend(entry)
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    code, said = programs.run(programs.python("known_here", "a b", ""))
+    code, said = programs.run_program(programs.python_command("known_here", "a b", ""))
     assert code == 0, said
     assert (
         str(ROOT / "metagraph" / "__init__.py") in said
@@ -163,7 +163,7 @@ def test_variables_that_name_code_are_not_passed_on(monkeypatch: pytest.MonkeyPa
     monkeypatch.setenv("PATH", os.pathsep.join(["", ".", "bin", str(tmp_path)]))
     monkeypatch.setenv("LD_LIBRARY_PATH", os.pathsep.join(["", "lib", "/opt/lib"]))
     monkeypatch.setenv("DISPLAY", ":7")
-    given = programs.environment({"OURS": "1"})
+    given = programs.program_environment({"OURS": "1"})
     assert not set(code) & set(given)
     assert given["DISPLAY"] == ":7" and given["OURS"] == "1"
     if os.name != "nt":
@@ -175,7 +175,7 @@ def test_variables_that_name_code_are_not_passed_on(monkeypatch: pytest.MonkeyPa
 def test_path_loses_the_working_folder_where_a_program_begins(monkeypatch: pytest.MonkeyPatch) -> None:
     here = str(ROOT)
     monkeypatch.setenv("PATH", os.pathsep.join(["", here, ".", "bin", ""]))
-    programs.settle()
+    programs.leave_working_folder()
     assert os.environ["PATH"] == here
 
 
@@ -236,7 +236,7 @@ def test_systems_programs_are_not_looked_for_along_path(
 
 def test_a_program_that_takes_too_long_is_ended() -> None:
     with pytest.raises(TimeoutError, match=r"more than 0\.2 s"):
-        programs.run([sys.executable, "-c", "import time; time.sleep(60)"], 0.2)
+        programs.run_program([sys.executable, "-c", "import time; time.sleep(60)"], 0.2)
 
 
 def test_numba_takes_no_settings_from_the_working_folder(tmp_path: Path) -> None:

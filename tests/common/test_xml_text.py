@@ -10,7 +10,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from metagraph.common import svg
-from metagraph.common.xml_text import INSTEAD, escape, quoted, replaced_note, xml_text
+from metagraph.common.xml_text import INSTEAD, escape, quote_xml, replaced_note, xml_text
 from metagraph.research.study.reports.figure_files import standalone
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
 @example("\x00\x07\x1b\ufffe\uffff<&>\"'\r\n\t")
 @example("\ud800 half a pair")
 def test_any_text_stands_in_an_element_and_an_attribute(text: str) -> None:
-    found = ElementTree.fromstring(f"<x a={quoted(text)} b='{escape(text)}'>{escape(text)}</x>")
+    found = ElementTree.fromstring(f"<x a={quote_xml(text)} b='{escape(text)}'>{escape(text)}</x>")
     assert found.attrib["a"] == xml_text(text)
     same_lines = xml_text(text).replace("\r\n", "\n").replace("\r", "\n")
     assert (found.text or "") == same_lines
@@ -40,7 +40,7 @@ def test_what_is_replaced_is_counted_and_told() -> None:
 
 
 def test_a_figure_with_control_characters_in_its_words_is_read() -> None:
-    drawing = svg.svg(20, [svg.text(0, 0, "a\x01<b>", "dim", "start")], "ti\x1btle'\"")
+    drawing = svg.svg_drawing(20, [svg.svg_text(0, 0, "a\x01<b>", "dim", "start")], "ti\x1btle'\"")
     ElementTree.fromstring(drawing)
     ElementTree.fromstring(standalone(drawing).encode())
 

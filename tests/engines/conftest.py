@@ -27,13 +27,13 @@ def sample_export(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> 
     """A folder called sample: the sample project's export with its character, and vectors. Written once;
     tests change copies.
     """
-    from metagraph.engines.export import export
+    from metagraph.engines.export import export_project
     from metagraph.engines.reading import read_export
-    from metagraph.engines.vectors import every_case, write_vectors
+    from metagraph.engines.vectors import list_cases, write_vectors
 
     def make(folder: Path) -> None:
-        path = export(sample, folder, character=ROOT / "sample_clips" / "mannequin.glb").json
-        every = enumerate(every_case(read_export(path, resolved=True)))
+        path = export_project(sample, folder, character=ROOT / "sample_clips" / "mannequin.glb").json
+        every = enumerate(list_cases(read_export(path, resolved=True)))
         write_vectors(path, [case for n, case in every if n % SHARE == 0 or case.name in NOTICING])
 
     return made_once(tmp_path_factory, "sample", make)

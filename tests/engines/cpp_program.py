@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from metagraph.engines.targets.runtimes import copied
+from metagraph.engines.targets.runtimes import copy_runtime
 from metagraph.graph.model import Project
 from tests.engines.mutants import broken
 
@@ -212,9 +212,9 @@ def made_of_unreal(folder: Path, core: Path | None = None) -> list[str]:
     Unreal, and return where the compiler finds that.
     """
     plugin, names = folder / "Metagraph", folder / "engine"
-    copied(UNREAL, plugin)
+    copy_runtime(UNREAL, plugin)
     within = plugin / "Source" / "Metagraph" / "Private" / "Core"
-    copied(RUNTIME, within) if core is None else within.symlink_to(core)
+    copy_runtime(RUNTIME, within) if core is None else within.symlink_to(core)
     generated = {
         found for p in unreal_sources() for found in re.findall(r'"(\w+\.generated\.h)"', p.read_text())
     }

@@ -12,9 +12,9 @@ from typing import Any
 
 import pytest
 
-from metagraph.engines.export import export
+from metagraph.engines.export import export_project
 from metagraph.engines.reading import read_export
-from metagraph.engines.script import Case, ScriptStep
+from metagraph.engines.script import ScriptCase, ScriptStep
 from metagraph.engines.vectors import write_vectors
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -111,13 +111,13 @@ def rarely(document: dict[str, Any]) -> None:
     document["face"]["channels"] = {"eye_left": "", "eye_right": ""}
 
 
-def rare_cases(eyes: list[float]) -> Iterator[Case]:
+def rare_cases(eyes: list[float]) -> Iterator[ScriptCase]:
     """Yield cases of what the shipped ones pass over. eyes: where they are at rest."""
     for seed in range(4):
-        yield Case("the models", "", (ScriptStep(0, 60),), seed=seed, idle=True)
+        yield ScriptCase("the models", "", (ScriptStep(0, 60),), seed=seed, idle=True)
         gestures = tuple({"do": "gesture", "id": f"g{n}", "at": 3.0 * n} for n in range(12))
-        yield Case("spacing", "", (ScriptStep(0, 50, gestures),), seed=seed)
-        yield Case(
+        yield ScriptCase("spacing", "", (ScriptStep(0, 50, gestures),), seed=seed)
+        yield ScriptCase(
             "a way",
             "",
             (ScriptStep(0, 20, ({"do": "stance", "stance": "far away", "id": "go", "at": 1.0},)),),
@@ -126,17 +126,17 @@ def rare_cases(eyes: list[float]) -> Iterator[Case]:
     said = ScriptStep(
         0, 20, ({"do": "say", "line": "hello", "id": "say", "at": 2.0}, {"do": "gesture", "id": "g", "at": 6})
     )
-    yield Case(
+    yield ScriptCase(
         "withdrawn with its parts",
         "",
         (said, ScriptStep(0.5, 20, ({"do": "withdraw", "what": "say", "id": "w"},))),
         alive=(True,),
     )
     cut = ScriptStep(2.5, 20, ({"do": "withdraw", "what": "say", "id": "w"},))
-    yield Case("cut short", "", (said, cut), times=(2.9, 3.0, 3.05, 3.1, 3.15, 3.2), alive=(True,))
+    yield ScriptCase("cut short", "", (said, cut), times=(2.9, 3.0, 3.05, 3.1, 3.15, 3.2), alive=(True,))
     text = "Well, whatever do you think of all the wonderful things that I have told you about today?"
     for seed in range(3):
-        yield Case(
+        yield ScriptCase(
             "a long speech",
             "",
             (ScriptStep(0, 20, ({"do": "say", "text": text, "id": "say", "at": 2.0},)),),
@@ -151,7 +151,7 @@ def rare_cases(eyes: list[float]) -> Iterator[Case]:
             "at": 1.0,
             "strict": True,
         }
-        yield Case("something near", "", (ScriptStep(0, 20, (near,)),), times=(1.5, 3.0), alive=(True,))
+        yield ScriptCase("something near", "", (ScriptStep(0, 20, (near,)),), times=(1.5, 3.0), alive=(True,))
 
 
 def make_rare(target: Path) -> None:
@@ -161,6 +161,6 @@ def make_rare(target: Path) -> None:
     document = json.loads(path.read_text())
     rarely(document)
     path.write_text(json.dumps(document))
-    exported = export(read_export(path, resolved=True), target)
+    exported = export_project(read_export(path, resolved=True), target)
     eyes = json.loads(exported.json.read_text())["rig"]["eyes_at_rest"]
     write_vectors(exported.json, list(rare_cases(eyes)))

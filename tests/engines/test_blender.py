@@ -21,7 +21,7 @@ import pytest
 from websockets.sync.server import ServerConnection, serve
 
 from app.cli.parser import main
-from metagraph.engines.export import export
+from metagraph.engines.export import export_project
 from metagraph.engines.runtimes.blender.metagraph_blender import glb, labels, link, space
 from metagraph.engines.targets import registry
 from metagraph.engines.targets.blender import ADDON
@@ -38,7 +38,9 @@ SAMPLE = HERE.parents[1] / "sample_clips" / "sample.metagraph.yaml"
 @pytest.fixture(scope="module")
 def exported(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The sample's export: its JSON, the GLB with Ada beside it."""
-    return export(sample, tmp_path_factory.mktemp("export"), character=SAMPLE.with_name("ada.glb")).json
+    return export_project(
+        sample, tmp_path_factory.mktemp("export"), character=SAMPLE.with_name("ada.glb")
+    ).json
 
 
 @pytest.fixture(scope="module")
@@ -77,17 +79,17 @@ def test_poses_go_to_bones_of_any_axes_and_come_back(figure: space.Figure) -> No
     added, moved = figure.to_bones(axes, rotations, translations)
     posed_bones, heads = np.zeros_like(added), np.zeros_like(moved)
     _, rest_places = figure.globals(figure.rest_rotations, figure.rest_translations)
-    rest_heads = rotation.rotate(space.UP, rest_places)
+    rest_heads = rotation.rotate_vectors(space.UP, rest_places)
     for joint, parent in enumerate(figure.parents):
         own, at = bones_at_rest[joint], rest_heads[joint]
         if parent >= 0:
             back = rotation.conjugate(bones_at_rest[parent])
-            own, at = rotation.multiply(back, own), rotation.rotate(back, at - rest_heads[parent])
-            at = heads[:, parent] + rotation.rotate(posed_bones[:, parent], at)
+            own, at = rotation.multiply(back, own), rotation.rotate_vectors(back, at - rest_heads[parent])
+            at = heads[:, parent] + rotation.rotate_vectors(posed_bones[:, parent], at)
             own = rotation.multiply(posed_bones[:, parent], own)
-        heads[:, joint] = at + rotation.rotate(own, moved[:, joint])
+        heads[:, joint] = at + rotation.rotate_vectors(own, moved[:, joint])
         posed_bones[:, joint] = rotation.multiply(own, added[:, joint])
-    assert np.abs(heads - rotation.rotate(space.UP, places)).max() < 1e-9
+    assert np.abs(heads - rotation.rotate_vectors(space.UP, places)).max() < 1e-9
     read, read_places = figure.from_bones(axes, posed_bones, heads)
     assert np.abs(np.abs((read * rotations).sum(-1)) - 1).max() < 1e-9
     assert np.abs(read_places - translations).max() < 1e-9
@@ -220,7 +222,7 @@ def test_poses_of_a_session_are_followed_without_a_library(session: tuple[str, l
 def test_the_archive_is_what_blender_installs(sample: Project, tmp_path: Path) -> None:
     import tomllib
 
-    report = registry.write(sample, "blender", tmp_path)
+    report = registry.write_for_target(sample, "blender", tmp_path)
     with zipfile.ZipFile(tmp_path / f"{ADDON}.zip") as archive:
         names = set(archive.namelist())
         manifest = tomllib.loads(archive.read(f"{ADDON}/blender_manifest.toml").decode())

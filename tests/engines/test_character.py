@@ -25,7 +25,7 @@ from metagraph.errors import FileError
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Gesture
 from metagraph.playback.plan import Plan
-from metagraph.playback.planning.extend_performance import hear
+from metagraph.playback.planning.extend_performance import hear_asks
 from tests.posing import pose_at
 
 STICK = Path(metagraph.__file__).parent / "engines" / "conformance" / "stick" / "stick.json"
@@ -51,7 +51,7 @@ def test_a_request_is_played_answered_and_told(stick: Project) -> None:
 
 def test_it_plays_what_a_plan_of_the_same_steps_plays(stick: Project) -> None:
     character = Character(stick, seed=5)
-    plan = hear(stick, Plan(5, 0.0), 0.0, [], 20.0, {}, True)
+    plan = hear_asks(stick, Plan(5, 0.0), 0.0, [], 20.0, {}, True)
     for frame in range(1, 200):
         now = frame * 0.4
         if frame == 20:
@@ -60,7 +60,7 @@ def test_it_plays_what_a_plan_of_the_same_steps_plays(stick: Project) -> None:
         asks = [Gesture(id="g", layer="head")] if frame == 20 else []
         end = plan.end if plan.end >= now + 18 else now + 20
         if asks or end > plan.end:
-            plan = hear(stick, plan, now, asks, end, {}, True)
+            plan = hear_asks(stick, plan, now, asks, end, {}, True)
         assert np.allclose(pose.rotations, pose_at(plan, stick, now).rotations, atol=1e-6)
 
 
@@ -116,7 +116,7 @@ def test_a_fault_of_the_planner_does_not_stop_the_game(
     character = Character(stick)
     plan = character.plan
     with monkeypatch.context() as broken:
-        broken.setattr("metagraph.playback.planning.running_plan.hear", lambda *_: 1 // 0)
+        broken.setattr("metagraph.playback.planning.running_plan.hear_asks", lambda *_: 1 // 0)
         ident = character.ask({"do": "nod"})
         character.update(1.0)
         assert character.answer(ident).state == "refused"

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from metagraph import Character, engines
-from metagraph.engines.script_sounds import streamed
+from metagraph.engines.script_sounds import list_streams
 from metagraph.motion import rotation
 
 RUNTIMES = Path(engines.__file__).with_name("runtimes")
@@ -107,7 +107,7 @@ HEARD: dict[int, list[tuple[str, int, int]]] = {
 @cache
 def streaming() -> tuple[int, list[float]]:
     """Return the rate and the samples that pieces are cut from."""
-    rate, pieces = streamed()[1]
+    rate, pieces = list_streams()[1]
     return rate, [x / 128 for piece in pieces for x in piece]
 
 

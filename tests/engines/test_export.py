@@ -22,26 +22,26 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from metagraph.engines.contract import FORMAT, schema
-from metagraph.engines.export import export, schema_text
-from metagraph.engines.export_document import to_document, used_clips
+from metagraph.engines.contract import FORMAT, export_schema
+from metagraph.engines.export import export_project, export_schema_text
+from metagraph.engines.export_document import list_used_clips, to_document
 from metagraph.engines.export_error import ExportError
-from metagraph.engines.export_rig import read_voices, voices_of
+from metagraph.engines.export_rig import list_export_voices, read_voices
 from metagraph.engines.reading import read_export
 from metagraph.errors import FileError
 from metagraph.formats.gltf.reader import read_character, read_gltf_clips
 from metagraph.formats.imports import gather, import_files
 from metagraph.formats.store import open_project, save_project
 from metagraph.graph import edits
-from metagraph.graph.check import check
-from metagraph.graph.expand import connections, size
+from metagraph.graph.check import check_project
+from metagraph.graph.expand import count_machine_size, list_connections
 from metagraph.graph.model import LAYERS, Markov, Project
 from metagraph.graph.requests import Line
 from metagraph.motion.skeleton import unique_names
 from metagraph.playback.life.voice import silent
 from metagraph.playback.planner import make_plan
 from metagraph.playback.planning import choice, hashing, markov
-from metagraph.playback.posing.layers import ease
+from metagraph.playback.posing.layers import ease_blend
 from sample_clips.make.conformance_projects import stick
 from tests.posing import pose_at
 from tests.projects import clip, projects
@@ -112,11 +112,11 @@ def khronos(*files: Path, warnings: bool = True) -> None:
 
 
 def test_the_published_schema_is_the_one_in_the_code() -> None:
-    assert SCHEMA.read_bytes() == schema_text()
+    assert SCHEMA.read_bytes() == export_schema_text()
 
 
 def test_the_schema_is_one_by_its_own_rules() -> None:
-    jsonschema.Draft202012Validator.check_schema(schema())
+    jsonschema.Draft202012Validator.check_schema(export_schema())
 
 
 # --- the sample project
@@ -125,7 +125,7 @@ def test_the_schema_is_one_by_its_own_rules() -> None:
 @pytest.fixture(scope="module")
 def exported(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Any:
     folder = tmp_path_factory.mktemp("export")
-    return export(sample, folder, expanded=True, character=ROOT / "sample_clips" / "mannequin.glb")
+    return export_project(sample, folder, expanded=True, character=ROOT / "sample_clips" / "mannequin.glb")
 
 
 def test_the_sample_validates_and_comes_back_equal(sample: Project, exported: Any) -> None:
@@ -133,11 +133,11 @@ def test_the_sample_validates_and_comes_back_equal(sample: Project, exported: An
     back = read_export(exported.json)
     same(back, sample)
     assert exported.clips == len(sample.uses.keys() | {sample.base.clip})
-    assert check(back) == [p for p in check(sample) if p.clip in (None, *back.clips)]
+    assert check_project(back) == [p for p in check_project(sample) if p.clip in (None, *back.clips)]
 
 
 def test_an_export_of_what_was_read_back_says_the_same(exported: Any, tmp_path: Path) -> None:
-    again = export(read_export(exported.json), tmp_path, expanded=True)
+    again = export_project(read_export(exported.json), tmp_path, expanded=True)
     ours, theirs = json.loads(again.json.read_bytes()), json.loads(exported.json.read_bytes())
     for field in ("rotations", "translations"):  # taken from clips that were stored in 16 bits meanwhile
         assert np.allclose(ours["base"].pop(field), theirs["base"].pop(field), atol=1e-4)
@@ -161,7 +161,7 @@ def test_an_export_of_what_was_read_back_says_the_same(exported: Any, tmp_path: 
 
 
 def test_the_mesh_says_how_its_targets_make_vrms_presets(sample: Project, tmp_path: Path) -> None:
-    made = export(sample, tmp_path, character=ROOT / "sample_clips" / "ada.glb")
+    made = export_project(sample, tmp_path, character=ROOT / "sample_clips" / "ada.glb")
     khronos(made.glb)
     extras = gltf(made.glb)["meshes"][0]["extras"]
     assert {"happy", "angry", "sad", "surprised", "aa", "ou"} <= extras["expressions"].keys()
@@ -217,11 +217,11 @@ def test_the_expanded_columns_are_the_connections_of_the_machine(sample: Project
         ]
         expected = [
             (x.source, x.target, -1 if x.leave is None else x.leave, x.blend)
-            for x in connections(sample, sample.graphs[layer])
+            for x in list_connections(sample, sample.graphs[layer])
         ]
         assert rows == expected
         total += len(rows)
-    assert total == size(sample).connections
+    assert total == count_machine_size(sample).connections
 
 
 def test_the_index_and_the_transitions_say_what_the_graph_says(sample: Project, exported: Any) -> None:
@@ -247,11 +247,11 @@ def test_the_constants_are_those_the_planner_uses(exported: Any) -> None:
         choice.key32(1, "a", "b"),
     )
     assert document["planner"]["blend"] == "3x^2-2x^3"
-    assert np.allclose(ease(np.array([0.25])), 3 * 0.25**2 - 2 * 0.25**3)
+    assert np.allclose(ease_blend(np.array([0.25])), 3 * 0.25**2 - 2 * 0.25**3)
 
 
 def test_the_same_project_gives_the_same_bytes(sample: Project, exported: Any, tmp_path: Path) -> None:
-    again = export(sample, tmp_path, expanded=True, character=ROOT / "sample_clips" / "mannequin.glb")
+    again = export_project(sample, tmp_path, expanded=True, character=ROOT / "sample_clips" / "mannequin.glb")
     assert again.json.read_bytes() == exported.json.read_bytes()
     assert again.glb.read_bytes() == exported.glb.read_bytes()
 
@@ -268,7 +268,7 @@ def test_a_project_read_back_is_saved_and_opened_with_its_clips(sample: Project,
 
 
 def document_of(project: Project, expanded: bool = False) -> bytes:
-    used = used_clips(project)
+    used = list_used_clips(project)
     return msgspec.json.encode(to_document(project, "x.glb", unique_names([e.name for e in used]), expanded))
 
 
@@ -292,21 +292,21 @@ def small() -> Project:
         Project("a/b: ü*"), [(f"{n}.glb", 0, "", clip(n)) for n in ("idle", "wave", "idle")]
     )
     project = edits.add_stance(project, "arms", "rest", ["c1"])
-    return edits.place(project, ["c2"], "arms", "gesture", "s4")
+    return edits.place_clips(project, ["c2"], "arms", "gesture", "s4")
 
 
 def test_only_clips_that_are_placed_or_hold_the_base_pose_are_written(tmp_path: Path) -> None:
-    made = export(small(), tmp_path)
+    made = export_project(small(), tmp_path)
     assert [a["name"] for a in gltf(made.glb)["animations"]] == ["idle", "wave"]
-    made = export(edits.set_base(small(), "c3", 2), tmp_path)
+    made = export_project(edits.set_base(small(), "c3", 2), tmp_path)
     assert [a["name"] for a in gltf(made.glb)["animations"]] == ["idle", "wave", "idle_2"]
     khronos(made.glb)
 
 
 def test_the_files_are_named_after_the_project_in_letters_every_system_takes(tmp_path: Path) -> None:
-    made = export(small(), tmp_path / "new" / "folder")
+    made = export_project(small(), tmp_path / "new" / "folder")
     assert (made.json.name, made.glb.name) == ("a_b_ü.json", "a_b_ü.glb")
-    assert export(replace(small(), name="../.."), tmp_path).json == tmp_path / "metagraph.json"
+    assert export_project(replace(small(), name="../.."), tmp_path).json == tmp_path / "metagraph.json"
 
 
 def test_clips_of_one_frame_and_long_ones_come_back_as_themselves(tmp_path: Path) -> None:
@@ -315,8 +315,8 @@ def test_clips_of_one_frame_and_long_ones_come_back_as_themselves(tmp_path: Path
         [("a", 0, "", clip("still", 1)), ("b", 0, "", clip("wave", 9)), ("c", 0, "", clip("nod", 12))],
     )
     project = edits.add_stance(project, "arms", "rest", ["c1"])
-    project = edits.place(project, ["c2", "c3"], "arms", "gesture", "s4")
-    back = read_export(export(project, tmp_path).json)
+    project = edits.place_clips(project, ["c2", "c3"], "arms", "gesture", "s4")
+    back = read_export(export_project(project, tmp_path).json)
     assert [e.motion.frames for e in back.clips.values() if e.motion] == [1, 9, 12]
     save_project(back, tmp_path / "p.metagraph.yaml")
     again = open_project(tmp_path / "p.metagraph.yaml").project
@@ -339,12 +339,12 @@ def test_clips_of_one_frame_and_long_ones_come_back_as_themselves(tmp_path: Path
 )
 def test_errors_stop_an_export_with_the_words_of_the_problem(tmp_path: Path, spoil: Any, words: str) -> None:
     with pytest.raises(ExportError, match=words):
-        export(spoil(small()), tmp_path)
+        export_project(spoil(small()), tmp_path)
     assert not list(tmp_path.iterdir())
 
 
 def test_blends_that_are_only_warned_of_are_exported_as_they_play(tmp_path: Path) -> None:
-    made = export(edits.update_actions(small(), ["a6"], timing={"blend_in": -1.0}), tmp_path)
+    made = export_project(edits.update_actions(small(), ["a6"], timing={"blend_in": -1.0}), tmp_path)
     assert any("blends" in w for w in made.warnings)
     document = json.loads(made.json.read_bytes())
     valid(document)
@@ -354,7 +354,7 @@ def test_blends_that_are_only_warned_of_are_exported_as_they_play(tmp_path: Path
 def test_a_mesh_on_another_skeleton_is_bound_where_joints_match(sample: Project, tmp_path: Path) -> None:
     """Fewer joints than the mannequin has, all at rest in other rotations."""
     project = stick()
-    made = export(project, tmp_path / "bound", character=ROOT / "sample_clips" / "mannequin.glb")
+    made = export_project(project, tmp_path / "bound", character=ROOT / "sample_clips" / "mannequin.glb")
     (told,) = (w for w in made.warnings if "mannequin.glb" in w)
     assert "another skeleton" in told and "bound by the names" in told
     document = gltf(made.glb)
@@ -364,20 +364,20 @@ def test_a_mesh_on_another_skeleton_is_bound_where_joints_match(sample: Project,
     assert sample.skeleton is not None
     strange = replace(read_character(ROOT / "sample_clips" / "mannequin.glb"), name="strange")
     strange = replace(strange, skeleton=replace(strange.skeleton, names=tuple(names)))
-    made = export(project, tmp_path / "left", character=strange)
+    made = export_project(project, tmp_path / "left", character=strange)
     assert any("'strange'" in w and "joints" in w for w in made.warnings)
     assert "meshes" not in gltf(made.glb)
 
 
 def test_a_mesh_that_is_not_there_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(FileError, match=r"none\.glb"):
-        export(small(), tmp_path, character=tmp_path / "none.glb")
+        export_project(small(), tmp_path, character=tmp_path / "none.glb")
 
 
 def test_a_folder_that_cannot_be_made_is_an_error_in_words(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(FileError, match="cannot be made"):
-        export(small(), tmp_path / "file" / "x")
+        export_project(small(), tmp_path / "file" / "x")
 
 
 # --- broken exports
@@ -420,7 +420,9 @@ def plain(tmp_path_factory: pytest.TempPathFactory) -> Path:
     project = edits.set_markov(
         small(), Markov("arms", (("both", "gesture"), ("both", "fidget")), ((0.5, 0.5), (1.0, 0.0)))
     )
-    return export(edits.set_weight(project, "arms", "face", 0.5), tmp_path_factory.mktemp("plain")).json
+    return export_project(
+        edits.set_weight(project, "arms", "face", 0.5), tmp_path_factory.mktemp("plain")
+    ).json
 
 
 @pytest.mark.parametrize(
@@ -505,7 +507,7 @@ def test_whatever_stands_in_a_field_an_export_is_read_or_refused(
     except FileError as error:
         assert error.where and error.cause and error.remedy
     else:
-        check(project)
+        check_project(project)
 
 
 # --- clips made by others
@@ -540,9 +542,9 @@ def exported_and_valid(project: Project, ids: list[str], tmp_path: Path, idle: i
     project = edits.add_stance(project, "body", "rest", [ids[idle]])
     project = edits.add_stance(project, "body", "other", [ids[idle + 1]])
     stances = list(project.graphs["body"].stances)
-    project = edits.place(project, ids[2 : 2 + gestures], "body", "gesture", stances[0])
-    project = edits.place(project, ids[10:11], "body", "transition", stances[0], stances[1])
-    made = export(project, tmp_path, expanded=True)
+    project = edits.place_clips(project, ids[2 : 2 + gestures], "body", "gesture", stances[0])
+    project = edits.place_clips(project, ids[10:11], "body", "transition", stances[0], stances[1])
+    made = export_project(project, tmp_path, expanded=True)
     valid(json.loads(made.json.read_bytes()))
     back = read_export(made.json)
     same(back, project)
@@ -555,5 +557,5 @@ def test_stresses_of_a_voice_come_back_however_near_each_other() -> None:
     """A conversation's are the peaks of its clauses: blinks would come elsewhere without some of them."""
     spoken = replace(silent(4.0), stresses=np.array([0.5, 1.2, 3.0]))
     project = Project(lines={"said": Line(text="so")}, voices={"said": spoken})
-    (back,) = read_voices(voices_of(project)).values()
+    (back,) = read_voices(list_export_voices(project)).values()
     assert back.accents.tolist() == [0.5, 1.2, 3.0]

@@ -7,8 +7,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from metagraph.engines import contract as c
-from metagraph.engines.export_listing import listed
-from metagraph.graph.expand import connections
+from metagraph.engines.export_listing import list_machine
+from metagraph.graph.expand import list_connections
 from metagraph.graph.model import LAYERS, Action, MetaGraph, Project, Stance, Timing
 from tests.benchmarks import bench_export_size
 from tests.projects import projects
@@ -17,13 +17,13 @@ from tests.thorough import many
 
 def same(project: Project, graph: MetaGraph) -> int:
     """Hold a layer's text to its connections; return how many there are."""
-    found = msgspec.json.decode(msgspec.json.encode(listed(project, graph)), type=c.Expanded)
+    found = msgspec.json.decode(msgspec.json.encode(list_machine(project, graph)), type=c.Expanded)
     idents = list(graph.actions)
     assert found.states == idents
     rows = zip(found.sources, found.targets, found.leave, found.blend, strict=True)
     expected = [
         (x.source, x.target, -1.0 if x.leave is None else x.leave, x.blend)
-        for x in connections(project, graph)
+        for x in list_connections(project, graph)
     ]
     assert [(idents[s], idents[t], -1.0 if leave < 0 else leave, b) for s, t, leave, b in rows] == expected
     return len(expected)
@@ -60,5 +60,5 @@ def test_a_large_machine_is_whole() -> None:
 
 
 def test_a_layer_without_connections_has_empty_columns() -> None:
-    found = listed(Project(), MetaGraph("arms"))
+    found = list_machine(Project(), MetaGraph("arms"))
     assert msgspec.json.encode(found) == b'{"states":[],"from":[],"to":[],"leave":[],"blend":[]}'

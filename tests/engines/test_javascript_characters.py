@@ -226,7 +226,9 @@ def test_posing_makes_no_garbage_to_speak_of() -> None:
 @pytest.fixture(scope="module")
 def stranger(tmp_path_factory: pytest.TempPathFactory, sample: Any) -> Path:
     """A fresh folder with a fresh export, as the README says."""
-    return registry.write(sample, "javascript", tmp_path_factory.mktemp("stranger")).files[0].parent
+    return (
+        registry.write_for_target(sample, "javascript", tmp_path_factory.mktemp("stranger")).files[0].parent
+    )
 
 
 def shown(number: int) -> str:

@@ -16,10 +16,10 @@ import pytest
 
 from metagraph import Character, engines
 from metagraph.engines.reading import read_export
-from metagraph.engines.script_moods import mood_cases
-from metagraph.engines.script_shades import shade_cases
-from metagraph.engines.vectors import check_vectors, every_case, write_vectors
-from metagraph.graph.check import check
+from metagraph.engines.script_moods import list_mood_cases
+from metagraph.engines.script_shades import list_shade_cases
+from metagraph.engines.vectors import check_vectors, list_cases, write_vectors
+from metagraph.graph.check import check_project
 from tests.thorough import some
 
 OLD = Path(__file__).parent / "old"
@@ -37,7 +37,7 @@ def copied(export: Path, folder: Path) -> Path:
 @pytest.mark.parametrize("export", EXPORTS, ids=lambda path: f"{path.parent.name}-{path.stem}")
 def test_an_old_export_loads_and_performs(export: Path) -> None:
     project = read_export(export)
-    assert not [p for p in check(project) if p.severity == "error"]
+    assert not [p for p in check_project(project) if p.severity == "error"]
     character = Character(export)
     character.ask({"do": "gesture", "layer": "arms"})
     character.ask({"do": "say", "line": next(iter(project.lines))})
@@ -51,8 +51,8 @@ def test_the_runtimes_agree_on_an_old_export(export: Path, tmp_path: Path) -> No
     old = copied(export, tmp_path)
     # Of moods an old export does not tell how energetic actions are, nor which joints take part.
     project = read_export(old, resolved=True)
-    moods = {case.name for part in (mood_cases, shade_cases) for case in part(project)}
-    every = [case for case in every_case(read_export(old, resolved=True)) if case.name not in moods]
+    moods = {case.name for part in (list_mood_cases, list_shade_cases) for case in part(project)}
+    every = [case for case in list_cases(read_export(old, resolved=True)) if case.name not in moods]
     write_vectors(old, some(every, 4))
     assert check_vectors(tmp_path).failures == []
     if shutil.which("node") is None:
@@ -87,7 +87,7 @@ def test_all_that_was_ever_added_may_be_missing(tmp_path: Path) -> None:
             layer["markov"].pop(field, None)
     (tmp_path / "stick.json").write_text(json.dumps(data))
     path = tmp_path / "stick.json"
-    write_vectors(path, some([*every_case(read_export(path, resolved=True))], 4))
+    write_vectors(path, some([*list_cases(read_export(path, resolved=True))], 4))
     assert check_vectors(tmp_path).failures == []
     if shutil.which("node") is None:
         pytest.skip("needs Node")

@@ -11,12 +11,12 @@ from typing import Any
 
 import pytest
 
-from metagraph.engines.export import export
+from metagraph.engines.export import export_project
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.reading import read_export
 from metagraph.engines.targets import registry, web
 from metagraph.engines.targets.target import Contents
-from metagraph.engines.vectors import check_vectors, every_case, write_vectors
+from metagraph.engines.vectors import check_vectors, list_cases, write_vectors
 from metagraph.graph.model import Project
 from tests.browsing import MODULES, Browser
 from tests.engines import cpp_program, csharp_runtime, godot_runtime
@@ -35,8 +35,8 @@ needs_node = pytest.mark.skipif(shutil.which("node") is None, reason="needs Node
 def packed(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The sample's export, packed, with every 24th of its vectors' cases, or every eighth."""
     folder = tmp_path_factory.mktemp("packed") / "sample"
-    path = export(sample, folder, character=BODY, compress=True).json
-    write_vectors(path, list(every_case(read_export(path, resolved=True)))[:: many(24, 8)])
+    path = export_project(sample, folder, character=BODY, compress=True).json
+    write_vectors(path, list(list_cases(read_export(path, resolved=True)))[:: many(24, 8)])
     return folder
 
 
@@ -183,13 +183,13 @@ def test_gdscript_says_that_it_does_not_read_it(packed: Path, game: Path) -> Non
 def test_targets_that_cannot_read_it_refuse_and_the_others_write_it(
     sample: Project, tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(web, "at_hand", lambda: False)
+    monkeypatch.setattr(web, "is_three_at_hand", lambda: False)
     if not registry.target(name).unpacks:
         with pytest.raises(ExportError, match="without --compress"):
-            registry.write(sample, name, tmp_path / "out", Contents(compress=True))
+            registry.write_for_target(sample, name, tmp_path / "out", Contents(compress=True))
         assert not (tmp_path / "out").exists()
         return
-    made = registry.write(sample, name, tmp_path / "out", Contents(compress=True))
+    made = registry.write_for_target(sample, name, tmp_path / "out", Contents(compress=True))
     (glb,) = (path for path in made.files if path.suffix == ".glb")
     assert "EXT_meshopt_compression" in parts(glb)[0]["extensionsRequired"]
 
@@ -198,7 +198,7 @@ def test_a_page_shows_it(
     sample: Project, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory, browse: Browser
 ) -> None:
     with kept_web_tools(tmp_path_factory.mktemp("kept")):
-        registry.write(sample, "web", tmp_path, Contents(BODY, compress=True))
+        registry.write_for_target(sample, "web", tmp_path, Contents(BODY, compress=True))
     seen = """(() => { const { stage, object } = document.querySelector("metagraph-character"); let vertices = 0;
       stage.scene.traverse((one) => (vertices += one.isSkinnedMesh ? one.geometry.attributes.position.count : 0));
       return [vertices, object.missing.length, stage.bounds.max.y]; })()"""

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from metagraph.engines.targets import registry
-from metagraph.engines.targets.placing import RECORD, ForeignFilesError, Staging, place, read_record
+from metagraph.engines.targets.placing import RECORD, ForeignFilesError, Staging, place_files, read_record
 
 
 def staged(folder: Path, **files: str) -> Path:
@@ -23,7 +23,7 @@ def put(tmp_path: Path, target: str, overwrite: bool = False, project: str = "an
     out.mkdir(exist_ok=True)
     with Staging(out) as beside:
         staged(beside.path, **files)
-        place(beside, out, files, target, project, overwrite)
+        place_files(beside, out, files, target, project, overwrite)
     return out
 
 
@@ -85,15 +85,15 @@ def test_an_export_that_fails_leaves_nothing_behind(tmp_path, toy, monkeypatch):
 
     monkeypatch.setattr(registry, "targets", lambda: {"xstate": replace(target, write=broken)})
     with pytest.raises(RuntimeError):
-        registry.write(toy.project(), "xstate", tmp_path / "out")
+        registry.write_for_target(toy.project(), "xstate", tmp_path / "out")
     assert not (tmp_path / "out").exists(), "nor the folder it made"
 
 
 def test_two_targets_of_one_project_do_not_break_each_other(tmp_path, toy):
     project = toy.project()
-    first = registry.write(project, "playcanvas", tmp_path)
+    first = registry.write_for_target(project, "playcanvas", tmp_path)
     before = {path: path.read_bytes() for path in first.files}
     with pytest.raises(ForeignFilesError):
-        registry.write(project, "metagraph", tmp_path)
+        registry.write_for_target(project, "metagraph", tmp_path)
     assert {path: path.read_bytes() for path in first.files} == before
-    assert registry.write(project, "playcanvas", tmp_path).files == first.files
+    assert registry.write_for_target(project, "playcanvas", tmp_path).files == first.files

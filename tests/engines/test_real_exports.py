@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 
 from metagraph import engines
-from metagraph.engines.export import write
+from metagraph.engines.export import write_project_files
 from metagraph.engines.reading import read_export
-from metagraph.engines.vectors import check_vectors, every_case, write_vectors
+from metagraph.engines.vectors import check_vectors, list_cases, write_vectors
 from metagraph.formats.imports import gather, import_files
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Kind, Project
@@ -43,7 +43,7 @@ def project_of(files: list[Path], name: str) -> Project:
         a, b = project.graphs[layer].stances
         for kind, first, leads, count in PLACED:
             here, there = (a, b) if first else (b, a)
-            project = edits.place(
+            project = edits.place_clips(
                 project, [next(take) for _ in range(count)], layer, kind, here, there if leads else None
             )
     return project
@@ -76,8 +76,8 @@ def test_vectors_of_the_zoo_hold(zoo_files: dict[str, Path], tmp_path: Path, nam
 
 def vectors_hold(project: Project, tmp_path: Path, number: int) -> None:
     """The number is the project's among all here."""
-    made = write(project, tmp_path)
-    every = list(every_case(read_export(made.json, resolved=True)))
+    made = write_project_files(project, tmp_path)
+    every = list(list_cases(read_export(made.json, resolved=True)))
     assert len(every) > 100
     write_vectors(made.json, every[number % SHARE :: SHARE])
     assert check_vectors(tmp_path).failures == []

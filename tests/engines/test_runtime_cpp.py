@@ -20,7 +20,7 @@ from metagraph.graph.model import LAYERS
 from metagraph.graph.requests import request_from
 from metagraph.playback.life.voice import voice_from_text
 from metagraph.playback.plan import Plan
-from metagraph.playback.planning.extend_performance import hear, since
+from metagraph.playback.planning.extend_performance import hear_asks, since
 from tests.engines.cpp_program import MUTANTS, needs_compiler, ran
 from tests.engines.mutants import PLAYED, folders_to_try, share_of
 from tests.engines.requests_asked import ASKED, SENSELESS
@@ -236,7 +236,7 @@ def test_a_character_plans_what_the_library_hears(probe: Path, tmp_path: Path) -
     moments = [n * 0.25 + 0.1 * (n % 3 == 1) for n in range(400)]
     found = live(probe, tmp_path, [[now, ASKED.get(n, [])] for n, now in enumerate(moments)])
     project = read_export(STICK / "stick.json", resolved=True)
-    plan, cut = hear(project, Plan(5, 0.0), 0.0, [], 20.0), 0.0
+    plan, cut = hear_asks(project, Plan(5, 0.0), 0.0, [], 20.0), 0.0
     for n, now in enumerate(moments):
         asks = [dict(ask) for ask in ASKED.get(n, [])]
         for ask in asks:
@@ -244,7 +244,7 @@ def test_a_character_plans_what_the_library_hears(probe: Path, tmp_path: Path) -
                 ask["at"] = now + ask.pop("after")
         far = plan.end >= now + 18
         if asks or not far:
-            plan = hear(
+            plan = hear_asks(
                 project, plan, now, [request_from(ask) for ask in asks], plan.end if far else now + 20
             )
         if now - cut >= 15:

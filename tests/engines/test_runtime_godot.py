@@ -297,7 +297,7 @@ def test_the_readme_names_files_that_its_export_writes_and_calls_the_node_has(
     for each in examples:
         parser.parse(each, gather_metadata=False)
     example = "".join(examples)
-    made = registry.write(sample, "godot", tmp_path)
+    made = registry.write_for_target(sample, "godot", tmp_path)
     written = {path.relative_to(tmp_path).as_posix() for path in made.files}
     named = {name.replace(".motion", ".glb") for name in re.findall(r"res://([\w.]+)", example)}
     assert named == {"sample.json", "sample.glb"} and named <= written, "the .motion is a copy of the .glb"

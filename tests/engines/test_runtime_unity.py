@@ -18,7 +18,7 @@ from metagraph.graph.requests import request_from
 from metagraph.motion import rotation
 from metagraph.playback.life.voice import voice_from_text
 from metagraph.playback.plan import Plan
-from metagraph.playback.planning.extend_performance import hear, since
+from metagraph.playback.planning.extend_performance import hear_asks, since
 from tests.engines.csharp_runtime import RUNTIME, STICK, Host, compiled, mono, needs_mono
 from tests.engines.mutants import PLAYED, share_of
 from tests.engines.requests_asked import ASKED, SENSELESS
@@ -339,7 +339,7 @@ def test_a_glb_of_another_export_is_told(probe: Probe, tmp_path: Path) -> None:
 
 def test_actions_of_a_clip_that_is_missing_show_their_stance(probe: Probe, tmp_path: Path) -> None:
     project = read_export(STICK / "stick.json")
-    plan = hear(project, Plan(3, 0.0), 0.0, [], 60.0)
+    plan = hear_asks(project, Plan(3, 0.0), 0.0, [], 60.0)
     lost = [plan.layers["arms"].cues[0].action.clip, plan.layers["body"].rests[0].action.clip]
 
     def rename(document: Any) -> None:
@@ -382,7 +382,7 @@ def test_a_character_plans_what_the_library_hears(probe: Probe, tmp_path: Path) 
     moments = [n * 0.25 + 0.1 * (n % 3 == 1) for n in range(400)]
     found = live(probe, tmp_path, [[now, ASKED.get(n, [])] for n, now in enumerate(moments)])
     project = read_export(STICK / "stick.json", resolved=True)
-    plan, cut = hear(project, Plan(5, 0.0), 0.0, [], 20.0), 0.0
+    plan, cut = hear_asks(project, Plan(5, 0.0), 0.0, [], 20.0), 0.0
     for n, now in enumerate(moments):
         asks = [dict(ask) for ask in ASKED.get(n, [])]
         for ask in asks:
@@ -390,7 +390,7 @@ def test_a_character_plans_what_the_library_hears(probe: Probe, tmp_path: Path) 
                 ask["at"] = now + ask.pop("after")
         far = plan.end >= now + 18
         if asks or not far:
-            plan = hear(
+            plan = hear_asks(
                 project, plan, now, [request_from(ask) for ask in asks], plan.end if far else now + 20
             )
         if now - cut >= 15:

@@ -151,7 +151,7 @@ def test_the_importer_names_what_is_missing(tmp_path: Path) -> None:
 
 
 def test_an_export_brings_the_plugin_with_the_core(sample: Project, tmp_path: Path) -> None:
-    report = registry.write(sample, "unreal", tmp_path / "game")
+    report = registry.write_for_target(sample, "unreal", tmp_path / "game")
     written = {p.relative_to(tmp_path / "game").as_posix() for p in report.files}
     plugin = "Plugins/Metagraph"
     assert f"{plugin}/Metagraph.uplugin" in written

@@ -14,7 +14,7 @@ import pytest
 from metagraph.engines.targets import registry
 from metagraph.engines.translation.gesture_word_lists import gesture_word_lists
 from metagraph.graph.model import Project
-from metagraph.speech.text_gestures import TextStream, gesture_words, proposed, words_of
+from metagraph.speech.text_gestures import TextStream, propose_gestures, timed_words, words_for_gesture
 from tests.browsing import Browser
 from tests.engines.web_tools_kept import kept_web_tools
 from tests.speech.test_text_gestures import SPOKEN, TEXTS, tags_of
@@ -72,7 +72,7 @@ def cases() -> list[Case]:
     every = [("en", text) for text in (*TEXTS, *ODD)] + [(code, text) for code, (text, _) in SPOKEN.items()]
     out: list[Case] = []
     for n, (language, text) in enumerate(every):
-        told = [(w.text, 0.3 * k, 0.3 * k + 0.2) for k, w in enumerate(words_of(text))][:-1]
+        told = [(w.text, 0.3 * k, 0.3 * k + 0.2) for k, w in enumerate(timed_words(text))][:-1]
         out += [(language, text, [], None, n), (language, text, told, None, n), (language, text, [], 7.5, n)]
     return out
 
@@ -103,9 +103,9 @@ def rounded(value: Any) -> Any:
 def test_words_and_their_gestures_are_those_of_python(told: Any, sample: Project) -> None:
     some = 0
     for (language, text, times, seconds, seed), (words, gestures) in zip(cases(), told["cases"], strict=True):
-        mine = words_of(text, times, seconds)
+        mine = timed_words(text, times, seconds)
         assert rounded([asdict(w) for w in mine]) == rounded(words), text
-        made = proposed(mine, tags_of(sample), gesture_words(language), seed)
+        made = propose_gestures(mine, tags_of(sample), words_for_gesture(language), seed)
         assert rounded([asdict(g) for g in made]) == rounded(gestures), text
         some += len(made)
     assert some > 60
@@ -116,7 +116,7 @@ def test_text_that_comes_in_letter_by_letter_asks_for_what_python_asks_and_most_
 ) -> None:
     states: list[str] = []
     for text, found in zip(TEXTS, told["streams"], strict=True):
-        stream = TextStream(tags_of(sample), gesture_words("en"))
+        stream = TextStream(tags_of(sample), words_for_gesture("en"))
         wanted = [r for letter in text for r in stream.take(letter, 0.0)] + stream.take("", 0.0, over=True)
         got = [{k: v for k, v in ask.items() if k in wanted[n]} for n, ask in enumerate(found["asks"])]
         assert [r["id"] for r in wanted] == [ask["id"] for ask in found["asks"]]
@@ -141,7 +141,7 @@ def test_an_agent_in_a_page_talks_with_gestures(
 ) -> None:
     """The page of the docs beside an export: told something, it answers sentence by sentence."""
     with kept_web_tools(tmp_path_factory.mktemp("kept")):
-        registry.write(sample, "web", tmp_path)
+        registry.write_for_target(sample, "web", tmp_path)
     page = ROOT / "docs" / "clients" / "talking_agent.html"
     assert len(page.read_text(encoding="utf-8").splitlines()) <= 60
     shutil.copy(page, tmp_path / "talking_agent.html")

@@ -20,12 +20,12 @@ from metagraph import engines
 from metagraph.engines.engine_machine import Machine, machines
 from metagraph.engines.export import stem_of
 from metagraph.engines.targets import godot_tree
-from metagraph.engines.targets.godot_tree import TARGETS, old_name, owned, paths_of
+from metagraph.engines.targets.godot_tree import TARGETS, find_owned_joints, godot3_name, paths_of
 from metagraph.engines.targets.target import Contents, ExportOrder
 from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.graph import edits
 from metagraph.graph.anatomy import base_pose
-from metagraph.graph.expand import chain, ends_in
+from metagraph.graph.expand import chain, find_end_stance
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
@@ -63,7 +63,7 @@ def play(folder: Path, sample: Project, animations: set[str], *steps: dict[str, 
         "glb": f"res://{stem}.glb",
         "tree": f"res://{stem}.godot3.tres",
         "layers": [m.layer for m in built],
-        "bones": {joint: old_name(joint) for joint in sample.skeleton.names},
+        "bones": {joint: godot3_name(joint) for joint in sample.skeleton.names},
         "loops": [s.name for m in built for s in m.states if s.loop],
         "play": sorted(animations),
         "steps": steps,
@@ -93,7 +93,7 @@ def resting(sample: Project, seconds: float) -> Pose:
         clip = sample.clips[machine.start.action.clip].motion
         assert clip is not None
         pose = clip.pose_at(sample.span(machine.start.action)[0] + seconds)
-        for joint in owned(sample, built)[machine.layer]:
+        for joint in find_owned_joints(sample, built)[machine.layer]:
             place = sample.skeleton.index(joint)
             turns[place], shifts[place] = pose.rotations[place], pose.translations[place]
     return Pose(turns, shifts)
@@ -153,7 +153,7 @@ def test_travel_goes_from_every_state_to_every_stance_by_as_few_transitions_as_t
         for machine in machines(sample)
         for state in machine.states
         for goal in machine.stances
-        if (stances := chain(machine.graph, str(ends_in(state.action)), goal)) is not None
+        if (stances := chain(machine.graph, str(find_end_stance(state.action)), goal)) is not None
         and state is not machine.rest(goal)
     ]
     rows = [[machine.layer, state.name, goal.name] for machine, state, goal, _ in asked]
@@ -321,7 +321,7 @@ def test_godot_4_composes_as_the_contract_does(sample: Project) -> None:
 def test_a_joint_has_one_layer_in_godot_3_and_the_next_where_its_own_does_not_reach_it(
     sample: Project,
 ) -> None:
-    alone = owned(sample, machines(sample))
+    alone = find_owned_joints(sample, machines(sample))
     every = [joint for joints in alone.values() for joint in joints]
     assert (
         len(every) == len(set(every))
@@ -330,8 +330,8 @@ def test_a_joint_has_one_layer_in_godot_3_and_the_next_where_its_own_does_not_re
     )
     assert "Spine" in alone["body"] and "LeftHand" in alone["arms"] and "Head" in alone["head"]
     without = edits.set_weight(sample, "head", "head", 0.0)
-    assert "Head" in owned(without, machines(without))["body"]
-    assert "Spine" in owned(sample, machines(sample)[1:])["arms"]
+    assert "Head" in find_owned_joints(without, machines(without))["body"]
+    assert "Spine" in find_owned_joints(sample, machines(sample)[1:])["arms"]
 
 
 def test_states_of_other_stances_stand_further_off_than_those_that_lead_to_a_stance(sample: Project) -> None:
@@ -339,7 +339,7 @@ def test_states_of_other_stances_stand_further_off_than_those_that_lead_to_a_sta
         places = list(godot_tree._places(machine))
         assert len({place for _, place in places}) == len(places) == len(machine.states)
         for goal in machine.stances:
-            block = [np.array(p) for s, p in places if ends_in(s.action) == goal]
+            block = [np.array(p) for s, p in places if find_end_stance(s.action) == goal]
             leading = [
                 np.array(p)
                 for s, p in places
@@ -349,7 +349,7 @@ def test_states_of_other_stances_stand_further_off_than_those_that_lead_to_a_sta
             assert away == sorted(away) and np.array_equal(
                 leading, block[1 : 1 + len(leading)]
             )  # of several, the first placed is the nearest
-            others = [np.array(p) for s, p in places if ends_in(s.action) != goal]
+            others = [np.array(p) for s, p in places if find_end_stance(s.action) != goal]
             wide = max((float(np.linalg.norm(a - b)) for a in block for b in block), default=0.0)
             assert all(np.linalg.norm(a - b) > wide for a in block for b in others)
 
@@ -361,7 +361,7 @@ def test_states_of_other_stances_stand_further_off_than_those_that_lead_to_a_sta
      ("RightToeBase", "right_toe_base"), ("Spine02", "spine_02"), ("upperarm_l", "upperarm_l")],
 )  # fmt: skip
 def test_bones_are_named_as_godot_3_imports_them(joint: str, bone: str) -> None:
-    assert old_name(joint) == bone
+    assert godot3_name(joint) == bone
 
 
 def test_a_skeleton_of_two_roots_hangs_below_the_node_that_holds_them(sample: Project) -> None:

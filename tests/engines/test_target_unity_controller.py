@@ -15,10 +15,10 @@ import pytest
 import yaml
 from numpy.typing import NDArray
 
-from metagraph.engines.engine_machine import Arrow, Machine, State, animations, machines
-from metagraph.engines.targets.target import Contents, ExportOrder, Made
+from metagraph.engines.engine_machine import Arrow, EngineState, Machine, animations, machines
+from metagraph.engines.targets.target import Contents, ExportedFiles, ExportOrder
 from metagraph.engines.targets.unity_controller import TARGETS
-from metagraph.engines.targets.unity_yaml import text
+from metagraph.engines.targets.unity_yaml import format_yaml_text
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
@@ -69,25 +69,25 @@ class Objects(dict[str, tuple[str, dict[str, Any]]]):
         return self[reference["fileID"]][1]
 
 
-def write(project: Project, folder: Path, stem: str = "talk", body: Path | None = None) -> Made:
+def write(project: Project, folder: Path, stem: str = "talk", body: Path | None = None) -> ExportedFiles:
     return TARGET.write(ExportOrder(project, folder, stem, Contents(body)))
 
 
 @pytest.fixture(scope="module")
-def made(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Made:
+def made(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> ExportedFiles:
     return write(sample, tmp_path_factory.mktemp("unity"))
 
 
 @pytest.fixture(scope="module")
-def controller(made: Made) -> Objects:
+def controller(made: ExportedFiles) -> Objects:
     return Objects(named(made, ".controller"))
 
 
-def named(made: Made, ending: str) -> Path:
+def named(made: ExportedFiles, ending: str) -> Path:
     return next(path for path in made.files if path.name.endswith(ending))
 
 
-def guids(made: Made) -> dict[str, Path]:
+def guids(made: ExportedFiles) -> dict[str, Path]:
     """The guid in each `.meta` -> its file."""
     found = {
         re.findall(r"^guid: (\w{32})$", p.read_text(), re.M)[0]: p.with_suffix("")
@@ -106,7 +106,7 @@ def states_of(controller: Objects, layer: str) -> dict[str, dict[str, Any]]:
     }
 
 
-def motion_of(made: Made, state: dict[str, Any], ends: bool = False) -> dict[str, Any]:
+def motion_of(made: ExportedFiles, state: dict[str, Any], ends: bool = False) -> dict[str, Any]:
     (fields,) = Objects(guids(made)[state["m_Motion"]["guid"]], ends).of(74)
     return fields
 
@@ -144,7 +144,7 @@ def paths(skeleton: Skeleton) -> dict[str, str]:
 # --- whole files
 
 
-def test_every_file_has_a_meta_of_its_kind_and_all_there_is_is_said(made: Made) -> None:
+def test_every_file_has_a_meta_of_its_kind_and_all_there_is_is_said(made: ExportedFiles) -> None:
     folder = made.files[0].parent
     assert {*folder.iterdir()} == {*made.files}
     kinds = {".anim": 7400000, ".controller": 9100000, ".mask": 31900000}
@@ -160,7 +160,7 @@ def test_every_file_has_a_meta_of_its_kind_and_all_there_is_is_said(made: Made) 
             )  # Unity wants assets called as their files are
 
 
-def test_whatever_is_referred_to_is_there(made: Made, controller: Objects) -> None:
+def test_whatever_is_referred_to_is_there(made: ExportedFiles, controller: Objects) -> None:
     known = guids(made)
     for path in made.files:
         words = path.read_text()
@@ -174,14 +174,14 @@ def test_whatever_is_referred_to_is_there(made: Made, controller: Objects) -> No
     assert "0" not in controller
 
 
-def test_two_exports_are_equal_to_the_byte(sample: Project, made: Made, tmp_path: Path) -> None:
+def test_two_exports_are_equal_to_the_byte(sample: Project, made: ExportedFiles, tmp_path: Path) -> None:
     again = write(sample, tmp_path)
     assert [p.name for p in again.files] == [p.name for p in made.files]
     assert all(a.read_bytes() == b.read_bytes() for a, b in zip(again.files, made.files, strict=True))
 
 
 def test_there_is_a_clip_for_each_state_and_one_of_the_base_pose_and_they_are_small(
-    sample: Project, made: Made
+    sample: Project, made: ExportedFiles
 ) -> None:
     clips = [path for path in made.files if path.suffix == ".anim"]
     assert len(clips) == sum(len(machine.states) for machine in machines(sample)) + 1
@@ -192,7 +192,7 @@ def test_there_is_a_clip_for_each_state_and_one_of_the_base_pose_and_they_are_sm
 
 
 def test_layers_have_parameters_masks_and_ways_to_blend(
-    sample: Project, made: Made, controller: Objects
+    sample: Project, made: ExportedFiles, controller: Objects
 ) -> None:
     (whole,) = controller.of(91)
     found = {p["m_Name"]: p["m_Type"] for p in whole["m_AnimatorParameters"]}
@@ -249,7 +249,7 @@ def found(controller: Objects, machine: Machine) -> list[tuple[Any, ...]]:
 
 
 def test_states_and_transitions_are_those_of_the_machine(
-    sample: Project, made: Made, controller: Objects
+    sample: Project, made: ExportedFiles, controller: Objects
 ) -> None:
     built = machines(sample)
     seconds = {clip.name: clip.duration for clip in animations(sample, built)}
@@ -298,7 +298,9 @@ def test_an_action_that_ends_while_it_blends_in_is_left_all_the_same(toy: Any, t
 # --- masks and clips
 
 
-def test_masks_list_every_joint_once_and_have_those_of_the_layer_on(sample: Project, made: Made) -> None:
+def test_masks_list_every_joint_once_and_have_those_of_the_layer_on(
+    sample: Project, made: ExportedFiles
+) -> None:
     assert sample.skeleton is not None
     path = paths(sample.skeleton)
     for machine in machines(sample):
@@ -310,14 +312,14 @@ def test_masks_list_every_joint_once_and_have_those_of_the_layer_on(sample: Proj
         assert {p for p, weight in rows if weight == "1"} == {path[joint] for joint in machine.joints}
 
 
-def pairs(project: Project) -> list[tuple[Machine, State, Clip]]:
+def pairs(project: Project) -> list[tuple[Machine, EngineState, Clip]]:
     built = machines(project)
     states = [(machine, state) for machine in built for state in machine.states]
     return [(m, s, clip) for (m, s), clip in zip(states, animations(project, built), strict=True)]
 
 
 def test_curves_mirrored_back_are_the_machines_clips(
-    sample: Project, made: Made, controller: Objects
+    sample: Project, made: ExportedFiles, controller: Objects
 ) -> None:
     skeleton = sample.skeleton
     assert skeleton is not None
@@ -341,7 +343,7 @@ def test_curves_mirrored_back_are_the_machines_clips(
 
 
 def test_clips_have_their_lengths_loop_where_they_loop_and_are_additive_to_the_base_pose(
-    sample: Project, made: Made, controller: Objects
+    sample: Project, made: ExportedFiles, controller: Objects
 ) -> None:
     known = guids(made)
     for machine, state, clip in pairs(sample)[::3]:
@@ -359,7 +361,7 @@ def test_clips_have_their_lengths_loop_where_they_loop_and_are_additive_to_the_b
 
 
 def test_layers_put_together_as_unity_does_are_the_previews_pose(
-    sample: Project, made: Made, controller: Objects
+    sample: Project, made: ExportedFiles, controller: Objects
 ) -> None:
     skeleton, at = sample.skeleton, np.array([1.0])
     assert skeleton is not None
@@ -413,9 +415,12 @@ def test_layers_put_together_as_unity_does_are_the_previews_pose(
     ],
 )
 def test_names_survive_yaml(name: str) -> None:
-    assert yaml.load(f"m_Name: {text(name)}\nm_Next: 1", Loader) == {"m_Name": name, "m_Next": "1"}
-    assert yaml.load(f"- m_Path: {text(name)}\n  m_Weight: 1", Loader)[0]["m_Path"] == name
-    assert text(name).isascii() and "\n" not in text(name)
+    assert yaml.load(f"m_Name: {format_yaml_text(name)}\nm_Next: 1", Loader) == {
+        "m_Name": name,
+        "m_Next": "1",
+    }
+    assert yaml.load(f"- m_Path: {format_yaml_text(name)}\n  m_Weight: 1", Loader)[0]["m_Path"] == name
+    assert format_yaml_text(name).isascii() and "\n" not in format_yaml_text(name)
 
 
 def test_joints_of_any_name_are_found_by_path(toy: Any, tmp_path: Path) -> None:

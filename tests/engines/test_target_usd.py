@@ -16,10 +16,10 @@ from metagraph.engines.targets.target import Contents
 from metagraph.formats.gltf.reader import read_character, read_gltf_clips
 from metagraph.formats.usd import usda
 from metagraph.formats.usd.writer import joint_paths, write_usd
-from metagraph.graph.edits import add_clips, add_stance, place, update_actions
+from metagraph.graph.edits import add_clips, add_stance, place_clips, update_actions
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
-from metagraph.motion.character_mesh import Character
+from metagraph.motion.character_mesh import CharacterMesh
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 
@@ -29,12 +29,12 @@ WHY = "needs Pixar's USD (pip install usd-core)"
 
 
 @pytest.fixture(scope="module")
-def ada() -> Character:
+def ada() -> CharacterMesh:
     return read_character(SAMPLES / "ada.glb")
 
 
 @pytest.fixture(scope="module")
-def still(ada: Character) -> Clip:
+def still(ada: CharacterMesh) -> Clip:
     """Ten frames in which everything turns and smiles a little, at a rate that is not the usual one."""
     [clip] = read_gltf_clips(SAMPLES / "clips" / "hands_at_sides__stance.glb")
     clip, t = clip.trimmed(0, 10), np.linspace(0, 1, 10)
@@ -59,8 +59,8 @@ def project(still: Clip) -> Project:
     made = add_stance(made, "arms", "rest", [first])
     made = add_stance(made, "arms", "rest!", [second])
     stance, other = made.graphs["arms"].stances
-    made = place(made, [second], "arms", "gesture", stance)
-    made = place(made, [first], "arms", "transition", stance, other)
+    made = place_clips(made, [second], "arms", "gesture", stance)
+    made = place_clips(made, [first], "arms", "transition", stance, other)
     [gesture] = made.graphs["arms"].of(stance, "gesture")
     weights = (("LeftHand", 0.5), ("RightHand", 0.25))
     return update_actions(made, [gesture.id], name=STRANGE, tags=("greeting", STRANGE), joint_weights=weights)
@@ -68,7 +68,9 @@ def project(still: Clip) -> Project:
 
 @pytest.fixture(scope="module")
 def written(project: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    report = registry.write(project, "usd", tmp_path_factory.mktemp("usd"), Contents(SAMPLES / "ada.glb"))
+    report = registry.write_for_target(
+        project, "usd", tmp_path_factory.mktemp("usd"), Contents(SAMPLES / "ada.glb")
+    )
     return report.files[0]
 
 
@@ -79,7 +81,7 @@ def opened(path: Path) -> Any:
     return stage
 
 
-def skinned(body: Character, clip: Clip, frame: int) -> Any:
+def skinned(body: CharacterMesh, clip: Clip, frame: int) -> Any:
     """Return where the mesh is, `[V, 3]`, by the rule that the preview draws by."""
     points = body.positions.astype(float)
     if body.morph_positions is not None and clip.weights is not None:
@@ -89,8 +91,8 @@ def skinned(body: Character, clip: Clip, frame: int) -> Any:
     turns, places = body.skeleton.globals(clip.poses()[frame])
     rest_r, rest_p = body.skeleton.globals(body.skeleton.rest)
     way = rotation.multiply(turns, rotation.conjugate(rest_r))
-    shift = places - rotation.rotate(way, rest_p)
-    each = rotation.rotate(way[body.joints], points[:, None]) + shift[body.joints]
+    shift = places - rotation.rotate_vectors(way, rest_p)
+    each = rotation.rotate_vectors(way[body.joints], points[:, None]) + shift[body.joints]
     return (body.weights[..., None] * each).sum(1) / body.weights.sum(1)[:, None]
 
 
@@ -119,7 +121,9 @@ def test_clips_read_back_equal_whatever_their_rate(project: Project, written: Pa
     assert smile.GetAttribute("blendShapeWeights").Get(times[-1])[0] == pytest.approx(1)
 
 
-def test_the_skinned_mesh_is_where_the_preview_draws_it(ada: Character, still: Clip, written: Path) -> None:
+def test_the_skinned_mesh_is_where_the_preview_draws_it(
+    ada: CharacterMesh, still: Clip, written: Path
+) -> None:
     stage = opened(written)
     from pxr import Usd, UsdGeom, UsdSkel
 
@@ -205,7 +209,7 @@ def test_names_that_are_no_identifiers_become_ones_and_none_is_twice() -> None:
     paths = joint_paths(skeleton)
     assert paths[:4] == ["hips", "hips/hips_", "hips/joint", "hips/joint/_7"] and len(set(paths)) == 5
     assert all(part.isidentifier() and part.isascii() for path in paths for part in path.split("/"))
-    assert usda.text('a"\\\n\x01é') == '"a\\"\\\\\\n\\x01é"'
+    assert usda.usda_string('a"\\\n\x01é') == '"a\\"\\\\\\n\\x01é"'
 
 
 def test_a_skeleton_alone_and_a_clip_of_one_frame_are_stages_too(tmp_path: Path, still: Clip) -> None:

@@ -34,7 +34,7 @@ def project() -> Project:
 @pytest.fixture(scope="module")
 def written(project: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("vrm")
-    report = registry.write(project, "vrm", folder, Contents(SAMPLES / "ada.glb", base=folder))
+    report = registry.write_for_target(project, "vrm", folder, Contents(SAMPLES / "ada.glb", base=folder))
     assert any(META in warning for warning in report.warnings)
     return report.files[0]
 
@@ -48,7 +48,7 @@ def turned(nodes: list[Any]) -> tuple[dict[str, Any], list[Any]]:
         own = np.array(node.get("translation", [0, 0, 0])), np.array(node.get("rotation", [0, 0, 0, 1.0]))
         parent = globals_[above[n]] if n in above else (np.zeros(3), np.array([0, 0, 0, 1.0]))
         globals_[n] = (
-            parent[0] + rotation.rotate(parent[1], own[0]), rotation.multiply(parent[1], own[1])
+            parent[0] + rotation.rotate_vectors(parent[1], own[0]), rotation.multiply(parent[1], own[1])
         )  # fmt: skip
         at[node["name"]] = globals_[n][0]
     return at, globals_
@@ -98,19 +98,23 @@ def test_its_clips_play_as_they_were(project: Project, written: Path) -> None:
 def test_the_licence_is_what_stands_beside_the_project(project: Project, tmp_path: Path) -> None:
     said = {"authors": ["Ann"], "commercialUsage": "corporation", "allowRedistribution": True}
     (tmp_path / META).write_text(json.dumps(said))
-    report = registry.write(project, "vrm", tmp_path / "out", Contents(SAMPLES / "ada.glb", base=tmp_path))
+    report = registry.write_for_target(
+        project, "vrm", tmp_path / "out", Contents(SAMPLES / "ada.glb", base=tmp_path)
+    )
     meta = gltf(report.files[0])["extensions"]["VRMC_vrm"]["meta"]
     assert meta.items() >= said.items() and meta["creditNotation"] == "required"
     assert not any(META in warning for warning in report.warnings)
     for wrong in ({"commercialUsage": "all"}, {"authors": []}, {"fee": 3}, {"name": 1}):
         (tmp_path / META).write_text(json.dumps(wrong))
         with pytest.raises(FileError, match=next(iter(wrong))):
-            registry.write(project, "vrm", tmp_path / "no", Contents(SAMPLES / "ada.glb", base=tmp_path))
+            registry.write_for_target(
+                project, "vrm", tmp_path / "no", Contents(SAMPLES / "ada.glb", base=tmp_path)
+            )
 
 
 def test_what_is_no_avatar_is_refused(project: Project, tmp_path: Path) -> None:
     with pytest.raises(ExportError, match="choose a mesh"):
-        registry.write(project, "vrm", tmp_path)
+        registry.write_for_target(project, "vrm", tmp_path)
     lame = replace(project, roles={"left_foot": ""})
     with pytest.raises(ExportError, match="left_foot"):
-        registry.write(lame, "vrm", tmp_path, Contents(SAMPLES / "ada.glb"))
+        registry.write_for_target(lame, "vrm", tmp_path, Contents(SAMPLES / "ada.glb"))

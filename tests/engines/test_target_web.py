@@ -19,7 +19,7 @@ from metagraph.engines.targets import registry, web
 from metagraph.engines.targets.target import Contents
 from metagraph.graph.model import Project
 from metagraph.playback.plan import Plan
-from metagraph.playback.planning.extend_performance import hear
+from metagraph.playback.planning.extend_performance import hear_asks
 from tests.browsing import Browser
 from tests.engines.web_tools_kept import kept_web_tools
 from tests.posing import pose_at
@@ -34,7 +34,7 @@ SEED, TIME = 7, 12.3
 def page(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("web")
     with kept_web_tools(tmp_path_factory.mktemp("kept")):
-        report = registry.write(sample, "web", folder, Contents(SAMPLES / "ada.glb", base=SAMPLES))
+        report = registry.write_for_target(sample, "web", folder, Contents(SAMPLES / "ada.glb", base=SAMPLES))
     assert report.files[0] == folder / "index.html"
     return folder
 
@@ -59,24 +59,24 @@ def test_the_page_poses_the_character_as_the_preview_does_and_its_picture_matche
     assert not errors
     project = read_export(page / "sample.json", resolved=True)
     assert project.skeleton is not None
-    pose = pose_at(hear(project, Plan(SEED, 0.0), 0.0, [], 20.0), project, TIME)
+    pose = pose_at(hear_asks(project, Plan(SEED, 0.0), 0.0, [], 20.0), project, TIME)
     rotations, positions = project.skeleton.globals(pose)
     for place, joint in enumerate(project.skeleton.names):
         assert np.linalg.norm(np.array(joints[joint]) - positions[place]) < 1e-4, joint
 
-    from app.cli.render_command import figure_of
-    from preview.camera import Camera
+    from app.cli.render_command import load_figure
+    from preview.camera import OrbitCamera
     from preview.offscreen import Offscreen
-    from preview.scene import Actor, Scene
+    from preview.scene import Scene, SceneActor
 
     width, height, data = picture
     shown = np.asarray(Image.open(io.BytesIO(base64.b64decode(data.split(",")[1]))).convert("RGB"), int)
     theirs = np.abs(shown - [255, 0, 255]).sum(-1) > 40
     with Offscreen(width, height) as stage:
-        actor = Actor(figure_of(sample, SAMPLES), rotations, positions)
+        actor = SceneActor(load_figure(sample, SAMPLES), rotations, positions)
         ours = (
             stage.render(
-                Scene((actor,), ground=False, shadow=False, background=(0.0, 0.0, 0.0, 0.0)), Camera()
+                Scene((actor,), ground=False, shadow=False, background=(0.0, 0.0, 0.0, 0.0)), OrbitCamera()
             )[..., 3]
             > 40
         )
@@ -236,10 +236,10 @@ def test_a_character_is_in_any_page_in_five_lines(page: Path, tmp_path: Path, br
 
 
 def test_lines_that_cannot_be_read_are_left_out_and_told(sample: Project, tmp_path: Path) -> None:
-    report = registry.write(sample, "metagraph", tmp_path, Contents(base=tmp_path))
+    report = registry.write_for_target(sample, "metagraph", tmp_path, Contents(base=tmp_path))
     assert sum("the sound of line" in words for words in report.warnings) == len(
         [x for x in sample.lines.values() if x.audio]
     )
-    report = registry.write(sample, "metagraph", tmp_path, Contents(base=SAMPLES))
+    report = registry.write_for_target(sample, "metagraph", tmp_path, Contents(base=SAMPLES))
     lines = json.loads((tmp_path / "sample.json").read_bytes())["lines"]
     assert all((tmp_path / line["audio"]).is_file() for line in lines.values())

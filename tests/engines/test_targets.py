@@ -20,12 +20,12 @@ import pytest
 from metagraph.engines.engine_machine import animations, machines
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets import registry
-from metagraph.engines.targets.target import Contents, Report
+from metagraph.engines.targets.target import Contents, TargetReport
 from metagraph.formats.bvh.file import read_bvh
 from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.graph import edits
-from metagraph.graph.anatomy import base_pose, roles
-from metagraph.graph.expand import chain, connections, ends_in
+from metagraph.graph.anatomy import base_pose, project_roles
+from metagraph.graph.expand import chain, find_end_stance, list_connections
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.requests import Nod, Performance, Say
 from metagraph.motion import rotation
@@ -57,11 +57,13 @@ def run(script: str, package: str, *arguments: Any) -> list[Any]:
 @pytest.fixture(scope="module")
 def written(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Any:
     """Write the sample for a target, once."""
-    known: dict[str, Report] = {}
+    known: dict[str, TargetReport] = {}
 
-    def of(name: str) -> Report:
+    def of(name: str) -> TargetReport:
         if name not in known:
-            known[name] = registry.write(sample, name, tmp_path_factory.mktemp(name), Contents(MANNEQUIN))
+            known[name] = registry.write_for_target(
+                sample, name, tmp_path_factory.mktemp(name), Contents(MANNEQUIN)
+            )
         return known[name]
 
     return of
@@ -73,7 +75,7 @@ def steps(folder: Path, *rows: dict[str, Any]) -> Path:
     return path
 
 
-def named(report: Report, ending: str) -> Path:
+def named(report: TargetReport, ending: str) -> Path:
     return next(path for path in report.files if path.name.endswith(ending))
 
 
@@ -124,7 +126,7 @@ def test_losses_count_what_the_project_has(sample: Project) -> None:
 
 def test_a_target_that_does_not_exist_is_told_with_the_nearest(sample: Project, tmp_path: Path) -> None:
     with pytest.raises(ExportError, match="did you mean 'playcanvas'"):
-        registry.write(sample, "playcanvass", tmp_path)
+        registry.write_for_target(sample, "playcanvass", tmp_path)
 
 
 def test_a_target_comes_by_its_module_and_its_line(
@@ -137,7 +139,7 @@ def test_a_target_comes_by_its_module_and_its_line(
     monkeypatch.setattr(registry, "MODULES", (*registry.MODULES, "uses"))
     registry.targets.cache_clear()
     try:
-        report = registry.write(sample, "uses", tmp_path)
+        report = registry.write_for_target(sample, "uses", tmp_path)
     finally:
         registry.targets.cache_clear()
     (path,) = report.files
@@ -147,7 +149,7 @@ def test_a_target_comes_by_its_module_and_its_line(
 
 def test_a_project_with_errors_is_not_written(tmp_path: Path) -> None:
     with pytest.raises(ExportError, match="nothing to export"):
-        registry.write(Project(), "xstate", tmp_path / "out")
+        registry.write_for_target(Project(), "xstate", tmp_path / "out")
 
 
 # --- the machine they are made of
@@ -160,7 +162,7 @@ def test_the_machine_has_a_state_for_each_action_and_an_arrow_for_each_connectio
     assert len(set(names)) == len(names) == sum(1 for _ in sample.actions())
     for machine in built:
         pairs = {(a.source.action.id, a.target.action.id) for a in machine.arrows}
-        assert pairs == {(c.source, c.target) for c in connections(sample, machine.graph)}
+        assert pairs == {(c.source, c.target) for c in list_connections(sample, machine.graph)}
 
 
 def test_a_stance_is_reached_from_every_other_by_following_its_arrows(sample: Project) -> None:
@@ -175,7 +177,7 @@ def test_a_stance_is_reached_from_every_other_by_following_its_arrows(sample: Pr
                         if a.on == "stance" and number in a.values
                     ]
                     assert len(ways) == 1
-                    at, hops = str(ends_in(ways[0].target.action)), hops + 1
+                    at, hops = str(find_end_stance(ways[0].target.action)), hops + 1
                 assert at == goal
 
 
@@ -204,7 +206,7 @@ def test_an_animation_of_an_action_that_moves_a_joint_in_part_has_it_as_far_from
     )
     skeleton = sample.skeleton
     assert skeleton is not None
-    joint = roles(sample)["right_upper_arm"]
+    joint = project_roles(sample)["right_upper_arm"]
     soft = edits.update_actions(sample, [action.id], joint_weights=((skeleton.names[joint], 0.5),))
     built = machines(sample)
     place = [s.action.id for m in built for s in m.states].index(action.id)
@@ -441,7 +443,7 @@ def test_control_characters_in_names_and_texts_spoil_no_export(sample: Project, 
     project = replace(project, performances={**project.performances, "p9999": kept})
     parsed = 0
     for name in ("bml", "scxml"):
-        report = registry.write(project, name, tmp_path / name)
+        report = registry.write_for_target(project, name, tmp_path / name)
         for path in report.files:
             if path.suffix in (".bml", ".scxml", ".xml", ".svg"):
                 ElementTree.parse(path)

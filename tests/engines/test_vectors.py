@@ -15,7 +15,7 @@ import pytest
 
 from metagraph import engines
 from metagraph.engines import reading, vectors
-from metagraph.engines.export import export
+from metagraph.engines.export import export_project
 from metagraph.engines.reading import read_export
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
@@ -62,7 +62,7 @@ def test_this_library_conforms_from_the_export_alone(shipped: Any) -> None:
 
 
 def test_the_shipped_vectors_are_those_the_maker_makes(tmp_path: Path) -> None:
-    made = conformance.write(sparse(), tmp_path)
+    made = conformance.write_project_files(sparse(), tmp_path)
     path = vectors.write_vectors(made.json)
     folder = next(f for f in FOLDERS if f.name == "sparse")
     assert json.loads(made.json.read_bytes()) == json.loads((folder / made.json.name).read_bytes())
@@ -121,7 +121,7 @@ def test_characters_whose_times_are_exact_are_looked_at_on_boundaries_and_others
 
 
 def test_an_export_plays_what_the_preview_plays(sample: Project, tmp_path: Path) -> None:
-    back = read_export(export(sample, tmp_path).json, resolved=True)
+    back = read_export(export_project(sample, tmp_path).json, resolved=True)
     assert sample.skeleton is not None
     times = np.linspace(0.0, 40.0, 161)
     poses = [pose_at(make_plan(project, 40.0), project, times) for project in (sample, back)]
@@ -168,7 +168,7 @@ MUTATIONS: dict[str, tuple[Any, str, Any]] = {
     "lengths of the models": (markov, "length", lambda chain, state, key: 2.0),
     "a breath's shape": (evaluate, "breath_at", lambda lane, life, time: 0.0),
     "a blink's shape": (evaluate, "blink_at", lambda lane, life, time: 0.0),
-    "how the head settles": (gaze, "settle", gaze.ease),
+    "how the head settles": (gaze, "settle", gaze.ease_gaze),
     "the head's share": (solve, "head_part", lambda angle, share: share * angle),
     "what eyes can do": (solve, "within_reach", lambda left, up: (left, up)),
 }
@@ -205,7 +205,7 @@ def test_breaking_a_rule_fails_some_vector(rule: str, single: Path, monkeypatch:
         monkeypatch.setattr("metagraph.playback.planning.layer_planning.delay", broken)
     for folder in folders_to_try(HINTS[rule], FOLDERS, single):
         project = read_export(folder / read(folder)["export"], resolved=True)
-        if any(vectors.differences(project, case) for case in read(folder)["cases"]):
+        if any(vectors.find_case_differences(project, case) for case in read(folder)["cases"]):
             return
     pytest.fail("no vector noticed")
 
@@ -231,4 +231,4 @@ def test_vectors_of_another_performance_are_told_apart(shipped: Any) -> None:
     )
     layer = next(of for of in case["plan"]["layers"].values() if of["cues"])
     layer["cues"][0]["start"] += 0.01
-    assert any("start" in words for words in vectors.differences(project, case))
+    assert any("start" in words for words in vectors.find_case_differences(project, case))

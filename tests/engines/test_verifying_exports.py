@@ -16,7 +16,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from metagraph.engines.targets import registry
-from metagraph.engines.targets.placing import RECORD, STAGED, Record, Staging, read_record
+from metagraph.engines.targets.placing import RECORD, STAGED, ExportRecord, Staging, read_record
 from metagraph.engines.targets.target import Contents
 from metagraph.engines.verifying_exports import verify
 from metagraph.errors import FileError
@@ -35,7 +35,7 @@ def game(tmp_path: Path, toy) -> Path:
     """An export with a line's sound."""
     wav(tmp_path / "hello.wav", 8000, bytes(1600))
     project = dataclasses.replace(toy.project(), lines={"hello": Line(audio="hello.wav")})
-    registry.write(project, "metagraph", tmp_path / "game", Contents(base=tmp_path))
+    registry.write_for_target(project, "metagraph", tmp_path / "game", Contents(base=tmp_path))
     return tmp_path / "game"
 
 
@@ -90,7 +90,7 @@ def test_a_linked_export_is_looked_at_where_it_lies(game: Path, tmp_path: Path) 
 
 @pytest.mark.parametrize("target", ["xstate", "web", "unity"])
 def test_the_files_of_every_target_are_compared_with_their_record(tmp_path: Path, toy, target: str) -> None:
-    registry.write(toy.project(), target, tmp_path)
+    registry.write_for_target(toy.project(), target, tmp_path)
     assert said(tmp_path) == {}
     names = sorted(read_record(tmp_path).files)
     flip(tmp_path / names[0], 0)
@@ -179,10 +179,10 @@ def test_an_export_that_was_interrupted_is_told_with_the_files_of_before(
 ) -> None:
     """What a kill leaves between the first file and the last: a record of both, and some files still old."""
     project = toy.project()
-    registry.write(edits.set_settings(project, seed=7), "metagraph", tmp_path / "new")
+    registry.write_for_target(edits.set_settings(project, seed=7), "metagraph", tmp_path / "new")
     old, new = read_record(game), read_record(tmp_path / "new")
     shutil.copy(glb_of(tmp_path / "new"), glb_of(game))
-    record = Record(old.target, old.project, new.files, old.files)
+    record = ExportRecord(old.target, old.project, new.files, old.files)
     (game / RECORD).write_bytes(msgspec.json.encode(record))
     told = said(game)
     assert "was interrupted" in told["record"][0]
@@ -212,7 +212,7 @@ def test_a_killed_export_leaves_its_record_and_staging_and_both_are_told(
         patch.setattr(Staging, "_put_back", lambda *_: None)
         patch.setattr(Staging, "__exit__", lambda *_: None)
         with pytest.raises(Killed):
-            registry.write(edits.set_settings(toy.project(), seed=7), "metagraph", game)
+            registry.write_for_target(edits.set_settings(toy.project(), seed=7), "metagraph", game)
     assert "leftovers" not in said(game), "its process lives"
     (staging,) = game.glob(f"{STAGED}*")
     staging.rename(game / f"{STAGED}00000000-1-1-x")

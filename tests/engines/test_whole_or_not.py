@@ -11,8 +11,8 @@ from typing import Any
 import msgspec
 import pytest
 
-from metagraph.common.file_names import folded
-from metagraph.engines.export import export
+from metagraph.common.file_names import fold_file_name
+from metagraph.engines.export import export_project
 from metagraph.engines.targets import placing, registry
 from metagraph.engines.targets.placing import RECORD, Staging
 from metagraph.engines.targets.target import Contents
@@ -55,7 +55,7 @@ def test_names_of_any_length_are_exported_whole(small: Project, tmp_path: Path, 
     if name == "vrm":  # is of a mesh, which has a body's bones
         project = long_named(open_project(SAMPLE).project)
     contents = Contents(SAMPLE.with_name("ada.glb") if name == "vrm" else None)
-    made = registry.write(project, name, tmp_path / "out", contents)
+    made = registry.write_for_target(project, name, tmp_path / "out", contents)
     assert all(path.is_file() for path in made.files)
     assert all(len(part.encode()) <= 255 for f in files(tmp_path) for part in f.split("/"))
 
@@ -63,7 +63,7 @@ def test_names_of_any_length_are_exported_whole(small: Project, tmp_path: Path, 
 @pytest.mark.parametrize("called", ["CON", "nul.txt", "a:b", "../../x", "x\ud800", "...", ""])
 def test_projects_of_any_name_are_exported(small: Project, tmp_path: Path, called: str) -> None:
     project = replace(small, name=called)
-    made = registry.write(project, "metagraph", tmp_path / "out")
+    made = registry.write_for_target(project, "metagraph", tmp_path / "out")
     assert set(files(tmp_path / "out")) == {RECORD, *(p.name for p in made.files)}
     assert not {p.stem.casefold() for p in made.files} & {"con", "nul", "nul.txt"}
     assert made.files[0].read_bytes().decode("utf-8")
@@ -78,8 +78,8 @@ def test_actions_that_differ_in_capitals_alone_have_files_of_their_own(
     }
     project = replace(small, graphs={**small.graphs, "arms": replace(arms, actions=actions)})
     for name in ("smartbody", "unity-controller"):
-        made = registry.write(project, name, tmp_path / name)
-        assert len({folded(str(p)) for p in made.files}) == len(made.files)
+        made = registry.write_for_target(project, name, tmp_path / name)
+        assert len({fold_file_name(str(p)) for p in made.files}) == len(made.files)
 
 
 def failing(real: Callable[..., Any], after: int) -> Callable[..., Any]:
@@ -101,7 +101,7 @@ def test_what_fails_half_way_leaves_everything_as_it_was(
 ) -> None:
     out = tmp_path / "deep" / "out"
     if stood:
-        registry.write(small, "javascript", out)
+        registry.write_for_target(small, "javascript", out)
         (out / "mine.txt").write_text("mine")
     before = files(tmp_path)
     edited = replace(small, settings=replace(small.settings, seed=99))
@@ -110,7 +110,7 @@ def test_what_fails_half_way_leaves_everything_as_it_was(
     for after in range(1, 200, many(6, 1)):
         monkeypatch.setattr(Path, "replace", failing(real, after))
         try:
-            registry.write(edited, "javascript", out)
+            registry.write_for_target(edited, "javascript", out)
         except FileError as error:
             moves += 1
             assert error.remedy
@@ -125,12 +125,12 @@ def test_what_fails_half_way_leaves_everything_as_it_was(
 
 
 def test_a_folder_in_the_way_is_not_taken_away(small: Project, tmp_path: Path) -> None:
-    made = registry.write(small, "metagraph", tmp_path)
+    made = registry.write_for_target(small, "metagraph", tmp_path)
     made.files[0].unlink()
     made.files[0].mkdir()
     (made.files[0] / "precious").write_text("x")
     with pytest.raises(FileError, match="folder"):
-        registry.write(small, "metagraph", tmp_path, overwrite=True)
+        registry.write_for_target(small, "metagraph", tmp_path, overwrite=True)
     assert (made.files[0] / "precious").read_text() == "x"
 
 
@@ -155,13 +155,13 @@ def test_interrupted_staging_puts_back_what_stood_there(
 
 def test_a_record_that_names_files_elsewhere_takes_none_away(small: Project, tmp_path: Path) -> None:
     out = tmp_path / "out"
-    registry.write(small, "metagraph", out)
+    registry.write_for_target(small, "metagraph", out)
     victim = tmp_path / "victim"
     victim.write_text("x")
-    record = msgspec.json.decode((out / RECORD).read_bytes(), type=placing.Record)
+    record = msgspec.json.decode((out / RECORD).read_bytes(), type=placing.ExportRecord)
     spoilt = {**record.files, "../victim": placing.digest(victim)}
     (out / RECORD).write_bytes(msgspec.json.encode(msgspec.structs.replace(record, files=spoilt)))
-    registry.write(small, "metagraph", out)
+    registry.write_for_target(small, "metagraph", out)
     assert victim.read_text() == "x"
 
 
@@ -192,7 +192,7 @@ def test_what_is_no_sound_is_never_copied(small: Project, tmp_path: Path) -> Non
         "e": "x" * 5000,
     }
     project = with_lines(small, **names, f="a\0b", g=".")
-    made = registry.write(
+    made = registry.write_for_target(
         project, "metagraph", tmp_path / "out", Contents(base=base, chosen=lambda path: True)
     )
     assert not (tmp_path / "out" / "lines").exists()
@@ -207,11 +207,11 @@ def test_a_sound_outside_the_project_s_folder_is_copied_where_the_user_chose_it(
     base, outside = tmp_path / "project", wav(tmp_path / "voice" / "hi.wav")
     wav(base / "in" / "ho.wav")
     project = with_lines(small, out="../voice/hi.wav", whole=outside.as_posix(), inner="in/ho.wav")
-    made = registry.write(project, "metagraph", tmp_path / "a", Contents(base=base))
+    made = registry.write_for_target(project, "metagraph", tmp_path / "a", Contents(base=base))
     assert set(files(tmp_path / "a")) - {RECORD} == {*(p.name for p in made.files[:2]), "lines/ho.wav"}
     assert sum("outside the project's folder" in w for w in made.warnings) == 2
     asked: list[Path] = []
-    registry.write(
+    registry.write_for_target(
         project,
         "metagraph",
         tmp_path / "b",
@@ -232,18 +232,20 @@ def test_a_link_out_of_the_project_s_folder_is_outside(small: Project, tmp_path:
         (base / "hi.wav").symlink_to(wav(tmp_path / "hi.wav"))
     except OSError:
         pytest.skip("links are not to be had here")
-    made = registry.write(with_lines(small, a="hi.wav"), "metagraph", tmp_path / "out", Contents(base=base))
+    made = registry.write_for_target(
+        with_lines(small, a="hi.wav"), "metagraph", tmp_path / "out", Contents(base=base)
+    )
     assert any("outside" in w for w in made.warnings)
 
 
 def test_the_plain_export_is_whole_as_well(
     small: Project, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    export(small, tmp_path)
+    export_project(small, tmp_path)
     before = files(tmp_path)
     monkeypatch.setattr(Path, "replace", failing(Path.replace, 4))
     with pytest.raises(FileError):
-        export(replace(small, settings=replace(small.settings, seed=3)), tmp_path)
+        export_project(replace(small, settings=replace(small.settings, seed=3)), tmp_path)
     assert files(tmp_path) == before
 
 
@@ -256,13 +258,13 @@ def test_an_export_killed_at_any_step_is_whole_or_reported_and_the_next_one_is_w
     others = edits.remove_clips(small, [next(a.clip for a in small.actions() if a.kind == "gesture")])
     states = {}
     for name, project in (("old", small), ("new", others)):
-        registry.write(project, "metagraph", tmp_path / name)
+        registry.write_for_target(project, "metagraph", tmp_path / name)
         states[name] = files(tmp_path / name)
     assert states["old"]["toy.glb"] != states["new"]["toy.glb"]
     mixed = 0
     for step in range(1, 10):
         folder = tmp_path / f"killed {step}"
-        registry.write(small, "metagraph", folder)
+        registry.write_for_target(small, "metagraph", folder)
         pid = os.fork()
         if pid == 0:
             _export_until(others, folder, step)
@@ -278,7 +280,7 @@ def test_an_export_killed_at_any_step_is_whole_or_reported_and_the_next_one_is_w
         except FileError as error:
             assert not whole and "is not the GLB that toy.json was written with" in str(error)
             mixed += 1
-        registry.write(others, "metagraph", folder)
+        registry.write_for_target(others, "metagraph", folder)
         assert files(folder) == states["new"], "and nothing hidden is left"
     assert 3 <= step < 9 and mixed <= 1
 
@@ -295,7 +297,7 @@ def _export_until(project: Project, folder: Path, step: int) -> None:
         return real(self, target)
 
     Path.replace = replace  # type: ignore[method-assign]
-    registry.write(project, "metagraph", folder)
+    registry.write_for_target(project, "metagraph", folder)
     os._exit(0)
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from metagraph.errors import FileError
-from metagraph.formats.atomic import FORSAKEN, append_line, sweep, synced_together, write_atomically
+from metagraph.formats.atomic import FORSAKEN, append_line, sweep, sync_together, write_atomically
 from metagraph.formats.locking import process_mark
 from tests.processes import started
 from tests.sittings import ended
@@ -137,7 +137,7 @@ def test_what_is_synced_together_is_whole_synced_and_tells_what_cannot_be(
 
     if Path("/proc/self/fd").exists():
         monkeypatch.setattr(os, "fsync", told)
-    with synced_together():
+    with sync_together():
         for n in range(20):
             write_atomically(tmp_path / "some" / f"{n}.txt", b"x" * n)
         (tmp_path / "some" / "3.txt").unlink()
@@ -151,5 +151,5 @@ def test_what_is_synced_together_is_whole_synced_and_tells_what_cannot_be(
     assert not synced or "later.txt" in synced or any(".saving" in name for name in synced), (
         "one by one again"
     )
-    with pytest.raises(FileError), synced_together():
+    with pytest.raises(FileError), sync_together():
         write_atomically(tmp_path / "later.txt" / "inside.txt", b"")

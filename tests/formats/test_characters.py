@@ -8,22 +8,22 @@ from pathlib import Path
 
 import pytest
 
-from metagraph.formats.characters import held_meshes
+from metagraph.formats.characters import find_held_meshes
 from metagraph.formats.gltf.reader import read_character
 from metagraph.formats.gltf.writer import write_glb
 from metagraph.formats.imports import import_files
 from metagraph.graph.model import Project
-from metagraph.motion.character_mesh import Character, Surface
+from metagraph.motion.character_mesh import CharacterMesh, Surface
 from tests.bodies import body, column, everywhere
 from tests.projects import SKELETON, clip
 
 
-def proxy(character: Character) -> Character:
+def proxy(character: CharacterMesh) -> CharacterMesh:
     """The character's first triangle, as exporters leave one."""
     return replace(character, triangles=character.triangles[:1], surfaces=(Surface(0, 1, 0),))
 
 
-def whole() -> Character:
+def whole() -> CharacterMesh:
     return body(SKELETON, dict.fromkeys(range(len(SKELETON)), 0.12))
 
 
@@ -68,7 +68,7 @@ def test_a_project_with_a_character_keeps_it_and_looks_at_no_other(tmp_path: Pat
 
 
 @pytest.fixture
-def rogue(shared_data: Path) -> Character:
+def rogue(shared_data: Path) -> CharacterMesh:
     return read_character(shared_data / "kaykit-rogue/Rogue.glb")
 
 
@@ -82,22 +82,22 @@ def test_weapons_that_one_hand_cannot_all_hold_are_hidden_and_that_is_told(
     assert any("5 meshes" in note for note in result.notes)
 
 
-def test_what_one_hand_holds_alone_stays_in_sight(rogue: Character) -> None:
+def test_what_one_hand_holds_alone_stays_in_sight(rogue: CharacterMesh) -> None:
     one = rogue.without({"1H_Crossbow", "2H_Crossbow", "Knife"})
-    assert held_meshes(one) == ()
+    assert find_held_meshes(one) == ()
 
 
-def test_what_hangs_elsewhere_than_in_a_hand_stays_in_sight(rogue: Character) -> None:
-    assert "Rogue_Cape" not in held_meshes(rogue)
+def test_what_hangs_elsewhere_than_in_a_hand_stays_in_sight(rogue: CharacterMesh) -> None:
+    assert "Rogue_Cape" not in find_held_meshes(rogue)
     chest = rogue.skeleton.index("chest")
     worn = tuple(replace(s, held=chest) if s.held >= 0 else s for s in rogue.surfaces)
-    assert held_meshes(replace(rogue, surfaces=worn)) == ()
+    assert find_held_meshes(replace(rogue, surfaces=worn)) == ()
 
 
 def test_a_robots_hand_of_plates_is_no_prop(shared_data: Path) -> None:
     robot = read_character(shared_data / "robot-expressive/RobotExpressive.glb")
-    assert held_meshes(robot) == ()
+    assert find_held_meshes(robot) == ()
 
 
 def test_a_body_made_of_nothing_but_plates_holds_nothing() -> None:
-    assert held_meshes(whole()) == ()
+    assert find_held_meshes(whole()) == ()

@@ -9,9 +9,9 @@ import pytest
 
 from metagraph.formats.clip_identity import DIGITS, with_clip_identity, without_clip_identity
 from metagraph.formats.project.data import from_data, to_data
-from metagraph.formats.store import encoded, from_text
+from metagraph.formats.store import encode_project, parse_project
 from metagraph.graph import edits
-from metagraph.graph.check import check
+from metagraph.graph.check import check_project
 from metagraph.graph.model import Action, ClipEntry, Project
 from tests.projects import clip
 
@@ -24,19 +24,19 @@ def project(digest: str = WAVE) -> Project:
     made = edits.add_clips(Project(), [("rest.glb", 0, "ef" * 32, clip("rest"))])
     made = edits.add_stance(made, "arms", "rest", ["c1"])
     made = edits.add_clips(made, [("wave.glb", 0, digest, clip("wave"))])
-    return edits.place(made, ["c4"], "arms", "gesture", "s2")
+    return edits.place_clips(made, ["c4"], "arms", "gesture", "s2")
 
 
 def opened(text: str) -> Project:
-    return from_text(text, HERE)
+    return parse_project(text, HERE)
 
 
 def written(one: Project) -> str:
-    return encoded(one, HERE).decode()
+    return encode_project(one, HERE).decode()
 
 
 def swaps(one: Project) -> list[str]:
-    return [str(p.message) for p in check(one) if p.code == "swapped-clip"]
+    return [str(p.message) for p in check_project(one) if p.code == "swapped-clip"]
 
 
 def test_an_empty_project_has_nothing_to_say() -> None:
@@ -101,7 +101,7 @@ def test_files_without_it_are_read_and_nothing_is_claimed() -> None:
 
 def test_a_clip_that_is_gone_is_reported_once_as_such() -> None:
     text = "\n".join(x for x in written(project()).splitlines() if "- {id: c4" not in x)
-    codes = [p.code for p in check(opened(text)) if p.action == "a5"]
+    codes = [p.code for p in check_project(opened(text)) if p.action == "a5"]
     assert codes == ["lost-clip"]
 
 

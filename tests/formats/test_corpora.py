@@ -9,9 +9,9 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.formats.bvh.file import write_bvh
-from metagraph.formats.corpora import Corpus, read_corpus
-from metagraph.graph.conversation.model import Conversation, heard_by
-from metagraph.synthesis.cooccurrence import table
+from metagraph.formats.corpora import CorpusReading, read_corpus
+from metagraph.graph.conversation.model import Conversation, segments_heard_by
+from metagraph.synthesis.cooccurrence import count_cooccurrence
 from tests.synthesis.talking import speech, talking
 from tests.wavs import wav
 
@@ -109,7 +109,7 @@ def test_genea_has_two_folders_and_a_table_of_words_each(tmp_path: Path) -> None
     assert one.name == "trn_2023_v0_000" and all(c is not None for c in one.clips)
     assert kinds(one.conversation, 0) == ["clause", "hesitation", "clause"]
     assert kinds(one.conversation, 1) == ["response", "clause"]
-    assert "hesitation" in [s.kind for s in heard_by(one.conversation, 1)]
+    assert "hesitation" in [s.kind for s in segments_heard_by(one.conversation, 1)]
 
 
 def test_talking_with_hands_tells_persons_by_their_marks(tmp_path: Path) -> None:
@@ -203,9 +203,11 @@ def test_what_is_read_is_counted_as_the_paper_counts(tmp_path: Path) -> None:
         motion(tmp_path / who / "bvh" / f"{stem}.bvh", n + 1)
         sound(tmp_path / who / "wav" / f"{stem}.wav", n)
         text(tmp_path / who / "tsv" / f"{stem}.tsv", rows(n))
-    found: Corpus = read_corpus(tmp_path)
+    found: CorpusReading = read_corpus(tmp_path)
     (one,) = found.recorded
     clip = one.clips[0]
     assert clip is not None
-    counted = {r.hypothesis: r.total for r in table([clip], [heard_by(one.conversation, 0)], 3)}
+    counted = {
+        r.hypothesis: r.total for r in count_cooccurrence([clip], [segments_heard_by(one.conversation, 0)], 3)
+    }
     assert counted["clause with either hand"] == 2 and counted["partner's hesitation with a nod"] == 0

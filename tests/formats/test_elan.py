@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from metagraph.errors import FileError
 from metagraph.formats.elan import read_elan
-from metagraph.playback.learning.annotation import Annotation, Interval
+from metagraph.playback.learning.annotation import Annotation, AnnotationInterval
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / "annotation" / "conversation.eaf"
 
@@ -377,7 +377,10 @@ def test_five_files_of_others_are_read(shared_data: Path) -> None:
         "test2": [8, 3, 12, 12, 8, 0],
     }
     gestures = next(t for t in found["sample_3.0"].tiers if t.name == "gestures")
-    assert gestures.intervals[:2] == (Interval(1.8, 2.4, "prep"), Interval(3.0, 3.6, "hold"))
+    assert gestures.intervals[:2] == (
+        AnnotationInterval(1.8, 2.4, "prep"),
+        AnnotationInterval(3.0, 3.6, "hold"),
+    )
     words = next(t for t in found["sample_3.0"].tiers if t.name == "words-timesub").intervals
     assert all(i.end - i.start > 0.05 for i in words), "five words a sentence, some of them never aligned"
     language = next(

@@ -16,7 +16,7 @@ from metagraph.errors import FileError
 from metagraph.formats.project.data import FORMAT, STRUCTS, to_data
 from metagraph.formats.project.fields import Data
 from metagraph.formats.project.text import to_text
-from metagraph.formats.store import SUFFIX, encoded, from_text
+from metagraph.formats.store import SUFFIX, encode_project, parse_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 
@@ -276,12 +276,12 @@ def check(data: Data, path: Path) -> bool:
     reason.
     """
     try:
-        project = from_text(to_text(data), path)
+        project = parse_project(to_text(data), path)
     except FileError as error:
         assert error.path == path and error.cause and error.where and error.remedy
         return False
     edited = edits.rename_project(project, "edited")
-    again = from_text(encoded(edited, path).decode(), path)
+    again = parse_project(encode_project(edited, path).decode(), path)
     assert to_data(again) == to_data(edited)
     return True
 
@@ -321,7 +321,7 @@ PLACES = list(places(WHOLE))
 
 
 def test_every_field_is_there_and_the_whole_can_be_read() -> None:
-    project = from_text(to_text(WHOLE), Path("whole"))
+    project = parse_project(to_text(WHOLE), Path("whole"))
     data = to_data(project)
     assert not set(data) ^ set(WHOLE)
     for key in STRUCTS:
@@ -350,10 +350,10 @@ def test_a_number_that_is_too_large_is_refused_with_its_place_and_limits() -> No
     with pytest.raises(
         FileError, match=r"line \d+: touch\.parts\[0\]\.a\[2\] should be a number from -1e\+15 to 1e\+15"
     ):
-        from_text(to_text(data), Path("x"))
+        parse_project(to_text(data), Path("x"))
 
 
 def test_a_long_name_in_a_file_that_is_wrong_elsewhere_is_no_error_of_its_own() -> None:
     text = f"metagraph: {FORMAT}\nroles:\n  {'k' * 2_000}: x\nsettings:\n  alpha: x\n"
     with pytest.raises(FileError, match=r"settings\.alpha"):
-        from_text(text, Path("x"))
+        parse_project(text, Path("x"))

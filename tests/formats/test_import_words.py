@@ -9,7 +9,7 @@ import pytest
 
 from metagraph.formats.characters import CharacterFile
 from metagraph.formats.gltf.writer import write_glb
-from metagraph.formats.import_words import counted, remedies, said
+from metagraph.formats.import_words import count_alike, describe_import, remedies
 from metagraph.formats.imports import Imported, import_files
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Repair
@@ -21,8 +21,8 @@ def loaded(*repairs: Repair) -> Imported:
 
 
 def test_a_whole_import_says_how_many_came_in() -> None:
-    assert said(loaded()) == "Imported 1 clip"
-    assert said(Imported(())) == "Imported 0 clips"
+    assert describe_import(loaded()) == "Imported 1 clip"
+    assert describe_import(Imported(())) == "Imported 0 clips"
 
 
 def test_what_was_put_right_is_counted_each_skipped_take_once_and_names_not() -> None:
@@ -31,17 +31,17 @@ def test_what_was_put_right_is_counted_each_skipped_take_once_and_names_not() ->
     one = replace(clip("a"), repairs=(*repairs, take))
     two = replace(clip("b"), repairs=(take,))
     result = Imported((("a.glb", 0, "", one), ("a.glb", 2, "", two)))
-    words = said(result)
+    words = describe_import(result)
     assert "2 clips" in words and "units of length (1)" in words and "one frame (1)" in words
     assert words.count("(1)") == 2
 
 
 def test_no_character_and_hidden_meshes_are_told() -> None:
     none = CharacterFile("idle.glb", why_not="is 1 triangle, a stand-in")
-    words = said(replace(loaded(), stand_ins=(none, none)), window=False)
+    words = describe_import(replace(loaded(), stand_ins=(none, none)), window=False)
     assert "idle.glb and 1 more" in words and none.why_not in words
     hidden = CharacterFile("me.glb", hidden=("sword", "bow"))
-    assert "2 meshes" in said(replace(loaded(), character=hidden))
+    assert "2 meshes" in describe_import(replace(loaded(), character=hidden))
 
 
 def test_strangers_are_told_once_not_as_files_that_cannot_be_used_too(tmp_path: Path) -> None:
@@ -52,7 +52,7 @@ def test_strangers_are_told_once_not_as_files_that_cannot_be_used_too(tmp_path: 
     write_glb(tmp_path / "odd.glb", [stranger("x")])
     (tmp_path / "bad.glb").write_bytes(b"noise")
     result = import_files(Project(), tmp_path, [tmp_path])
-    words = said(result, window=False)
+    words = describe_import(result, window=False)
     assert all(piece in words for piece in ("2 clips.", "1 clip of another", "1 file ", "of 1 clip in"))
     assert [r.do for r in remedies(result)] == ["map"]
 
@@ -73,11 +73,11 @@ def test_strangers_are_told_once_not_as_files_that_cannot_be_used_too(tmp_path: 
     ],
 )
 def test_lines_that_say_the_same_of_several_files_are_one(lines: list[str], wanted: list[str]) -> None:
-    assert counted(lines) == wanted
+    assert count_alike(lines) == wanted
 
 
 def test_the_notes_of_a_real_set_are_few(shared_data: Path) -> None:
     result = import_files(Project(), None, [shared_data / "sumerian-hosts/glTF/animations/adult_female"])
-    lines = counted(result.notes)
+    lines = count_alike(result.notes)
     assert len(result.notes) > 5 and len(lines) == 2
     assert any("1 to 15 joints" in line for line in lines)

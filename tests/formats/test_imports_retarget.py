@@ -13,17 +13,17 @@ import pytest
 
 from metagraph.formats.bvh.file import write_bvh
 from metagraph.formats.gltf.reader import write_glb
-from metagraph.formats.imports import bring_over, import_files, strangers_of
+from metagraph.formats.imports import bring_over, find_strangers, import_files
 from metagraph.formats.project.data import from_data, to_data
-from metagraph.formats.project.journal import changes
-from metagraph.formats.project.replay import apply
+from metagraph.formats.project.journal import find_changes
+from metagraph.formats.project.replay import apply_change
 from metagraph.formats.store import open_project, relocate, save_project
-from metagraph.graph.check import check
+from metagraph.graph.check import check_project
 from metagraph.graph.editing.retargeting import Bringing
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint, proposed
+from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint, propose_joint_map
 from metagraph.motion.skeleton import Skeleton
 
 
@@ -92,7 +92,7 @@ def test_said_yes_they_are_retargeted_and_the_map_is_kept(folder: Path, sample: 
         e.brought_from == fingerprint(sample.skeleton) and e.motion.skeleton is project.skeleton for e in new
     )  # type: ignore[union-attr]
     assert all("brought over" in " ".join(e.motion.notes) for e in new)  # type: ignore[union-attr]
-    assert not [p for p in check(after) if p.code == "other-skeleton"]
+    assert not [p for p in check_project(after) if p.code == "other-skeleton"]
 
 
 def test_once_the_project_has_a_map_the_next_ones_are_retargeted_unasked_but_told(folder: Path) -> None:
@@ -208,23 +208,23 @@ def test_a_broken_map_is_told_with_its_place_and_the_project_still_opens(folder:
 def test_the_journal_keeps_maps_and_what_was_retargeted(folder: Path) -> None:
     project = start(folder)
     after = import_files(project, folder, others(folder), retarget="yes").into(project)
-    change = changes(project, after)
+    change = find_changes(project, after)
     assert set(change["joint_maps"]) == set(after.joint_maps)
-    assert from_data(apply(to_data(project), change)) == after
+    assert from_data(apply_change(to_data(project), change)) == after
 
 
 def test_retargeted_clips_are_read_again_on_their_own_skeleton_to_correct_their_map(
     folder: Path, sample: Any
 ) -> None:
     project = start(folder)
-    assert strangers_of(project, folder) == ()
+    assert find_strangers(project, folder) == ()
     project = import_files(project, folder, others(folder), retarget="yes").into(project)
-    (group,) = strangers_of(project, folder)
+    (group,) = find_strangers(project, folder)
     assert group.skeleton == sample.skeleton and len(group.clips) == 2
     assert group.joint_map == project.joint_maps[group.fingerprint]
-    assert len(strangers_of(project, folder, ["c3"])) == 1
+    assert len(find_strangers(project, folder, ["c3"])) == 1
     (folder / "other0.glb").unlink()
-    (less,) = strangers_of(project, folder)
+    (less,) = find_strangers(project, folder)
     assert len(less.clips) == 1
 
 
@@ -248,7 +248,7 @@ def test_where_the_rest_pose_does_not_stand_the_projects_own_clip_says_how_it_do
     project = import_less(own)
     bringing = Bringing(project)
     assert bringing.pose is not None
-    out = bringing.bring(toy.clip("c", 0.5), proposed(toy.skeleton, skeleton))
+    out = bringing.bring(toy.clip("c", 0.5), propose_joint_map(toy.skeleton, skeleton))
     wanted = toy.skeleton.globals(toy.clip("c", 0.5).poses())[1]
     np.testing.assert_allclose(skeleton.globals(out.poses())[1], wanted, atol=0.05)
 

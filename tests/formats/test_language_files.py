@@ -10,7 +10,7 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.formats.language_files import packs_with, read_pack
-from metagraph.speech.language_packs import FOLDER, languages
+from metagraph.speech.language_packs import FOLDER, list_language_packs
 
 GOOD = """\
 code: sv
@@ -68,12 +68,12 @@ def test_yaml_and_json_are_read(tmp_path: Path) -> None:
     assert swedish.responses == ("ja", "jaha", "just det", "no")  # "no" is a word, not false
     assert swedish.hesitations == ("öh", "öhm", "liksom") and swedish.small == {"jag", "och", "att", "det"}
     for path in FOLDER.glob("*.json"):  # those that come with the program are of the same form
-        assert read_pack(path).responses == languages()[path.stem].responses
+        assert read_pack(path).responses == list_language_packs()[path.stem].responses
 
 
 def test_a_pack_takes_the_place_of_one_of_its_code(tmp_path: Path) -> None:
     own = pack(tmp_path, GOOD.replace("code: sv", "code: de"))
     packs = packs_with([own])
-    assert packs["de"].name == "Swedish" and set(packs) == set(languages())
-    assert languages()["de"].name == "German"
+    assert packs["de"].name == "Swedish" and set(packs) == set(list_language_packs())
+    assert list_language_packs()["de"].name == "German"
     assert "sv" in packs_with([pack(tmp_path, GOOD, "b.yaml")])

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from metagraph.errors import FileError
-from metagraph.formats.clips import find_clip_files, read_clips
+from metagraph.formats.clips import find_clip_files, read_clip_file
 from metagraph.formats.gltf.reader import morph_targets
 from metagraph.formats.imports import import_files
 from metagraph.formats.live_link_face import TURNS, read_live_link
 from metagraph.formats.store import open_project, save_project
 from metagraph.graph import edits
 from metagraph.graph.face.arkit import ARKIT
-from metagraph.graph.face.curves import worn
+from metagraph.graph.face.curves import fit_curves_to_face
 from metagraph.graph.face.rig import with_morphs
 from metagraph.graph.face.takes import face_joints
 from metagraph.graph.model import Project
@@ -59,9 +59,9 @@ def test_61_values_a_row_become_52_curves_and_turns_at_the_rate_of_the_timecode(
     clip = read_live_link(written(tmp_path, [row(stamp(n), nod(n)) for n in range(181)]))
     assert clip.morphs == ARKIT and clip.fps == 60 and clip.frames == 181
     assert clip.morphs_at(1.5)["jawOpen"] == pytest.approx(0.5, abs=0.01)
-    left = rotation.rotate(clip.rotations[180, 1], np.array([0, 0, 1.0]))
+    left = rotation.rotate_vectors(clip.rotations[180, 1], np.array([0, 0, 1.0]))
     assert left[0] > 0.2 and left[1] > 0.2, "eyes look where the shapes say, whatever the angles' signs"
-    head = rotation.rotate(clip.rotations[[0, 90, 180], 0], np.array([0, 0, 1.0]))
+    head = rotation.rotate_vectors(clip.rotations[[0, 90, 180], 0], np.array([0, 0, 1.0]))
     assert head[0, 0] < -0.2 < abs(head[1, 0]) + 0.2 and abs(head[1, 0]) < 0.02 and head[2, 0] > 0.2
     assert any("straight ahead" in note for note in clip.notes)
 
@@ -125,7 +125,7 @@ def test_other_tables_are_no_clips(tmp_path: Path) -> None:
     (tmp_path / "other.csv").write_text("a,b\n1,2\n")
     assert [p.name for p in find_clip_files(tmp_path)] == ["take.csv"]
     with pytest.raises(FileError, match=r"other\.csv"):
-        read_clips(tmp_path / "other.csv")
+        read_clip_file(tmp_path / "other.csv")
 
 
 @pytest.fixture(scope="module")
@@ -139,12 +139,12 @@ def test_on_a_character_the_face_moves_and_nothing_else(sample: Project, tmp_pat
     stance = next(iter(sample.graphs["head"].stances))
     after = import_files(sample, SAMPLES, [tmp_path / "take.csv"]).into(sample)
     clip = list(after.clips)[-1]
-    after = edits.place(after, [clip], "head", "gesture", stance)
+    after = edits.place_clips(after, [clip], "head", "gesture", stance)
     action = list(after.graphs["head"].actions.values())[-1]
     assert action.joints == face_joints(after) and "Head" in action.joints and "Hips" not in action.joints
     entry = after.clips[clip]
     assert entry.motion is not None
-    made = worn(after, entry.motion)
+    made = fit_curves_to_face(after, entry.motion)
     assert made.morphs_at(1.5)["jawOpen"] == pytest.approx(0.5, abs=0.01)
     assert not {m for m in made.morphs if m.startswith(("eyeLook", "eyeBlink"))}, "joints do these"
     skeleton = after.skeleton
@@ -152,7 +152,7 @@ def test_on_a_character_the_face_moves_and_nothing_else(sample: Project, tmp_pat
     turned, _ = skeleton.globals(made.pose_at(3.0))
     base, _ = skeleton.globals(made.pose_at(1.5))
     head = skeleton.index("Head")
-    ahead = rotation.rotate(
+    ahead = rotation.rotate_vectors(
         rotation.multiply(turned[head], rotation.conjugate(base[head])), np.array([0, 0, 1.0])
     )
     assert ahead[0] > 0.2, "to its left"

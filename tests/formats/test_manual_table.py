@@ -8,8 +8,8 @@ from metagraph.errors import FileError
 from metagraph.formats import manual_table as t
 from metagraph.formats.project.data import from_data, to_data
 from metagraph.formats.project.fields import DataError
-from metagraph.formats.project.journal import changes
-from metagraph.formats.project.replay import apply
+from metagraph.formats.project.journal import find_changes
+from metagraph.formats.project.replay import apply_change
 from metagraph.graph.manual import edits as m
 from metagraph.graph.manual import groups as g
 from metagraph.graph.manual.machine import ANY, links_expanded
@@ -18,7 +18,7 @@ from tests.graph.manual.test_machine import linked
 
 def drawn(text: str):
     p, ids = linked()
-    return t.filled(p, "arms", t.rows_of(text)), ids
+    return t.fill_machine(p, "arms", t.parse_manual_table(text)), ids
 
 
 @pytest.mark.parametrize(
@@ -29,7 +29,7 @@ def test_what_is_no_table_of_links_is_refused_with_what_it_should_be(tmp_path, t
     path = tmp_path / "links.csv"
     path.write_text(text)
     with pytest.raises(FileError, match=words) as error:
-        t.read_table(path)
+        t.read_manual_table(path)
     assert error.value.path == path and "columns" in error.value.remedy
 
 
@@ -39,7 +39,7 @@ def test_what_spreadsheets_write_is_read(tmp_path, encoding: str, separator: str
     path = tmp_path / "links.csv"
     rows = [["From", "To", "Note", " BLEND "], ["idle", "wave", "für später", "0.5"], [], ["wave", "idle"]]
     path.write_bytes("\r\n".join(separator.join(r) for r in rows).encode(encoding))
-    found = t.read_table(path)
+    found = t.read_manual_table(path)
     assert [r.cells for r in found] == [
         {"from": "idle", "to": "wave", "blend": "0.5"},
         {"from": "wave", "to": "idle"},
@@ -78,7 +78,9 @@ def test_a_pattern_leaves_as_an_alias_and_arrives_at_each() -> None:
     p, ids = linked()
     for n, name in enumerate(("sit__idle", "sit__wave", "sit__nod", "stand")):
         p = m.update_states(p, [list(ids.values())[n]], name=name)
-    out = t.filled(p, "arms", t.rows_of("from,to,when\nSIT_*,sit__*,request\nsit__*,stand,\n"))
+    out = t.fill_machine(
+        p, "arms", t.parse_manual_table("from,to,when\nSIT_*,sit__*,request\nsit__*,stand,\n")
+    )
     machine = out.project.manual["arms"]
     assert [a.name for a in machine.aliases.values()] == ["SIT"] and len(machine.links) == 4
     assert len(links_expanded(machine)) == 9 and not out.problems
@@ -91,7 +93,7 @@ def test_a_row_that_fails_leaves_no_alias_behind() -> None:
 
 def test_a_link_that_is_there_is_set_as_the_row_says() -> None:
     p, _ids = linked(("idle", "wave"))
-    out = t.filled(p, "arms", t.rows_of("from,to,blend\nIDLE,wave,1\n"))
+    out = t.fill_machine(p, "arms", t.parse_manual_table("from,to,blend\nIDLE,wave,1\n"))
     assert (out.links, out.changed) == (0, 1)
     assert [x.blend for x in out.project.manual["arms"].links.values()] == [1.0]
 
@@ -102,8 +104,8 @@ def test_a_table_that_was_written_gives_the_same_links() -> None:
     alias = list(p.manual["arms"].aliases)[-1]
     p = m.add_link(p, "arms", alias, ids["wave"])
     p = m.update_links(p, [*p.manual["arms"].links][:1], exit_time=0.3, blend=0.1)
-    bare = m.remove(p, links=[*p.manual["arms"].links])
-    out = t.filled(bare, "arms", t.rows_of(t.table_of(p.manual["arms"])))
+    bare = m.remove_states(p, links=[*p.manual["arms"].links])
+    out = t.fill_machine(bare, "arms", t.parse_manual_table(t.machine_as_table(p.manual["arms"])))
     keys = [
         [
             (x.source, x.target, x.condition, x.exit_time, x.exit_part, x.blend)
@@ -122,8 +124,8 @@ def test_aliases_are_saved_journalled_and_checked_when_read() -> None:
     data = to_data(after)
     assert from_data(data).manual == after.manual
     assert "aliases" not in to_data(before)["manual"]["arms"]
-    assert from_data(apply(to_data(before), changes(before, after))).manual == after.manual
-    assert from_data(apply(data, changes(after, before))).manual == before.manual
+    assert from_data(apply_change(to_data(before), find_changes(before, after))).manual == after.manual
+    assert from_data(apply_change(data, find_changes(after, before))).manual == before.manual
     for field, value, where in (
         ("states", ["m99"], "states[0]"), ("entry", "m99", "entry"),
         ("color", 1, "color"), ("states", "m5", "states"),

@@ -14,9 +14,9 @@ from hypothesis import HealthCheck, given, settings
 from metagraph.formats import recovery
 from metagraph.formats.project.data import FORMAT, from_data, to_data
 from metagraph.formats.project.fields import Data
-from metagraph.formats.project.journal import Journal, changes, journal_path
-from metagraph.formats.project.replay import apply
-from metagraph.formats.project.text import read
+from metagraph.formats.project.journal import Journal, find_changes, journal_path
+from metagraph.formats.project.replay import apply_change
+from metagraph.formats.project.text import read_text_data
 from metagraph.formats.recovery import read_journal
 from metagraph.formats.store import SUFFIX, read_project, save_project
 from metagraph.graph import edits
@@ -52,7 +52,7 @@ def saved(tmp_path: Path) -> Path:
     project = edits.add_stance(edits.add_clips(Project("show"), clips), "arms", "rest", ["c1"])
     stance = next(iter(project.graphs["arms"].stances))
     path = tmp_path / f"show{SUFFIX}"
-    save_project(edits.place(project, ["c2", "c3"], "arms", "gesture", stance), path)
+    save_project(edits.place_clips(project, ["c2", "c3"], "arms", "gesture", stance), path)
     return path
 
 
@@ -95,7 +95,7 @@ def in_other_words(change: Callable[[Data], object]) -> Callable[[str], str]:
     """Return what changes the data of a text and writes it as no Metagraph does."""
 
     def written(text: str) -> str:
-        data = read(text)[0]
+        data = read_text_data(text)[0]
         change(data)
         return json.dumps(data)
 
@@ -153,7 +153,7 @@ def test_whatever_of_a_project_is_saved_is_written_of_an_edit() -> None:
     assert not same, "the test has nothing of them to take away"
     for field in fields(Project):
         if field.compare:
-            assert changes(project, replace(project, **{field.name: getattr(Project(), field.name)}))
+            assert find_changes(project, replace(project, **{field.name: getattr(Project(), field.name)}))
 
 
 def test_the_language_of_conversations_is_there_after_a_crash(saved: Path) -> None:
@@ -161,4 +161,8 @@ def test_the_language_of_conversations_is_there_after_a_crash(saved: Path) -> No
     left = read_journal(journal, saved)
     assert left is not None and left.project.language == after.language == "de"
     back = conversation_edits.set_language(after, "auto")
-    assert apply(to_data(after), changes(after, back)) == to_data(back) == to_data(read_project(saved))
+    assert (
+        apply_change(to_data(after), find_changes(after, back))
+        == to_data(back)
+        == to_data(read_project(saved))
+    )

@@ -25,9 +25,9 @@ from metagraph.formats.project.data import to_data
 from metagraph.formats.store import (
     SUFFIX,
     absolute,
-    from_text,
     load_motions,
     open_project,
+    parse_project,
     read_project,
     relative,
     relocate,
@@ -54,7 +54,7 @@ def text_of(project: Project) -> str:
 @given(projects())
 def test_a_project_comes_back_from_its_text_and_is_written_the_same_again(project: Project) -> None:
     text = text_of(project)
-    back = from_text(text, PATH)
+    back = parse_project(text, PATH)
     assert back == project
     assert text_of(back) == text
 
@@ -64,7 +64,7 @@ def grown() -> Project:
         Project("grown"), [(f"clips/{n}.glb", 0, "ab" * 32, clip(f"clip {n}")) for n in range(30)]
     )
     project = edits.add_stance(project, "arms", "rest", ["c1"])
-    return edits.place(project, [f"c{n}" for n in range(2, 30)], "arms", "gesture", "s31")
+    return edits.place_clips(project, [f"c{n}" for n in range(2, 30)], "arms", "gesture", "s31")
 
 
 @pytest.mark.parametrize(
@@ -73,7 +73,7 @@ def grown() -> Project:
         (lambda p: edits.update_actions(p, ["a40"], likelihood=2.0), 1, 1),
         (lambda p: edits.update_actions(p, ["a40"], timing={"start": 0.1}), 1, 1),
         (lambda p: edits.remove_actions(p, ["a40"]), 1, 0),
-        (lambda p: edits.place(p, ["c3"], "arms", "fidget", "s31"), 1, 2),  # and the next id
+        (lambda p: edits.place_clips(p, ["c3"], "arms", "fidget", "s31"), 1, 2),  # and the next id
         (lambda p: edits.rename_clip(p, "c3", "other"), 1, 1),
         (lambda p: edits.set_base(p, "c3", 2), 1, 3),
         (lambda p: edits.set_weight(p, "arms", "head", 0.5), 1, 1),
@@ -100,7 +100,7 @@ def test_the_order_of_lines_is_the_order_things_were_made_in() -> None:
 
 def refused(text: str) -> FileError:
     with pytest.raises(FileError) as caught:
-        from_text(text, PATH)
+        parse_project(text, PATH)
     error = caught.value
     assert error.path == PATH and error.cause and error.where and error.remedy
     assert str(error).startswith(f"{PATH.name}, {error.where}: ")
@@ -166,11 +166,11 @@ def test_an_older_file_is_upgraded_step_by_step(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(store, "UPGRADES", {1: lambda d: first(dict(d)), 2: second})
     text = text.replace("name: grown", "title: grown")
     with pytest.raises(FileError, match="title"):
-        from_text(text, PATH)
+        parse_project(text, PATH)
     monkeypatch.setattr(
         store, "UPGRADES", {1: lambda d: {k: v for k, v in first(dict(d)).items() if k != "title"}, 2: second}
     )
-    assert from_text(text, PATH).name == "grown!"
+    assert parse_project(text, PATH).name == "grown!"
     assert steps == [1, 2, 1, 2]
 
 
@@ -204,7 +204,7 @@ def test_a_file_with_letters_changed_is_read_or_refused(chance: random.Random, c
             ]
         )
     try:
-        from_text("".join(text), PATH)
+        parse_project("".join(text), PATH)
     except FileError as error:
         assert error.cause and error.where and error.remedy
         assert str(error).isprintable()
@@ -214,7 +214,7 @@ def test_a_file_with_letters_changed_is_read_or_refused(chance: random.Random, c
 @given(st.integers(0, 4000))
 def test_a_file_cut_off_anywhere_is_read_or_refused(length: int) -> None:
     try:
-        from_text(text_of(grown())[:length], PATH)
+        parse_project(text_of(grown())[:length], PATH)
     except FileError as error:
         assert error.where and error.remedy
 

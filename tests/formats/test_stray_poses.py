@@ -12,7 +12,7 @@ import pytest
 from numpy.typing import NDArray
 
 from metagraph.formats.stray_poses import stray_poses
-from metagraph.formats.takes import BIND_POSE, LONE_FRAME, without_stray_poses
+from metagraph.formats.takes import BIND_POSE, LONE_FRAME, drop_stray_poses
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from tests.benchmarks import bench_stray_poses as made
@@ -53,14 +53,14 @@ def test_sample_clips_that_start_fast_or_from_a_bind_pose_stay_whole(takes: list
 @pytest.mark.nightly
 def test_real_clips_lose_the_bind_poses_they_have_and_no_frame_more(shared_data: Path) -> None:
     from metagraph.errors import FileError
-    from metagraph.formats.clips import find_clip_files, read_clips
+    from metagraph.formats.clips import find_clip_files, read_clip_file
 
     dropped = {}
     for path in find_clip_files(shared_data):
         if path.suffix == ".fbx" or ("bandai" in str(path) and "_sad_" not in path.name):
             continue
         try:
-            for clip in read_clips(path):
+            for clip in read_clip_file(path):
                 for repair in clip.repairs:
                     if repair.name in (BIND_POSE, LONE_FRAME):
                         dropped[path.name, clip.name] = repair.words
@@ -82,7 +82,7 @@ def bound(clip: Clip, first: bool = True, last: bool = False) -> Clip:
 def test_a_pose_of_a_frame_or_two_is_no_take_to_clean(takes: list[Clip]) -> None:
     for frames in (1, 2, 3):
         clip = bound(takes[0].trimmed(0, frames))
-        assert without_stray_poses([clip])[0] is clip
+        assert drop_stray_poses([clip])[0] is clip
 
 
 def test_a_take_made_of_held_poses_keeps_the_one_at_rest(takes: list[Clip]) -> None:
@@ -104,12 +104,12 @@ def test_fingers_that_shiver_do_not_hide_a_bind_pose(takes: list[Clip]) -> None:
 
 def test_what_is_dropped_at_both_ends_is_one_repair_that_can_be_left_out(takes: list[Clip]) -> None:
     clip = bound(takes[0], last=True)
-    [clean] = without_stray_poses([clip])
+    [clean] = drop_stray_poses([clip])
     assert clean.frames == takes[0].frames
     (repair,) = clean.repairs
     assert repair.name == BIND_POSE and repair.made
     assert "first frame" in repair.words and "last frame" in repair.words and repair.words in clean.notes
-    [left] = without_stray_poses([clip], (BIND_POSE,))
+    [left] = drop_stray_poses([clip], (BIND_POSE,))
     assert left.frames == clip.frames and not left.repairs[0].made and "left as it is" in left.notes[-1]
 
 
@@ -118,14 +118,14 @@ def test_a_lone_frame_is_made_anew_between_its_neighbours_and_can_be_left(takes:
     middle = clip.frames // 2
     one, two = made.whole(clip.trimmed(0, middle)), made.whole(clip.trimmed(middle))
     broken = made.joined(clip, [one, made.row(clip, clip.skeleton.rest, False, middle), two])
-    [mended] = without_stray_poses([broken])
+    [mended] = drop_stray_poses([broken])
     assert mended.frames == broken.frames and [r.name for r in mended.repairs] == [LONE_FRAME]
     assert f"frame {middle + 1} " in mended.repairs[0].words
     near = rotation.angle_between(
         mended.rotations[middle].astype(float), clip.rotations[middle].astype(float)
     )
     assert near.max() < np.radians(10)
-    [left] = without_stray_poses([broken], (LONE_FRAME,))
+    [left] = drop_stray_poses([broken], (LONE_FRAME,))
     np.testing.assert_array_equal(left.rotations, broken.rotations)
 
 

@@ -145,11 +145,11 @@ def _project() -> dict[str, bytes]:
 
 
 def _export() -> dict[str, bytes]:
-    from metagraph.engines.export import export
+    from metagraph.engines.export import export_project
     from tests.conftest import Toy
 
     with tempfile.TemporaryDirectory() as name:
-        return {"a.json": export(Toy().project(), name).json.read_bytes()}
+        return {"a.json": export_project(Toy().project(), name).json.read_bytes()}
 
 
 def _journal() -> dict[str, bytes]:
@@ -207,7 +207,7 @@ def every_reader() -> dict[str, Fuzzed]:
     from app.project.pattern_files import read_patterns
     from metagraph.common.pictures import picture_size
     from metagraph.engines.reading import read_export
-    from metagraph.formats.clips import read_clips
+    from metagraph.formats.clips import read_clip_file
     from metagraph.formats.elan import read_elan
     from metagraph.formats.fbx.reader import read_fbx_clips
     from metagraph.formats.gltf.reader import has_skinned_mesh, morph_targets, read_character, vrm_roles
@@ -219,13 +219,13 @@ def every_reader() -> dict[str, Fuzzed]:
     from metagraph.formats.transcripts.reader import read_transcript
     from metagraph.generation.stored import read_card, read_model
     from metagraph.graph.requests import RequestError
-    from metagraph.live.osc_bytes import OscError, messages_of, padded
+    from metagraph.live.osc_bytes import OscError, messages_of, pad_osc
     from metagraph.playback.bml.reader import read_bml
-    from metagraph.research.study.logs.log import read as read_log
+    from metagraph.research.study.logs.log import read_log as read_log
     from metagraph.research.study.perceive.answers import read_answers
-    from metagraph.research.study.perceive.perceive_plan import read_plan
+    from metagraph.research.study.perceive.perceive_plan import read_perceive_plan
     from metagraph.research.study.study_plan import read_study
-    from metagraph.speech.lines import read_voice, voice_from_phones
+    from metagraph.speech.lines import read_line_voice, voice_from_phones
 
     def drawn(path: Path) -> None:
         for read in (read_character, vrm_roles, morph_targets, has_skinned_mesh):
@@ -253,11 +253,11 @@ def every_reader() -> dict[str, Fuzzed]:
         read_model(path)
 
     def message(path: Path) -> None:
-        from metagraph.live.messages import read, split
+        from metagraph.live.messages import read_live_request, split_message
 
         try:
-            for request in split(path.read_bytes())[0]:
-                read(request)
+            for request in split_message(path.read_bytes())[0]:
+                read_live_request(request)
         except RequestError:
             pass
 
@@ -275,9 +275,9 @@ def every_reader() -> dict[str, Fuzzed]:
     )
     study = SAMPLES / "study" / "study.yaml"
     note = (
-        padded("/metagraph/gesture")
-        + padded(",sfb")
-        + padded("beat")
+        pad_osc("/metagraph/gesture")
+        + pad_osc(",sfb")
+        + pad_osc("beat")
         + struct.pack(">f", 1)
         + b"\0\0\0\4abcd"
     )
@@ -286,16 +286,16 @@ def every_reader() -> dict[str, Fuzzed]:
         "model": Fuzzed(model, model_file, (b"PK", b"NUMPY"), spoilt_archive),
         "bml": Fuzzed(bml, _fixed(a_xml=BML), XML, spoilt_words),
         "fbx": Fuzzed(read_fbx_clips, _fixed(a_fbx=ascii_fbx()), (b"{", b"}", b"*9", b"Model:", b'"'), spoilt_words),
-        "bvh": Fuzzed(read_clips, _clip_seeds(".bvh"), bvh, spoilt_words),
+        "bvh": Fuzzed(read_clip_file, _clip_seeds(".bvh"), bvh, spoilt_words),
         "live link": Fuzzed(read_live_link, _fixed(a_csv=_LIVE_LINK), (b",", b"\n", b"12:00:00:01", b";", b"nan", b"-"), spoilt_words),
-        "gltf": Fuzzed(read_clips, _clip_seeds(".glb"), JSON, spoilt_glb),
+        "gltf": Fuzzed(read_clip_file, _clip_seeds(".glb"), JSON, spoilt_glb),
         "character": Fuzzed(drawn, _clip_seeds(".glb"), JSON, spoilt_glb),
         "textgrid": Fuzzed(voice_from_phones, _only(".TextGrid"), (b'"', b"<exists>", b"IntervalTier"), spoilt_words),
         "elan": Fuzzed(read_elan, _only(".eaf"), XML, spoilt_words),
         "subtitles": Fuzzed(read_transcript, _only(".vtt", ".srt", ".ctm", ".tsv"), (b" --> ", b"<v Ann>", b"WEBVTT"), spoilt_words),
         "transcript": Fuzzed(read_transcript, _only(".json", ".whisper", ".ibm"), JSON, spoilt_json),
         "words": Fuzzed(read_pack, _fixed(sv_yaml=b"code: sv\nname: x\nresponses: [ja, 'n\xc3\xa5']\nsmall: i, den\n"), (b"&a", b"{", b"- ", b", "), spoilt_words),
-        "sound": Fuzzed(read_voice, _wav, (b"RIFF", b"fmt ", b"data", b"OggS", b"fLaC"), None),
+        "sound": Fuzzed(read_line_voice, _wav, (b"RIFF", b"fmt ", b"data", b"OggS", b"fLaC"), None),
         "keypoints": Fuzzed(read_keypoints, _keypoints, JSON, spoilt_json),
         "project": Fuzzed(read_project, _project, (b"&a", b"*a", b"!!x", b"{", b"[", b"- ", b"? "), spoilt_words),
         "journal": Fuzzed(lambda path: read_journal(path, None), _journal, JSON, None),
@@ -303,7 +303,7 @@ def every_reader() -> dict[str, Fuzzed]:
         "log": Fuzzed(read_log, _log, JSON, None),
         "study": Fuzzed(read_study, lambda: {"study.yaml": study.read_bytes()} if study.is_file() else {"study.yaml": b"study: 1\n"}, (b"&a", b"{", b"- "), spoilt_words),
         "answers": Fuzzed(read_answers, _answers, JSON, spoilt_json),
-        "perceive": Fuzzed(read_plan, _perceive, (b"&a", b"{", b"- ", b"{item}"), spoilt_words),
+        "perceive": Fuzzed(read_perceive_plan, _perceive, (b"&a", b"{", b"- ", b"{item}"), spoilt_words),
         "lines": Fuzzed(listed, _fixed(a_csv=b"id,text\nl1,Hello\nl2,\"Well, no\"\n"), (b'"', b",", b"\0", b";", b"\t"), spoilt_words),
         "patterns": Fuzzed(read_patterns, _fixed(a_json=b'{"words":{"beat":["x"]},"patterns":[]}'), JSON, None),
         "osc": Fuzzed(osc, _fixed(a_osc=note, b_osc=bundle), (b",", b"[", b"]", b"#bundle\0"), None),

@@ -18,13 +18,13 @@ import pytest
 from metagraph.common import budgets
 from metagraph.common.pictures import picture_size
 from metagraph.errors import FileError
-from metagraph.formats.clips import read_clips
+from metagraph.formats.clips import read_clip_file
 from metagraph.formats.elan import read_elan
 from metagraph.formats.gltf.reader import read_character, read_gltf_clips, vrm_roles
 from metagraph.formats.imports import import_files
 from metagraph.formats.keypoints.reader import read_keypoints
 from metagraph.graph.model import Project
-from metagraph.speech.lines import read_voice, voice_from_phones
+from metagraph.speech.lines import read_line_voice, voice_from_phones
 from tests.fuzz.spoiling import packed
 from tests.wavs import wav
 
@@ -74,29 +74,30 @@ def test_intervals_over_each_other_cost_no_more_than_in_turn(tmp_path: Path) -> 
 
 @pytest.mark.parametrize("rate", [400_000_000, 2_000_000_000, budgets.SOUND_RATES[1] + 1])
 def test_a_sound_claims_no_rate_that_no_recorder_has(tmp_path: Path, rate: int) -> None:
-    assert "samples a second" in refused(read_voice, wav(tmp_path / "a.wav", rate, bytes(4096))).cause
+    assert "samples a second" in refused(read_line_voice, wav(tmp_path / "a.wav", rate, bytes(4096))).cause
 
 
 def test_a_sound_has_no_thousand_channels(tmp_path: Path) -> None:
-    assert "channels" in refused(read_voice, wav(tmp_path / "a.wav", 48000, bytes(64000), 1000)).cause
+    assert "channels" in refused(read_line_voice, wav(tmp_path / "a.wav", 48000, bytes(64000), 1000)).cause
 
 
 def test_the_fastest_recorder_and_most_channels_are_still_read(tmp_path: Path) -> None:
     noise = np.random.default_rng(1).integers(-9000, 9000, 768_000 // 4, np.int16).tobytes()
-    frugal(read_voice, wav(tmp_path / "a.wav", 768_000, noise))
-    frugal(read_voice, wav(tmp_path / "b.wav", 16_000, noise, 64))
+    frugal(read_line_voice, wav(tmp_path / "a.wav", 768_000, noise))
+    frugal(read_line_voice, wav(tmp_path / "b.wav", 16_000, noise, 64))
 
 
 @pytest.mark.parametrize("value", [3e38, -1e30])
 def test_samples_beyond_all_sense_are_refused_without_a_warning(tmp_path: Path, value: float) -> None:
     refused(
-        read_voice, wav(tmp_path / "a.wav", 16000, np.full(4000, value, "<f4").tobytes(), kind=3, bits=32)
+        read_line_voice,
+        wav(tmp_path / "a.wav", 16000, np.full(4000, value, "<f4").tobytes(), kind=3, bits=32),
     )
 
 
 def test_whole_numbers_written_as_floats_are_still_heard(tmp_path: Path) -> None:
     sound = (20000 * np.sin(np.arange(8000) * 0.1)).astype("<f4").tobytes()
-    read_voice(wav(tmp_path / "a.wav", 16000, sound, kind=3, bits=32))
+    read_line_voice(wav(tmp_path / "a.wav", 16000, sound, kind=3, bits=32))
 
 
 # --- motion
@@ -111,19 +112,19 @@ END = "}\nMOTION\n"
 )
 def test_a_bvh_s_claims_are_not_believed(tmp_path: Path, frames: str, step: str) -> None:
     (tmp_path / "a.bvh").write_text(f"{HEAD}{END}Frames: {frames}\nFrame Time: {step}\n0\n1\n")
-    refused(read_clips, tmp_path / "a.bvh")
+    refused(read_clip_file, tmp_path / "a.bvh")
 
 
 def test_joints_that_cost_a_file_nothing_are_paid_for(tmp_path: Path) -> None:
     still = "".join(f"JOINT j{n}\n{{\nOFFSET 0 1 0\nCHANNELS 0\n}}\n" for n in range(4000))
     (tmp_path / "a.bvh").write_text(f"{HEAD}{still}{END}Frames: 50000\nFrame Time: 0.03\n" + "0\n" * 50000)
-    assert budgets.OUT_OF_PROPORTION in refused(read_clips, tmp_path / "a.bvh").cause
+    assert budgets.OUT_OF_PROPORTION in refused(read_clip_file, tmp_path / "a.bvh").cause
 
 
 def test_a_number_of_channels_of_five_thousand_digits_is_none(tmp_path: Path) -> None:
     text = HEAD.replace("CHANNELS 1", f"CHANNELS {'1' * 5000}")
     (tmp_path / "a.bvh").write_text(f"{text}{END}Frames: 1\nFrame Time: 0.03\n0\n")
-    refused(read_clips, tmp_path / "a.bvh")
+    refused(read_clip_file, tmp_path / "a.bvh")
 
 
 def glb(path: Path, document: dict[str, Any], body: bytes) -> Path:
@@ -200,7 +201,7 @@ def test_one_file_beside_another_is_read_once(tmp_path: Path) -> None:
         {**view, "buffer": 199 - n} for n, view in enumerate(document["bufferViews"])
     ] * 60
     (tmp_path / "a.gltf").write_text(json.dumps({"asset": {"version": "2.0"}, **document}))
-    frugal(read_clips, tmp_path / "a.gltf")
+    frugal(read_clip_file, tmp_path / "a.gltf")
 
 
 # --- pictures and text
@@ -220,15 +221,15 @@ def png(width: int, height: int) -> bytes:
 
 
 def test_a_texture_of_kilobytes_is_not_unpacked_to_gigabytes(tmp_path: Path) -> None:
-    from preview.gpu import decoded
+    from preview.gpu import decode_texture
 
     data = png(30_000, 30_000)
     assert picture_size(data) == (30_000, 30_000) and len(data) < 1 << 20
     tracemalloc.start()
-    assert decoded(data)[0] == (1, 1)
+    assert decode_texture(data)[0] == (1, 1)
     assert tracemalloc.get_traced_memory()[1] < 8 << 20
     tracemalloc.stop()
-    assert decoded(png(64, 32))[0] == (64, 32)
+    assert decode_texture(png(64, 32))[0] == (64, 32)
 
 
 @pytest.mark.parametrize("late", [1e18, 1e9, 40_000])

@@ -20,21 +20,21 @@ from hypothesis import strategies as st
 
 from metagraph.errors import FileError
 from metagraph.formats.bvh.file import read_bvh, write_bvh
-from metagraph.formats.clips import read_clips
+from metagraph.formats.clips import read_clip_file
 from metagraph.formats.gltf.reader import read_character, read_gltf_clips, vrm_roles, write_glb
 from metagraph.motion import rotation
-from metagraph.motion.character_mesh import Character, Material, Surface
+from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, Surface
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 
 MEMORY = 400 << 20  # bytes: a small file may cost this much at its very worst
 
 
-def sample() -> tuple[Clip, Character]:
+def sample() -> tuple[Clip, CharacterMesh]:
     names = ("Hips", "Spine", "Head", "LeftUpLeg", "LeftLeg", "LeftFoot")
     offsets = np.array([[0, 1, 0], [0, 0.4, 0], [0, 0.3, 0], [0.1, 0, 0], [0, -0.45, 0], [0, -0.45, 0]])
-    skeleton = Skeleton(names, np.array([-1, 0, 1, 0, 3, 4]), rotation.identity((6,)), offsets)
-    rotations = rotation.identity((6, 6))
+    skeleton = Skeleton(names, np.array([-1, 0, 1, 0, 3, 4]), rotation.identity_rotations((6,)), offsets)
+    rotations = rotation.identity_rotations((6, 6))
     rotations[:, 2] = rotation.from_axis_angle(np.tile([0, 1.0, 0], (6, 1)), 0.2 * np.arange(6))
     root = offsets[0] + 0.1 * np.arange(6)[:, None]
     clip = Clip(
@@ -46,7 +46,7 @@ def sample() -> tuple[Clip, Character]:
         morphs=("smile",),
         weights=np.linspace(0, 1, 6)[:, None],
     )
-    character = Character(
+    character = CharacterMesh(
         "c",
         skeleton,
         np.eye(3, dtype=np.float32),
@@ -55,7 +55,7 @@ def sample() -> tuple[Clip, Character]:
         np.zeros((3, 4), np.uint16),
         np.tile(np.float32([1, 0, 0, 0]), (3, 1)),
         np.array([[0, 1, 2]]),
-        (Material("m", image=b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1" + b"\0" * 9),),
+        (MeshMaterial("m", image=b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1" + b"\0" * 9),),
         (Surface(0, 1, 0),),
         ("smile",),
         np.full((1, 3, 3), 0.1, np.float32),
@@ -84,7 +84,7 @@ def survives(reader: Callable[[Path], Any], path: Path) -> None:
 
 
 def all_readers(suffix: str) -> list[Callable[[Path], Any]]:
-    return [read_clips, read_bvh] if suffix == ".bvh" else [read_clips, read_character, vrm_roles]
+    return [read_clip_file, read_bvh] if suffix == ".bvh" else [read_clip_file, read_character, vrm_roles]
 
 
 def check(tmp_path: Path, suffix: str, data: bytes) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from metagraph.formats.clips import read_clips
+from metagraph.formats.clips import read_clip_file
 from metagraph.generation.features import FLOOR, MELS, RATE
 from metagraph.generation.initial import initial
 from metagraph.generation.networks import (
@@ -22,7 +22,7 @@ from metagraph.generation.networks import (
     parameters,
     shapes_of,
 )
-from metagraph.generation.poses import PoseRig, rig_of
+from metagraph.generation.poses import PoseRig, find_rig
 from metagraph.generation.stored import Model, ModelCard, skeleton_card, versions
 from metagraph.graph.conversation.model import Conversation, Segment, Side
 from metagraph.motion import rotation
@@ -34,11 +34,11 @@ CLIPS = Path(__file__).resolve().parents[2] / "sample_clips" / "clips"
 
 
 def stance() -> Clip:
-    return read_clips(CLIPS / "hands_at_sides__stance.glb")[0]
+    return read_clip_file(CLIPS / "hands_at_sides__stance.glb")[0]
 
 
 def rig() -> PoseRig:
-    return rig_of(stance().skeleton)
+    return find_rig(stance().skeleton)
 
 
 def tiny(kind: Kind, pose: int = 78) -> Sizes:
@@ -127,7 +127,7 @@ def moving(seconds: float, seed: int = 1, fps: float = 30.0, skeleton: Skeleton 
     count = round(seconds * fps) + 1
     t = np.arange(count) / fps
     rotations = np.repeat(skeleton.rest_rotations[None], count, 0)
-    for joint in rig_of(skeleton).joints:
+    for joint in find_rig(skeleton).joints:
         turn = np.zeros((count, 3))
         for speed in (0.23, 0.61, 1.3):
             phase, size = chance.uniform(0, 7, 3), chance.normal(0, 0.12, 3)

@@ -16,10 +16,10 @@ def test_components_tell_most_of_what_varies_together():
     source = CHANCE.standard_normal((400, 3)) @ CHANCE.standard_normal((3, 20)) + 5
     w = vae.principal(source, 3, "code")
     sizes = FlowSizes(pose=20, code="pca", dims=3)
-    codes = vae.encode(w, sizes, source)
+    codes = vae.encode_spans(w, sizes, source)
     assert np.allclose(codes.mean(0), 0, atol=1e-5)
     assert np.allclose(np.cov(codes, rowvar=False, bias=True), np.eye(3), atol=1e-4)
-    assert np.abs(vae.decode(w, sizes, codes) - source).max() < 1e-4
+    assert np.abs(vae.decode_spans(w, sizes, codes) - source).max() < 1e-4
     assert np.abs(vae.Decoder(w, sizes).one(codes[7].astype(np.float32)) - source[7]).max() < 1e-4
     assert np.allclose(w["code.basis"] @ w["code.basis"].T, np.eye(3), atol=1e-5)
     assert (np.diff(w["code.deviation"]) <= 0).all()
@@ -39,29 +39,32 @@ def test_a_codes_mean_and_deviation_come_off_and_on(code):
     sizes = FlowSizes(code=code, dims=dims)
     w = shaken(sizes)
     poses = CHANCE.standard_normal((4, 78)).astype(np.float32)
-    plain, back = vae.encode(w, sizes, poses), vae.decode(w, sizes, vae.encode(w, sizes, poses))
+    plain, back = (
+        vae.encode_spans(w, sizes, poses),
+        vae.decode_spans(w, sizes, vae.encode_spans(w, sizes, poses)),
+    )
     assert plain.shape == (4, dims)
     assert back.shape == (4, 78)
     if code == "autoencoder":
         w["code.mean"], w["code.deviation"] = w["code.mean"] + 3, w["code.deviation"] * 2
-        assert np.allclose(vae.encode(w, sizes, poses), (plain - 3) / 2, atol=1e-5)
-        assert np.allclose(vae.decode(w, sizes, vae.encode(w, sizes, poses)), back, atol=1e-4)
-    one = vae.Decoder(w, sizes).one(vae.encode(w, sizes, poses)[2])
+        assert np.allclose(vae.encode_spans(w, sizes, poses), (plain - 3) / 2, atol=1e-5)
+        assert np.allclose(vae.decode_spans(w, sizes, vae.encode_spans(w, sizes, poses)), back, atol=1e-4)
+    one = vae.Decoder(w, sizes).one(vae.encode_spans(w, sizes, poses)[2])
     assert np.allclose(one, back[2], atol=1e-4)
 
 
 def test_frames_are_put_in_rows_and_the_rest_is_left_out():
-    assert vae.spans(np.arange(22).reshape(11, 2), 4).tolist() == [[*range(8)], [*range(8, 16)]]
+    assert vae.list_spans(np.arange(22).reshape(11, 2), 4).tolist() == [[*range(8)], [*range(8, 16)]]
 
 
 def test_tokens_of_all_components_give_their_poses_back():
     sizes = MatchingSizes(pose=5, dims=20)
     poses = np.cumsum(CHANCE.standard_normal((400, 5)), 0)
-    w = vae.principal(vae.spans(poses, 4), 20, "tokens")
+    w = vae.principal(vae.list_spans(poses, 4), 20, "tokens")
     tokens = chunks.tokens_of(w, sizes, poses)
     assert tokens.shape == (100, 20)
-    assert np.abs(chunks.poses_of(w, sizes, tokens) - poses).max() < 1e-3
-    held = chunks.still_tokens(w, sizes, poses[7])
+    assert np.abs(chunks.poses_from_tokens(w, sizes, tokens) - poses).max() < 1e-3
+    held = chunks.tokens_of_still_pose(w, sizes, poses[7])
     assert held.shape == (6, 20)
     assert np.ptp(held, axis=0).max() == 0
 
@@ -71,15 +74,17 @@ def _few_components():
     sizes = MatchingSizes(pose=5, dims=7, around=1)
     rows = np.cumsum(CHANCE.standard_normal((4000, 5)), 0)
     poses = np.stack([np.convolve(r, np.ones(5) / 5, "same") for r in rows.T], 1)
-    w = vae.principal(vae.spans(poses, 4), 7, "tokens")
+    w = vae.principal(vae.list_spans(poses, 4), 7, "tokens")
     tokens = chunks.tokens_of(w, sizes, poses)
-    w["tokens.joined"] = chunks.joined([(tokens, vae.spans(poses, 4) - w["tokens.mean"])], 1)
+    w["tokens.joined"] = chunks.join_by_least_squares(
+        [(tokens, vae.list_spans(poses, 4) - w["tokens.mean"])], 1
+    )
     return sizes, w, poses, tokens
 
 
 def test_pieces_told_by_their_neighbours_meet():
     sizes, w, poses, tokens = _few_components()
-    apart = chunks.poses_of(w, sizes, tokens)
+    apart = chunks.poses_from_tokens(w, sizes, tokens)
     joining = chunks.Joining(w, sizes, len(tokens))
     together = np.concatenate([joining.of(tokens), joining.rest()])
     assert together.shape == poses.shape
@@ -110,7 +115,7 @@ def test_a_model_whose_pieces_are_told_alone_gives_them_at_once():
     alone = MatchingSizes(pose=5, dims=7)
     joining = chunks.Joining(w, alone, 2)
     assert joining.delay == 0
-    assert np.array_equal(joining.of(tokens[:2]), chunks.poses_of(w, alone, tokens[:2]))
+    assert np.array_equal(joining.of(tokens[:2]), chunks.poses_from_tokens(w, alone, tokens[:2]))
     assert not len(joining.rest())
 
 
@@ -127,8 +132,8 @@ def test_guidance_is_between_and_beyond_both_velocities():
     w, heard, past, noise = _places(sizes)
     free = heard[::-1] + 0.3
     both = np.stack([heard, free])
-    drawn = [chunks.Drawing(w, sizes, g, 1).draw(noise, past, both) for g in (0.0, 1.0, 2.0)]
-    told = chunks.Drawing(w, sizes, 1.0, 1).draw(noise, past, free[None])
+    drawn = [chunks.TokenDrawing(w, sizes, g, 1).draw(noise, past, both) for g in (0.0, 1.0, 2.0)]
+    told = chunks.TokenDrawing(w, sizes, 1.0, 1).draw(noise, past, free[None])
     assert np.abs(drawn[0] - told).max() < 1e-12
     assert np.abs(drawn[2] - (2 * drawn[1] - drawn[0])).max() < 1e-12
 
@@ -140,7 +145,7 @@ def test_eulers_steps_follow_a_straight_line_exactly():
     w, heard, past, noise = _places(sizes)
     w["final.out.weight"] *= 0
     for steps in (1, 8):
-        out = chunks.Drawing(w, sizes, 2.0, steps).draw(noise, past, np.stack([heard, -heard]))
+        out = chunks.TokenDrawing(w, sizes, 2.0, steps).draw(noise, past, np.stack([heard, -heard]))
         assert np.abs(out - (noise + w["final.out.bias"])).max() < 1e-12
 
 
@@ -148,10 +153,10 @@ def test_a_cvae_frame_by_frame_is_the_whole():
     sizes = CvaeSizes(pose=9, control=Control(past=0, width=4), dims=3, units=5, layers=3)
     w = shaken(sizes, dtype=np.float64)
     codes, context = CHANCE.standard_normal((8, 3)), CHANCE.standard_normal((8, 4))
-    whole = cvae.decode(w, sizes, codes, context)
-    drawing = cvae.Drawing(w, sizes)
+    whole = cvae.decode_cvae(w, sizes, codes, context)
+    drawing = cvae.CvaeDrawing(w, sizes)
     told = drawing.told(context)
     for t in range(8):
         assert np.abs(drawing.draw(codes[t], told[t]) - whole[t]).max() < 1e-12
-    mean, log_variance = cvae.encode(w, sizes, whole, context)
+    mean, log_variance = cvae.encode_cvae(w, sizes, whole, context)
     assert mean.shape == log_variance.shape == (8, 3)

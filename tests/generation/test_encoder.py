@@ -21,7 +21,7 @@ def test_a_window_alone_hears_what_a_whole_recording_hears(dilations):
         w |= {f"control.blocks.{n}.bias": CHANCE.standard_normal(6)}
     features = CHANCE.standard_normal((50, 7))
     whole = encoder.encode_all(w, control, features)
-    alone = encoder.encode_window(w, control, encoder.windows(features, 31), 25)
+    alone = encoder.encode_window(w, control, encoder.list_windows(features, 31), 25)
     assert whole.shape == alone.shape == (20, 6)
     assert np.abs(whole - alone).max() < 1e-10
 
@@ -30,7 +30,7 @@ def test_what_never_hears_ahead_is_told_the_same_alone_and_whole():
     control = Control(width=8, before=30, ahead=0)
     w = shaken(tiny("flow-vae"))
     features = CHANCE.standard_normal((40, 31)).astype(np.float32)
-    alone = encoder.encode_window(w, control, encoder.windows(features, 31), 0)
+    alone = encoder.encode_window(w, control, encoder.list_windows(features, 31), 0)
     assert np.abs(encoder.encode_all(w, control, features) - alone).max() < 1e-5
 
 
@@ -87,7 +87,7 @@ def test_a_frame_is_heard_to_the_bit_the_same_however_much_is_known_of_the_next(
     control = Control(kind=kind, width=8)
     w = shaken(tiny("flow-vae"))
     features = CHANCE.standard_normal((31 + 20, 31)).astype(np.float32)
-    alone = encoder.encode_window(w, control, encoder.windows(features, 31), lookahead)
+    alone = encoder.encode_window(w, control, encoder.list_windows(features, 31), lookahead)
 
     class Flat:
         told = staticmethod(np.array)
@@ -96,7 +96,7 @@ def test_a_frame_is_heard_to_the_bit_the_same_however_much_is_known_of_the_next(
             return np.pad(heard, (first, 31 * 31 - first - len(heard)))
 
     def heard(start, known):
-        hearing = encoder.Hearing(w, control, lookahead, Flat())
+        hearing = encoder.EncoderHearing(w, control, lookahead, Flat())
         return np.stack([hearing.of(f, features[f : f + known]) for f in range(start, 21)])
 
     whole = heard(0, 99)
@@ -114,7 +114,7 @@ def test_a_layer_adds_a_sum_over_dilated_neighbours_to_what_it_reads(dilation):
         "control.blocks.0.bias": np.arange(4.0),
     }
     x = CHANCE.standard_normal((2, 14, 4))
-    out = encoder.Convolutions(w, (dilation,), 1.0).layer(0, x, dilation)
+    out = encoder.EncoderConvolutions(w, (dilation,), 1.0).layer(0, x, dilation)
     assert out.shape == (2, 14 - 2 * dilation, 4)
     for t in (0, out.shape[1] - 1):
         told = sum(w["control.blocks.0.weight"][:, :, k] @ x[1, t + k * dilation] for k in range(3))

@@ -17,8 +17,8 @@ from metagraph.generation.features import (
     FeatureError,
     FeatureStream,
     as_heard,
+    compute_features,
     conversation_activity,
-    features,
     frames_of,
     one_hot,
     silence,
@@ -26,7 +26,7 @@ from metagraph.generation.features import (
     voice_activity,
     with_edges,
 )
-from metagraph.generation.poses import Scale
+from metagraph.generation.poses import Standardisation
 from metagraph.graph.conversation.model import Conversation, Segment, Side
 from tests.generation.makers import babble
 
@@ -44,7 +44,7 @@ TOLD = one_hot(np.arange(60) % 7 < 3, np.arange(60) % 5 < 2)
 def test_in_pieces_features_are_the_same_to_the_bit(cuts, told, length, tracks):
     sound = SOUND[:, :length]
     activity = TOLD[: frames_of(length)]
-    whole = features(sound, activity, tracks, gains=(0.7, 1.9))
+    whole = compute_features(sound, activity, tracks, gains=(0.7, 1.9))
     stream = FeatureStream(2, tracks, (0.7, 1.9))
     edges = [0, *sorted(min(c, length) for c in cuts), length]
     steps = [0, *sorted(min(c, len(activity)) for c in told), len(activity)]
@@ -65,7 +65,7 @@ def test_sample_by_sample_is_the_whole():
     parts = [stream.push(sound[:, n : n + 1]) for n in range(1700)]
     assert (
         np.concatenate([*parts, stream.finish()]).tobytes()
-        == features(sound, TOLD[:3], gains=(1, 1))[:, :27].tobytes()
+        == compute_features(sound, TOLD[:3], gains=(1, 1))[:, :27].tobytes()
     )
 
 
@@ -78,17 +78,18 @@ def test_a_frame_is_ready_as_soon_as_its_window_is_heard():
 
 
 def test_silence_is_the_floor_and_no_sound_has_no_frames():
-    quiet = features(np.zeros((1, 2000)), one_hot(np.zeros(4, bool), np.zeros(4, bool)))
+    quiet = compute_features(np.zeros((1, 2000)), one_hot(np.zeros(4, bool), np.zeros(4, bool)))
     assert quiet.tobytes() == np.tile(silence(), (4, 1)).tobytes()
     assert quiet[0, 0] == np.float32(np.log(FLOOR))
-    assert features(np.zeros((2, 0)), np.zeros((0, 4))).shape == (0, 31)
+    assert compute_features(np.zeros((2, 0)), np.zeros((0, 4))).shape == (0, 31)
     assert with_edges(quiet, 5, 25).shape == (34, 31)
 
 
 def test_a_tone_is_loudest_in_its_own_mel():
     t = np.arange(RATE) / RATE
     loudest = [
-        int(features(np.sin(2 * np.pi * f * t), TOLD[:26])[12, :MELS].argmax()) for f in (200, 1000, 5000)
+        int(compute_features(np.sin(2 * np.pi * f * t), TOLD[:26])[12, :MELS].argmax())
+        for f in (200, 1000, 5000)
     ]
     assert loudest == sorted(set(loudest))
     assert loudest[0] < 5
@@ -98,14 +99,14 @@ def test_a_tone_is_loudest_in_its_own_mel():
 def test_a_click_is_heard_in_the_frame_at_its_time():
     sound = np.zeros(RATE)
     sound[10 * HOP] = 1
-    mels = features(sound, TOLD[:26], gains=(1,))[:, :MELS].mean(1)
+    mels = compute_features(sound, TOLD[:26], gains=(1,))[:, :MELS].mean(1)
     assert mels.argmax() == 10
     assert mels[9] < mels[10] > mels[11]
 
 
 def test_both_voices_are_as_loud_whatever_their_microphones():
-    soft = features(SOUND * [[0.05], [1.0]], TOLD[:33], tracks=2)
-    loud = features(SOUND, TOLD[:33], tracks=2)
+    soft = compute_features(SOUND * [[0.05], [1.0]], TOLD[:33], tracks=2)
+    loud = compute_features(SOUND, TOLD[:33], tracks=2)
     assert np.abs(soft[:, :54] - loud[:, :54]).max() < 0.02
 
 
@@ -170,7 +171,7 @@ def test_without_words_loudness_tells_who_speaks():
 
 
 def test_sounds_that_were_never_learned_from_are_heard_as_strange_and_not_as_nonsense() -> None:
-    scale = Scale(np.zeros(3, np.float32), np.full(3, 0.5, np.float32))
+    scale = Standardisation(np.zeros(3, np.float32), np.full(3, 0.5, np.float32))
     rows = np.array([[0.5, 100.0, -100.0, 1.0, 0.0, 9.0, 0.0]], np.float32)
     heard = as_heard(rows, scale)
     assert heard.dtype == np.float32

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from metagraph.generation.flow import Drawing, Flow, matrix_of
+from metagraph.generation.flow import FlowDrawing, FlowWeights, matrix_of
 from metagraph.generation.initial import initial
 from metagraph.generation.networks import Control, FlowSizes, sizes_of
 from tests.generation.makers import shaken
@@ -25,7 +25,7 @@ def _given(frames: int, sizes: FlowSizes, seed: int = 3, batch: tuple[int, ...] 
 @pytest.mark.parametrize("dims", [7, 8, 24])
 def test_codes_come_back_from_their_noise(dtype, by, within, dims):
     sizes = FlowSizes(pose=8, dims=dims, steps=6, units=32)
-    flow = Flow(shaken(sizes, by, dtype=dtype) if by else initial(sizes), sizes, dtype)
+    flow = FlowWeights(shaken(sizes, by, dtype=dtype) if by else initial(sizes), sizes, dtype)
     codes, context = _given(50, sizes)
     noise, _, _ = flow.forward(codes, context)
     back, _ = flow.inverse(noise, context)
@@ -37,7 +37,7 @@ def test_codes_come_back_from_their_noise(dtype, by, within, dims):
 def test_of_the_papers_size_codes_come_back():
     sizes = sizes_of("flow-vae", "paper", 54)
     assert isinstance(sizes, FlowSizes)
-    flow = Flow(initial(sizes), sizes)
+    flow = FlowWeights(initial(sizes), sizes)
     codes, context = _given(4, sizes)
     back, _ = flow.inverse(flow.forward(codes, context)[0], context)
     assert np.abs(back - codes).max() < 1e-5
@@ -51,8 +51,8 @@ def test_moment_by_moment_is_the_whole_sequence(dims, control):
     sizes = FlowSizes(pose=dims, control=control, code="none", dims=dims, steps=3, units=10, layers=2)
     w = shaken(sizes, dtype=np.float64)
     codes, context = _given(12, sizes)
-    whole, _ = Flow(w, sizes, np.float64).inverse(codes, context)
-    drawing, past = Drawing(w, sizes, np.float64), control.of_past(dims)
+    whole, _ = FlowWeights(w, sizes, np.float64).inverse(codes, context)
+    drawing, past = FlowDrawing(w, sizes, np.float64), control.of_past(dims)
     told = drawing.told(context[:, past:])
     for _ in range(2):
         for t in range(12):
@@ -62,7 +62,7 @@ def test_moment_by_moment_is_the_whole_sequence(dims, control):
 
 
 def test_a_sequence_goes_on_from_where_it_was_cut():
-    flow = Flow(shaken(SIZES, dtype=np.float64), SIZES, np.float64)
+    flow = FlowWeights(shaken(SIZES, dtype=np.float64), SIZES, np.float64)
     codes, context = _given(12, SIZES)
     whole, logs, _ = flow.forward(codes, context)
     first, first_logs, state = flow.forward(codes[:5], context[:5])
@@ -73,7 +73,7 @@ def test_a_sequence_goes_on_from_where_it_was_cut():
 
 
 def test_sequences_at_once_are_each_by_itself():
-    flow = Flow(shaken(SIZES, dtype=np.float64), SIZES, np.float64)
+    flow = FlowWeights(shaken(SIZES, dtype=np.float64), SIZES, np.float64)
     codes, context = _given(6, SIZES, batch=(3,))
     together = flow.log_likelihood(codes, context)
     for n in range(3):
@@ -81,7 +81,7 @@ def test_sequences_at_once_are_each_by_itself():
 
 
 def test_the_determinant_is_that_of_the_whole_sequences_jacobian():
-    flow = Flow(shaken(SIZES, dtype=np.float64), SIZES, np.float64)
+    flow = FlowWeights(shaken(SIZES, dtype=np.float64), SIZES, np.float64)
     codes, context = _given(7, SIZES)
     numbers = codes.size
     jacobian, step = np.empty((numbers, numbers)), 1e-5
@@ -98,7 +98,7 @@ def test_the_determinant_is_that_of_the_whole_sequences_jacobian():
 
 def test_the_density_of_one_number_sums_to_one():
     sizes = FlowSizes(pose=1, control=Control(width=4), code="none", dims=1, steps=4, units=6)
-    flow = Flow(shaken(sizes, dtype=np.float64), sizes, np.float64)
+    flow = FlowWeights(shaken(sizes, dtype=np.float64), sizes, np.float64)
     context = _given(1, sizes)[1]
     at = np.linspace(-60, 60, 60001)
     density = np.exp(flow.log_likelihood(at[:, None, None], np.repeat(context[None], len(at), 0)))[:, 0]
@@ -108,7 +108,7 @@ def test_the_density_of_one_number_sums_to_one():
 
 def test_begun_anew_a_flow_only_turns():
     weights = initial(SIZES)
-    flow = Flow(weights, SIZES, np.float64)
+    flow = FlowWeights(weights, SIZES, np.float64)
     matrix = matrix_of(weights, "flow.steps.0.linear")
     assert np.abs(matrix @ matrix.T - np.eye(8)).max() < 1e-5
     codes, context = _given(3, SIZES)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from metagraph.generation.features import conversation_activity, features, frames_of
+from metagraph.generation.features import compute_features, conversation_activity, frames_of
 from metagraph.generation.generators import generator
 from metagraph.generation.likelihood import noise_of
 from metagraph.generation.networks import Control, FlowSizes
@@ -14,7 +14,7 @@ from tests.generation.makers import babble, conversation, untrained
 
 SOUND = np.stack([babble(2, 1), babble(2, 2)])
 TOLD = conversation_activity(conversation(2), 0, frames_of(SOUND.shape[1]))
-HEARD = features(SOUND, TOLD)
+HEARD = compute_features(SOUND, TOLD)
 WINDOW = Control(kind="window", ahead=20)
 
 

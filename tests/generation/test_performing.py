@@ -13,22 +13,22 @@ import soundfile
 
 from metagraph.errors import FileError
 from metagraph.generation.features import RATE, FeatureError
-from metagraph.generation.offered import offered
+from metagraph.generation.offered import list_models
 from metagraph.generation.performing import (
     Chance,
-    Heard,
-    fits,
-    heard_file,
-    heard_side,
-    long_takes,
-    on_project,
+    HeardSpeech,
+    as_project_clip,
+    generate_long_takes,
+    generate_motion,
+    hear_file,
+    hear_side,
+    moves_skeleton,
     project_rig,
     side_clip,
     side_sound,
-    spoken,
 )
 from metagraph.generation.poses import PoseError
-from metagraph.generation.sampler import heard_activity, whole
+from metagraph.generation.sampler import hear_activity, sample_whole
 from metagraph.graph import anatomy, edits
 from metagraph.graph.generated import add_generated, origin
 from metagraph.graph.model import Project
@@ -62,13 +62,15 @@ def taller(by: float = 1.2) -> Project:
     names = tuple(f"rig:{n}" for n in s.names)
     other = Skeleton(names, s.parents, s.rest_rotations, s.rest_translations * by)
     moved = Clip("stance", other, clip.fps, clip.rotations, clip.translations * by, clip.translated)
-    return edits.place(edits.add_clips(Project(), [("a.glb", 0, "", moved)]), ["c1"], "arms", "stance", None)
+    return edits.place_clips(
+        edits.add_clips(Project(), [("a.glb", 0, "", moved)]), ["c1"], "arms", "stance", None
+    )
 
 
 def test_only_what_the_model_moves_leaves_the_base_pose(sample, model, tmp_path):
     project = talking(sample, tmp_path)
-    assert fits(model, project)
-    clip, notes = side_clip(model, project, heard_side(project, "v1", 0, tmp_path), Chance(3), "ada")
+    assert moves_skeleton(model, project)
+    clip, notes = side_clip(model, project, hear_side(project, "v1", 0, tmp_path), Chance(3), "ada")
     assert clip.skeleton == project.skeleton and clip.duration == pytest.approx(6.0, abs=0.05) and not notes
     base = anatomy.base_pose(project)
     moved = {j for line in project_rig(project).lines for j in line}
@@ -80,28 +82,30 @@ def test_only_what_the_model_moves_leaves_the_base_pose(sample, model, tmp_path)
 
 def test_another_figure_gets_the_motion_retargeted_and_is_told(model, tmp_path):
     project = talking(taller(), tmp_path)
-    assert not fits(model, project)
-    clip, notes = side_clip(model, project, heard_side(project, "v1", 1, tmp_path), Chance(), "ben")
+    assert not moves_skeleton(model, project)
+    clip, notes = side_clip(model, project, hear_side(project, "v1", 1, tmp_path), Chance(), "ben")
     assert clip.skeleton == project.skeleton and "retargeted" in notes[-1]
-    arm = anatomy.roles(project)["left_upper_arm"]
+    arm = anatomy.project_roles(project)["left_upper_arm"]
     assert np.ptp(clip.rotations[:, arm], axis=0).max() > 0.01
-    feet = [j for j, part in enumerate(anatomy.parts(project)) if part == "legs"]
+    feet = [j for j, part in enumerate(anatomy.project_parts(project)) if part == "legs"]
     assert np.abs(clip.rotations[:, feet] - anatomy.base_pose(project).rotations[feet]).max() < 1e-6
 
 
 def test_the_same_chance_gives_the_same_clip_and_pieces_do_not_matter(model):
     sound = np.stack([babble(4.3, 1), babble(4.3, 2)])
-    told = heard_activity(sound)
-    heard = Heard(sound, told)
-    one = spoken(model, heard, Chance(5, 0.8), "a")
-    assert (one.rotations == spoken(model, heard, Chance(5, 0.8), "a").rotations).all()
-    assert (one.rotations == whole(model, sound, told, seed=5, temperature=0.8).rotations).all()
-    assert (one.rotations != spoken(model, heard, Chance(6, 0.8), "a").rotations).any()
+    told = hear_activity(sound)
+    heard = HeardSpeech(sound, told)
+    one = generate_motion(model, heard, Chance(5, 0.8), "a")
+    assert (one.rotations == generate_motion(model, heard, Chance(5, 0.8), "a").rotations).all()
+    assert (one.rotations == sample_whole(model, sound, told, seed=5, temperature=0.8).rotations).all()
+    assert (one.rotations != generate_motion(model, heard, Chance(6, 0.8), "a").rotations).any()
 
 
 def test_a_short_sound_is_moved_to_again_each_time_otherwise(sample, model):
     sound = babble(5.0)[None]
-    made, _ = long_takes(model, sample, Heard(sound, heard_activity(sound)), 14.0, Chance(), "long")
+    made, _ = generate_long_takes(
+        model, sample, HeardSpeech(sound, hear_activity(sound)), 14.0, Chance(), "long"
+    )
     assert [round(c.duration) for c in made] == [5, 5, 4]
     assert (made[0].rotations[:90] != made[1].rotations[:90]).any()
 
@@ -133,12 +137,12 @@ def test_a_sound_that_is_gone_is_an_error_that_names_it(sample, tmp_path):
     project = talking(sample, tmp_path)
     (tmp_path / "talk.wav").unlink()
     with pytest.raises(FileError, match=r"talk\.wav"):
-        heard_side(project, "v1", 0, tmp_path)
+        hear_side(project, "v1", 0, tmp_path)
 
 
 def test_a_file_of_one_voice_is_heard(tmp_path):
     soundfile.write(tmp_path / "one.wav", babble(2.0), RATE)
-    heard = heard_file(tmp_path / "one.wav")
+    heard = hear_file(tmp_path / "one.wav")
     assert heard.samples.shape == (1, 2 * RATE)
     assert heard.activity.shape[1] == 4 and not heard.activity[:, 1:3].any()
 
@@ -146,11 +150,13 @@ def test_a_file_of_one_voice_is_heard(tmp_path):
 def test_it_can_be_cancelled_and_nothing_cannot_be_moved_to(sample, model):
     sound = babble(5.0)[None]
     with pytest.raises(CancelledError):
-        spoken(model, Heard(sound, heard_activity(sound)), Chance(), "a", cancelled=lambda: True)
+        generate_motion(
+            model, HeardSpeech(sound, hear_activity(sound)), Chance(), "a", cancelled=lambda: True
+        )
     with pytest.raises(FeatureError):
-        spoken(model, Heard(sound[:, :0], heard_activity(sound)), Chance(), "a")
+        generate_motion(model, HeardSpeech(sound[:, :0], hear_activity(sound)), Chance(), "a")
     with pytest.raises(PoseError, match="nobody to move"):
-        on_project(Project(), moving(1.0))
+        as_project_clip(Project(), moving(1.0))
 
 
 def test_clips_say_who_made_them_and_still_do_when_read_again(sample, tmp_path):
@@ -167,10 +173,10 @@ def test_models_are_offered_from_beside_the_project_and_its_folder(tmp_path, mon
     from metagraph.generation import offered as module
 
     monkeypatch.setattr(module, "SHIPPED", tmp_path / "none.mgmodel")
-    assert offered(None) == {} and offered(tmp_path / "gone") == {}
+    assert list_models(None) == {} and list_models(tmp_path / "gone") == {}
     (tmp_path / "models").mkdir()
     for name in ("b.mgmodel", "models/a.mgmodel", "models/b.mgmodel", "models/no.txt"):
         (tmp_path / name).touch()
-    assert offered(tmp_path) == {n: tmp_path / "models" / f"{n}.mgmodel" for n in ("a", "b")}
+    assert list_models(tmp_path) == {n: tmp_path / "models" / f"{n}.mgmodel" for n in ("a", "b")}
     monkeypatch.setattr(module, "SHIPPED", tmp_path / "b.mgmodel")
-    assert list(offered(tmp_path)) == ["own", "a", "b"]
+    assert list(list_models(tmp_path)) == ["own", "a", "b"]

@@ -11,12 +11,12 @@ from metagraph.generation.poses import (
     JOINTS,
     LEAST,
     PoseError,
-    decode,
-    encode,
+    decode_poses,
+    encode_clip,
+    encode_rotations,
+    find_rig,
     gram_schmidt,
-    poses_of,
-    resampled,
-    rig_of,
+    resample_rotations,
     scale_of,
 )
 from metagraph.motion import rotation
@@ -64,23 +64,23 @@ def test_thirteen_joints_of_the_upper_body_are_78_numbers():
 
 def test_the_base_pose_is_the_identity():
     own = rig()
-    assert np.allclose(encode(own, own.base).reshape(-1, 6), IDENTITY, atol=1e-6)
+    assert np.allclose(encode_rotations(own, own.base).reshape(-1, 6), IDENTITY, atol=1e-6)
     leaning = _turned(1)[0]
     assert np.allclose(
-        encode(rig_of(own.skeleton, base=leaning), leaning).reshape(-1, 6), IDENTITY, atol=1e-6
+        encode_rotations(find_rig(own.skeleton, base=leaning), leaning).reshape(-1, 6), IDENTITY, atol=1e-6
     )
 
 
 def test_any_pose_comes_back():
     own = rig()
     turned = _turned(50)
-    back = decode(own, encode(own, turned))
+    back = decode_poses(own, encode_rotations(own, turned))
     assert np.degrees(rotation.angle_between(back, turned[:, list(own.joints)]).max()) < 0.01
 
 
 def test_what_turns_between_two_joints_is_not_lost():
     plain, longer = _long_spine()
-    one, two = rig_of(plain), rig_of(longer)
+    one, two = find_rig(plain), find_rig(longer)
     assert two.numbers == one.numbers
     assert max(map(len, two.lines)) == 2
     turned = _turned(20)
@@ -89,13 +89,13 @@ def test_what_turns_between_two_joints_is_not_lost():
         spread[:, longer.index(name)] = turned[:, plain.index(name)]
     for line in two.lines:
         if len(line) > 1:  # half of the turn in the joint between
-            half = rotation.power(spread[:, line[1]], np.full(20, 0.5))
+            half = rotation.scale_rotation(spread[:, line[1]], np.full(20, 0.5))
             spread[:, line[0]], spread[:, line[1]] = half, half
-    assert np.abs(encode(one, turned) - encode(two, spread)).max() < 1e-5
+    assert np.abs(encode_rotations(one, turned) - encode_rotations(two, spread)).max() < 1e-5
     back = spread.copy()
     between = [j for line in two.lines for j in line[:-1]]
     back[:, between] = longer.rest_rotations[between]
-    back[:, list(two.joints)] = decode(two, encode(two, spread))
+    back[:, list(two.joints)] = decode_poses(two, encode_rotations(two, spread))
     still = np.repeat(longer.rest_translations[None], 20, 0)
     ends = [two.joints[two.roles.index(role)] for role in ("left_hand", "head")]
     there, again = (longer.globals(Pose(r, still))[0][:, ends] for r in (spread, back))
@@ -105,7 +105,7 @@ def test_what_turns_between_two_joints_is_not_lost():
 
 def test_a_skeleton_without_hands_is_refused_in_words():
     with pytest.raises(PoseError, match=r"no spine.*Correct"):
-        rig_of(column(), {})
+        find_rig(column(), {})
 
 
 def test_fewer_spines_and_no_collar_bones_will_do():
@@ -113,11 +113,11 @@ def test_fewer_spines_and_no_collar_bones_will_do():
     roles = dict(zip(own.roles, own.joints, strict=True)) | {"hips": int(own.skeleton.parents[own.joints[0]])}
     for role in ("chest", "upper_chest", "neck", "left_shoulder", "right_shoulder"):
         del roles[role]
-    few = rig_of(own.skeleton, roles)
+    few = find_rig(own.skeleton, roles)
     assert few.numbers == 48
     # What the joints without roles turn is in those below.
     turned = _turned(4)
-    assert np.abs(encode(few, turned) - encode(own, turned)[:, : few.numbers]).max() > 0.1
+    assert np.abs(encode_rotations(few, turned) - encode_rotations(own, turned)[:, : few.numbers]).max() > 0.1
 
 
 @given(st.lists(st.floats(-9, 9), min_size=6, max_size=6))
@@ -135,8 +135,8 @@ def test_noise_on_the_rows_leaves_the_first_ones_direction():
 @pytest.mark.parametrize("fps", [24.0, 30.0, 60.0, 120.0])
 def test_clips_of_any_rate_are_at_the_same_places(fps):
     steady = moving(4, seed=3, fps=fps)
-    fine = resampled(moving(4, seed=3, fps=1000.0), 25.0)
-    own = resampled(steady, 25.0)
+    fine = resample_rotations(moving(4, seed=3, fps=1000.0), 25.0)
+    own = resample_rotations(steady, 25.0)
     assert len(own) == 101
     worst = np.degrees(rotation.angle_between(own, fine[: len(own)]).max())
     assert worst < 40 / fps**1.5
@@ -148,7 +148,7 @@ def test_a_quarter_turn_is_half_way_at_half_time():
     joint = own.joints[4]
     rotations[1, joint] = rotation.multiply(rotations[1, joint], rotation.from_axis_angle([0, 1, 0], 2.4))
     clip = Clip("turn", own.skeleton, 12.5, rotations, np.zeros((2, 1, 3)))
-    seen = resampled(clip, 25.0, (joint,))[:, 0]
+    seen = resample_rotations(clip, 25.0, (joint,))[:, 0]
     assert rotation.angle_between(seen[0], seen[1]) == pytest.approx(1.2, abs=1e-5)
 
 
@@ -156,7 +156,7 @@ def test_another_skeletons_clip_is_refused():
     other = column()
     clip = Clip("x", other, 30, np.repeat(other.rest_rotations[None], 2, 0), np.zeros((2, 1, 3)))
     with pytest.raises(PoseError, match=r"'x' .*retarget it"):
-        poses_of(rig(), clip, 25.0)
+        encode_clip(rig(), clip, 25.0)
 
 
 def test_joints_that_do_not_move_are_not_blown_up():
@@ -177,5 +177,5 @@ def test_a_twins_twin_is_the_take():
     own = rig()
     there = mirror(clip, pairs)
     back = mirror(there, pairs)
-    assert np.abs(poses_of(own, back, 25.0) - poses_of(own, clip, 25.0)).max() < 1e-4
-    assert np.abs(poses_of(own, there, 25.0) - poses_of(own, clip, 25.0)).max() > 0.05
+    assert np.abs(encode_clip(own, back, 25.0) - encode_clip(own, clip, 25.0)).max() < 1e-4
+    assert np.abs(encode_clip(own, there, 25.0) - encode_clip(own, clip, 25.0)).max() > 0.05

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from metagraph.formats.clips import find_clip_files, read_clips
+from metagraph.formats.clips import find_clip_files, read_clip_file
 from metagraph.generation.landmarks import HEAD, NOSE, landmarks_of
-from metagraph.generation.poses import PoseError, decode, poses_of, resampled, rig_of
+from metagraph.generation.poses import PoseError, decode_poses, encode_clip, find_rig, resample_rotations
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 
@@ -29,21 +29,21 @@ pytestmark = pytest.mark.skipif(not DATA.is_dir(), reason=f"clips made by others
 )
 def test_a_talkers_upper_body_comes_back(folder, numbers):
     files = [f for f in find_clip_files(DATA / folder) if f.suffix in (".glb", ".bvh")]
-    clips = [c for f in files[:: max(1, len(files) // 4)] for c in read_clips(f)[:2]]
+    clips = [c for f in files[:: max(1, len(files) // 4)] for c in read_clip_file(f)[:2]]
     assert clips
     seen = set()
     for clip in clips:
-        rig = rig_of(clip.skeleton)
+        rig = find_rig(clip.skeleton)
         seen.add(rig.numbers)
-        turns = resampled(clip, 25.0)
+        turns = resample_rotations(clip, 25.0)
         back = turns.copy()
         between = [j for line in rig.lines for j in line[:-1]]
         back[:, between] = rig.base[between]
-        back[:, list(rig.joints)] = decode(rig, poses_of(rig, clip, 25.0))
+        back[:, list(rig.joints)] = decode_poses(rig, encode_clip(rig, clip, 25.0))
         still = np.repeat(clip.skeleton.rest_translations[None], len(turns), 0)
         there, again = (clip.skeleton.globals(Pose(r, still))[0][:, list(rig.joints)] for r in (turns, back))
         assert np.degrees(rotation.angle_between(there, again).max()) < 0.05
-        marks = landmarks_of(rig, poses_of(rig, clip, 25.0)[:1])
+        marks = landmarks_of(rig, encode_clip(rig, clip, 25.0)[:1])
         assert np.linalg.norm(marks[:, NOSE] - marks[:, HEAD]) == pytest.approx(0.12)
     assert seen == numbers
 
@@ -51,4 +51,4 @@ def test_a_talkers_upper_body_comes_back(folder, numbers):
 @pytest.mark.parametrize("name", ["bird-animations.glb", "quad-creature-animations.glb"])
 def test_animals_are_refused_in_words(name):
     with pytest.raises(PoseError, match=r"has no .*arm.* that can be told by name or shape"):
-        rig_of(read_clips(DATA / "mesh2motion-cmu" / name)[0].skeleton)
+        find_rig(read_clip_file(DATA / "mesh2motion-cmu" / name)[0].skeleton)

@@ -14,12 +14,12 @@ from metagraph.generation.networks import Control, FlowSizes, sizes_of
 from metagraph.generation.noise import noise
 from metagraph.generation.poses import PoseError
 from metagraph.generation.sampler import (
-    Sampler,
+    TakeSampler,
     clip_of,
     conversation_motion,
     first_pose,
-    heard_activity,
-    whole,
+    hear_activity,
+    sample_whole,
 )
 from metagraph.generation.stored import Model
 from metagraph.motion import rotation
@@ -32,7 +32,7 @@ TOLD = conversation_activity(conversation(3), 0, frames_of(SOUND.shape[1]))
 
 
 def _made(kind, **given):
-    return whole(MODELS[kind], SOUND, TOLD, **given)
+    return sample_whole(MODELS[kind], SOUND, TOLD, **given)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -57,7 +57,7 @@ def test_without_temperature_nothing_happens_by_chance(kind):
 @given(cuts=st.lists(st.integers(0, SOUND.shape[1]), max_size=6), lookahead=st.sampled_from([None, 0, 3]))
 def test_in_pieces_motion_is_the_same_to_the_bit(kind, cuts, lookahead):
     def run(edges):
-        sampler = Sampler(MODELS[kind], 5, lookahead=lookahead)
+        sampler = TakeSampler(MODELS[kind], 5, lookahead=lookahead)
         out = []
         for a, b in pairwise(edges):
             before, now = (min(len(TOLD), -(-x // 640)) for x in (a, b))
@@ -78,7 +78,7 @@ def test_of_the_sizes_in_use_too_frames_one_by_one_are_the_same_to_the_bit(kind,
     else:
         sizes = sizes_of(kind)
     model = untrained("flow-vae" if kind == "window" else kind, sizes=sizes)
-    pushed, at_once, fed = (Sampler(model, 5, lookahead=lookahead, start=3) for _ in range(3))
+    pushed, at_once, fed = (TakeSampler(model, 5, lookahead=lookahead, start=3) for _ in range(3))
     out, made = [], []
     for n in range(75):
         out.append(pushed.push(SOUND[:, n * 640 : (n + 1) * 640], TOLD[n : n + 1]))
@@ -97,7 +97,7 @@ def test_of_the_sizes_in_use_too_frames_one_by_one_are_the_same_to_the_bit(kind,
 @pytest.mark.parametrize("kind", KINDS)
 def test_poses_come_out_no_later_than_the_delay_says(kind):
     for lookahead in (0, 5, None):
-        sampler = Sampler(MODELS[kind], lookahead=lookahead)
+        sampler = TakeSampler(MODELS[kind], lookahead=lookahead)
         heard = made = 0
         for n in range(60):
             made += len(sampler.push(SOUND[:, n * 640 : (n + 1) * 640], TOLD[n : n + 1]))
@@ -111,8 +111,8 @@ def test_what_is_not_yet_said_changes_nothing(kind):
     """With a look-ahead of 4, what comes 5 frames later is not heard."""
     other = SOUND.copy()
     other[:, 40 * 640 :] = np.stack([babble(3, 8), babble(3, 9)])[:, 40 * 640 :]
-    made = [whole(MODELS[kind], s, TOLD, lookahead=4, smooth=0) for s in (SOUND, SOUND)]
-    sampler = [Sampler(MODELS[kind], lookahead=4, smooth=0) for _ in range(2)]
+    made = [sample_whole(MODELS[kind], s, TOLD, lookahead=4, smooth=0) for s in (SOUND, SOUND)]
+    sampler = [TakeSampler(MODELS[kind], lookahead=4, smooth=0) for _ in range(2)]
     made = [
         np.concatenate([p.push(s, TOLD), p.finish()]) for p, s in zip(sampler, (SOUND, other), strict=True)
     ]
@@ -138,8 +138,11 @@ def test_it_goes_on_from_a_stance(kind):
 @pytest.mark.parametrize("kind", KINDS)
 def test_who_speaks_and_what_is_said_matter(kind):
     listening = np.roll(TOLD, 1, axis=1)
-    assert np.abs(_made(kind).rotations - whole(MODELS[kind], SOUND, listening).rotations).max() > 1e-6
-    assert np.abs(_made(kind).rotations - whole(MODELS[kind], SOUND[::-1] * 0, TOLD).rotations).max() > 1e-6
+    assert np.abs(_made(kind).rotations - sample_whole(MODELS[kind], SOUND, listening).rotations).max() > 1e-6
+    assert (
+        np.abs(_made(kind).rotations - sample_whole(MODELS[kind], SOUND[::-1] * 0, TOLD).rotations).max()
+        > 1e-6
+    )
 
 
 def test_closer_to_the_speech_is_another_motion():
@@ -150,7 +153,7 @@ def test_closer_to_the_speech_is_another_motion():
 @pytest.mark.parametrize("kind", KINDS)
 def test_weights_that_run_away_give_rotations_all_the_same(kind):
     wild = untrained(kind, by=3.0)
-    clip = whole(wild, SOUND, TOLD, temperature=1.2)
+    clip = sample_whole(wild, SOUND, TOLD, temperature=1.2)
     assert np.isfinite(clip.rotations).all()
     assert np.abs(np.linalg.norm(clip.rotations, axis=-1) - 1).max() < 1e-5
 
@@ -171,28 +174,28 @@ def test_the_shortest_sounds_are_moved_to():
     for samples in (1, 639, 640, 1000):
         for kind in KINDS:
             sound = SOUND[:, :samples]
-            assert whole(MODELS[kind], sound, TOLD[: frames_of(samples)]).frames == frames_of(samples)
+            assert sample_whole(MODELS[kind], sound, TOLD[: frames_of(samples)]).frames == frames_of(samples)
     with pytest.raises(ValueError, match="no sound"):
-        whole(MODELS["cvae"], SOUND[:, :0], TOLD[:0])
-    assert len(Sampler(MODELS["cvae"]).finish()) == 0
+        sample_whole(MODELS["cvae"], SOUND[:, :0], TOLD[:0])
+    assert len(TakeSampler(MODELS["cvae"]).finish()) == 0
 
 
 def test_one_voice_alone_will_do():
-    told = heard_activity(SOUND[0])
+    told = hear_activity(SOUND[0])
     assert told.shape == (frames_of(SOUND.shape[1]), 4)
-    assert whole(MODELS["flow-vae"], SOUND[0], told).frames == 76
+    assert sample_whole(MODELS["flow-vae"], SOUND[0], told).frames == 76
 
 
 def test_what_cannot_be_sampled_is_told():
     model = MODELS["flow-vae"]
     with pytest.raises(ValueError, match=r"1\.2, not 2"):
-        Sampler(model, temperature=2)
+        TakeSampler(model, temperature=2)
     with pytest.raises(ValueError, match="whole numbers from 0"):
-        Sampler(model, -1)
+        TakeSampler(model, -1)
     with pytest.raises(ValueError, match="finite"):
-        Sampler(model, guidance=np.nan)
+        TakeSampler(model, guidance=np.nan)
     with pytest.raises(PoseError, match="another skeleton"):
-        Sampler(model, first=np.zeros((3, 4)))
+        TakeSampler(model, first=np.zeros((3, 4)))
 
 
 def test_noise_is_of_seed_take_and_frame_alone():
@@ -218,7 +221,7 @@ def test_what_begins_later_has_the_chance_of_its_own_frames():
     made = [
         np.concatenate([s.push(SOUND[:, a * 640 :], TOLD[a:]), s.finish()])
         for a in (0, 20)
-        for s in [Sampler(Model(model.card, deaf), 3, start=a)]
+        for s in [TakeSampler(Model(model.card, deaf), 3, start=a)]
     ]
     assert np.abs(made[0][20:] - made[1]).max() < 1e-5
     assert np.abs(made[0][:-20] - made[1]).max() > 1e-3
@@ -226,6 +229,6 @@ def test_what_begins_later_has_the_chance_of_its_own_frames():
 
 def test_nobody_speaking_is_a_take_too():
     quiet = one_hot(np.zeros(26, bool), np.zeros(26, bool))
-    clip = whole(MODELS["flow-vae"], np.zeros((2, RATE)), quiet)
+    clip = sample_whole(MODELS["flow-vae"], np.zeros((2, RATE)), quiet)
     assert clip.frames == 26
     assert clip_of(MODELS["flow-vae"], np.zeros((1, 13, 4)) + rotation.IDENTITY, "x").frames == 1

@@ -11,8 +11,15 @@ import numpy as np
 import pytest
 
 from metagraph.generation.features import MELS
-from metagraph.generation.standing import Told, begun, busy, hold, share_of, standing_of
-from metagraph.generation.takes import Marks, Source, Take
+from metagraph.generation.standing import (
+    CheckpointNote,
+    find_begun_trainings,
+    hold,
+    is_busy,
+    standing_of,
+    training_share,
+)
+from metagraph.generation.takes import Take, TakeMarks, TakeSource
 from metagraph.generation.train_plan import TrainingPlan, folder_of, plan_of, write_training
 from tests.generation.makers import rig
 from tests.processes import started
@@ -22,10 +29,10 @@ def made(out: Path, **limits: float) -> TrainingPlan:
     own, chance = rig(), np.random.default_rng(1)
     takes = [
         Take(
-            Source(f"t{n}", (f"{n}" * 64,), "made for a test"),
+            TakeSource(f"t{n}", (f"{n}" * 64,), "made for a test"),
             chance.normal(0, 0.1, (50, own.numbers)).astype("f4"),
             np.zeros((50, MELS + 4), "f4"),
-            Marks((), (), ()),
+            TakeMarks((), (), ()),
         )
         for n in (1, 2)
     ]
@@ -36,7 +43,7 @@ def made(out: Path, **limits: float) -> TrainingPlan:
 
 
 def checkpoint(out: Path, n: int, plan: TrainingPlan, step: int, minutes: float = 0.0) -> Path:
-    told = Told(plan=plan.fingerprint(), step=step, seconds=60 * minutes, minutes=minutes)
+    told = CheckpointNote(plan=plan.fingerprint(), step=step, seconds=60 * minutes, minutes=minutes)
     path = folder_of(out) / f"checkpoint.{n}.npz"
     np.savez(path, told=np.frombuffer(msgspec.json.encode(told), np.uint8), big=np.zeros(1000))
     return path
@@ -70,17 +77,17 @@ def test_trainings_are_listed_wherever_they_were_moved_those_that_are_over_last(
     (tmp_path / "was" / "c.mgmodel.training").mkdir()
     (tmp_path / "was" / "d.mgmodel.training").write_text("no folder")
     (tmp_path / "was").rename(tmp_path / "is")
-    assert [(s.out, s.share) for s in begun(tmp_path / "is")] == [
+    assert [(s.out, s.share) for s in find_begun_trainings(tmp_path / "is")] == [
         (tmp_path / "is" / "b.mgmodel", 0.0),
         (tmp_path / "is" / "a.mgmodel", 1.0),
     ]
-    assert begun(tmp_path / "gone") == []
+    assert find_begun_trainings(tmp_path / "gone") == []
 
 
 @pytest.mark.parametrize(("limits", "share"), [({}, 0.4), ({"seconds": 200.0}, 0.6), ({"steps": 10}, 1.0)])
 def test_what_is_over_first_counts(tmp_path: Path, limits: dict[str, float], share: float) -> None:
     plan = made(tmp_path / "a.mgmodel", minutes=5.0, **limits)
-    assert share_of(plan, 20, 120.0, 2.0) == pytest.approx(share)
+    assert training_share(plan, 20, 120.0, 2.0) == pytest.approx(share)
 
 
 def test_a_folder_is_held_by_one_process_until_that_ends_however_it_ends(tmp_path: Path) -> None:
@@ -93,8 +100,8 @@ def test_a_folder_is_held_by_one_process_until_that_ends_however_it_ends(tmp_pat
     )
     with started(sys.executable, "-c", code, folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as other:
         assert other.stdout is not None and other.stdout.readline().strip() == "True"
-        assert busy(folder) and hold(folder) is None
+        assert is_busy(folder) and hold(folder) is None
         other.kill()
         other.wait(10)
-    assert not busy(folder)
-    assert not busy(tmp_path / "none.training")
+    assert not is_busy(folder)
+    assert not is_busy(tmp_path / "none.training")

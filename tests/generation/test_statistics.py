@@ -9,28 +9,28 @@ import pytest
 
 from metagraph.generation.features import one_hot
 from metagraph.generation.landmarks import HEAD, LANDMARKS, NOSE, WRISTS, landmarks_of
-from metagraph.generation.poses import encode, poses_of, rig_of
+from metagraph.generation.poses import encode_clip, encode_rotations, find_rig
 from metagraph.generation.statistics import (
     MEASURES,
-    Performance,
-    blocks,
+    MotionSample,
+    compute_measures,
+    cut_blocks,
     diversity,
+    make_motion_sample,
     mean_pose,
-    measures,
-    mismatched,
-    performance,
+    mismatch_speech,
     row,
-    table,
+    tabulate_measures,
     wasserstein,
 )
-from metagraph.generation.takes import Marks, Source, Take
+from metagraph.generation.takes import Take, TakeMarks, TakeSource
 from metagraph.motion import rotation
 from tests.generation.makers import moving, rig
 
 FPS = 25
 
 
-def _talker(seed: int, seconds: float = 60, hear: int | None = None, wander: float = 0.3) -> Performance:
+def _talker(seed: int, seconds: float = 60, hear: int | None = None, wander: float = 0.3) -> MotionSample:
     """Somebody whose hands are fast at own peaks and who nods with responses. hear: seed of what is said."""
     say = np.random.default_rng(1000 + (seed if hear is None else hear))
     chance = np.random.default_rng(seed)
@@ -51,7 +51,9 @@ def _talker(seed: int, seconds: float = 60, hear: int | None = None, wander: flo
     for peak in peaks:
         speaking |= np.abs(t - peak) < 1.5
     poses = points.reshape(count, 27)
-    return Performance(points, poses, one_hot(speaking, ~speaking), Marks(tuple(peaks), tuple(responses)))
+    return MotionSample(
+        points, poses, one_hot(speaking, ~speaking), TakeMarks(tuple(peaks), tuple(responses))
+    )
 
 
 TRUE = [_talker(1), _talker(2)]
@@ -59,7 +61,7 @@ RESTING = [_talker(1, wander=0.02), _talker(2, wander=0.02)]
 
 
 def test_motion_beside_itself_is_perfect():
-    same = measures(TRUE, TRUE)
+    same = compute_measures(TRUE, TRUE)
     assert tuple(same) == MEASURES
     for name, value in {
         "distance": 0,
@@ -81,18 +83,18 @@ def test_motion_beside_itself_is_perfect():
 
 
 def test_other_speech_takes_the_coupling_and_leaves_the_space():
-    wrong, same = measures(mismatched(TRUE), TRUE), measures(TRUE, TRUE)
+    wrong, same = compute_measures(mismatch_speech(TRUE), TRUE), compute_measures(TRUE, TRUE)
     assert wrong["speed"] == pytest.approx(1, abs=0.03)
     assert wrong["distance"] < 0.01
     assert wrong["stroke"] < 0.5 * same["stroke"]
     assert wrong["nods_responses"] < 0.8 * same["nods_responses"]
     assert wrong["profile"] < 0.8
-    alone = measures(mismatched(TRUE[:1]), TRUE[:1])
+    alone = compute_measures(mismatch_speech(TRUE[:1]), TRUE[:1])
     assert alone["stroke"] < 0.6 * same["stroke"]
 
 
 def test_a_mean_pose_stands_still_in_the_middle():
-    held = measures(mean_pose(TRUE), TRUE)
+    held = compute_measures(mean_pose(TRUE), TRUE)
     assert held["speed"] == pytest.approx(0)
     assert held["wrist_range"] == pytest.approx(0)
     assert held["distance"] > 0.5
@@ -105,7 +107,7 @@ def test_trembling_shows_in_the_acceleration_most():
     trembling = [
         replace(m, landmarks=m.landmarks + 0.004 * chance.standard_normal(m.landmarks.shape)) for m in TRUE
     ]
-    shaken = measures(trembling, TRUE)
+    shaken = compute_measures(trembling, TRUE)
     assert shaken["acceleration"] > shaken["speed"] > 1.2
     assert shaken["distance"] < 0.2
 
@@ -115,7 +117,7 @@ def test_hands_that_rest_tremble_by_what_they_do_while_they_rest_and_not_by_gest
     little = [
         replace(m, landmarks=m.landmarks + 3e-4 * chance.standard_normal(m.landmarks.shape)) for m in RESTING
     ]
-    shaken, calm = measures(little, RESTING), measures(RESTING, RESTING)
+    shaken, calm = compute_measures(little, RESTING), compute_measures(RESTING, RESTING)
     assert calm["still"] == pytest.approx(1) and calm["trembling"] == pytest.approx(1)
     assert shaken["still"] == pytest.approx(1, abs=0.05)
     assert shaken["trembling"] > 3
@@ -123,18 +125,18 @@ def test_hands_that_rest_tremble_by_what_they_do_while_they_rest_and_not_by_gest
     restless = [
         replace(m, landmarks=m.landmarks + 5e-3 * chance.standard_normal(m.landmarks.shape)) for m in RESTING
     ]
-    never = measures(restless, RESTING)
+    never = compute_measures(restless, RESTING)
     assert never["still"] == 0 and np.isnan(never["trembling"])
 
 
 def test_half_the_size_is_half_the_speed():
     middle = np.concatenate([m.landmarks for m in TRUE]).mean(0)
     small = [replace(m, landmarks=middle + 0.5 * (m.landmarks - middle)) for m in TRUE]
-    half = measures(small, TRUE)
+    half = compute_measures(small, TRUE)
     assert half["speed"] == pytest.approx(0.5)
     assert half["acceleration"] == pytest.approx(0.5)
     assert half["wrist_range"] == pytest.approx(0.5, abs=0.02)
-    assert half["role"] == pytest.approx(measures(TRUE, TRUE)["role"])
+    assert half["role"] == pytest.approx(compute_measures(TRUE, TRUE)["role"])
 
 
 def test_the_distance_between_sets_is_how_far_one_is_moved():
@@ -154,7 +156,7 @@ def test_seeds_that_move_alike_have_no_diversity():
 
 
 def test_blocks_are_fifteen_seconds_and_keep_their_marks():
-    pieces = blocks([_talker(1, 37), _talker(2, 7)])
+    pieces = cut_blocks([_talker(1, 37), _talker(2, 7)])
     assert [len(p) for p in pieces] == [375, 550, 175]
     marks = [m + at for p, at in zip(pieces[:2], (0, 15), strict=True) for m in p.marks.peaks]
     assert sorted(marks) == pytest.approx(sorted(_talker(1, 37).marks.peaks))
@@ -172,23 +174,23 @@ def test_a_row_has_an_interval_about_its_value():
 
 
 def test_a_table_has_what_must_stand_beside():
-    rows = table({"model": [TRUE]}, TRUE, draws=3)
+    rows = tabulate_measures({"model": [TRUE]}, TRUE, draws=3)
     assert [r.name for r in rows] == ["floor", "mismatched", "mean pose", "model"]
     assert rows[0].values["frechet"] < rows[2].values["frechet"]
-    other = table({}, TRUE, floor=[_talker(11, hear=1), _talker(12, hear=2)], draws=2)
+    other = tabulate_measures({}, TRUE, floor=[_talker(11, hear=1), _talker(12, hear=2)], draws=2)
     assert other[0].values["distance"] > 0
 
 
 def test_nothing_to_compare_is_told():
     with pytest.raises(ValueError, match="no motion to compare"):
-        measures([], TRUE)
+        compute_measures([], TRUE)
     with pytest.raises(ValueError, match="no motion to compare"):
-        measures([TRUE[0].part(0, 2)], TRUE)
+        compute_measures([TRUE[0].part(0, 2)], TRUE)
 
 
 def test_the_nose_is_before_the_head_and_hands_follow_the_arms():
     own = rig()
-    still = landmarks_of(own, encode(own, own.base)[None])[0]
+    still = landmarks_of(own, encode_rotations(own, own.base)[None])[0]
     place = dict(zip(LANDMARKS, still, strict=True))
     assert np.allclose(place["nose"] - place["head"], [0, 0, 0.12], atol=0.02)
     assert place["left_wrist"][0] > 0.1 > -0.1 > place["right_wrist"][0]
@@ -197,14 +199,14 @@ def test_the_nose_is_before_the_head_and_hands_follow_the_arms():
     turned = own.base.copy()
     joint = own.joints[own.roles.index("right_upper_arm")]
     turned[joint] = rotation.multiply(turned[joint], rotation.from_axis_angle([1, 0, 0], 1.0))
-    moved = np.linalg.norm(landmarks_of(own, encode(own, turned)[None])[0] - still, axis=-1)
+    moved = np.linalg.norm(landmarks_of(own, encode_rotations(own, turned)[None])[0] - still, axis=-1)
     assert moved[WRISTS[1]] > 0.1
     assert moved[[WRISTS[0], HEAD, NOSE]].max() < 1e-4
 
 
 def test_landmarks_are_where_the_whole_skeleton_has_them():
     own, clip = rig(), moving(2, fps=25.0)
-    seen = landmarks_of(own, poses_of(own, clip, 25.0))
+    seen = landmarks_of(own, encode_clip(own, clip, 25.0))
     _, points = clip.skeleton.globals(clip.poses())
     hand = own.joints[own.roles.index("left_hand")]
     assert np.abs(seen[:, WRISTS[0]] - points[:, hand]).max() < 1e-3
@@ -215,18 +217,18 @@ def test_a_skeleton_without_collar_bones_has_a_sternum():
     roles = dict(zip(own.roles, own.joints, strict=True))
     for role in ("left_shoulder", "right_shoulder", "neck"):
         del roles[role]
-    few = rig_of(own.skeleton, roles)
-    seen = landmarks_of(few, encode(few, few.base)[None])[0]
+    few = find_rig(own.skeleton, roles)
+    seen = landmarks_of(few, encode_rotations(few, few.base)[None])[0]
     assert np.isfinite(seen).all()
     assert np.allclose(seen[0], seen[1:3].mean(0))
 
 
 def test_generated_poses_are_measured_with_what_a_take_hears():
     clip, own = moving(5, fps=25.0), rig()
-    poses = poses_of(own, clip, 25.0)
+    poses = encode_clip(own, clip, 25.0)
     features = np.concatenate([np.zeros((len(poses), 27)), one_hot(poses[:, 0] > 9, poses[:, 0] < 9)], 1)
-    take = Take(Source("x"), poses, features.astype(np.float32), Marks((1.0,)))
-    made = performance(own, poses[:100], take)
+    take = Take(TakeSource("x"), poses, features.astype(np.float32), TakeMarks((1.0,)))
+    made = make_motion_sample(own, poses[:100], take)
     assert len(made) == 100
     assert made.marks.peaks == (1.0,)
     assert made.activity.shape == (100, 4)

@@ -21,7 +21,7 @@ from metagraph.generation.take_files import (
     find_takes,
     licence_of,
     read_speech,
-    read_takes,
+    read_take_batch,
 )
 from tests.bodies import column
 from tests.generation.makers import babble, conversation, moving
@@ -55,7 +55,7 @@ def test_two_clips_are_the_sides_of_one_conversation(tmp_path):
     found, without = find_takes([tmp_path])
     assert [f.side for f in found] == [0, 1]
     assert without == []
-    batch = read_takes(found)
+    batch = read_take_batch(found)
     assert not batch.failures
     one, two = batch.takes
     assert np.abs(one.features[:100, :27] - two.features[:100, :27]).max() < 1e-3  # both voices mixed
@@ -87,7 +87,7 @@ def test_speech_may_lie_elsewhere(tmp_path):
 def test_of_several_animations_the_longest_is_taken_and_that_is_told(tmp_path):
     write_glb(tmp_path / "talk.glb", [moving(5.0, 1).renamed("short"), moving(9.0, 2).renamed("long")])
     soundfile.write(tmp_path / "talk.wav", babble(9.0), RATE)
-    batch = read_takes(find_takes([tmp_path])[0])
+    batch = read_take_batch(find_takes([tmp_path])[0])
     assert batch.takes[0].seconds == pytest.approx(9.0, abs=0.1)
     (note,) = [n for n in batch.notes if "animations" in n]
     assert note.startswith("talk.glb: holds 2 animations") and "'long', 9.0 s" in note
@@ -114,7 +114,7 @@ def test_a_bad_take_spoils_no_other(tmp_path):
     _write(tmp_path, "other", seed=8)
     write_bvh(other, tmp_path / "other.bvh")
     found, _ = find_takes([tmp_path])
-    batch = read_takes(found)
+    batch = read_take_batch(found)
     assert [t.source.name for t in batch.takes] == ["good"]
     words = {
         name: next(f for f in batch.failures if name in f) for name in ("short", "mute", "broken", "noise")
@@ -133,7 +133,7 @@ def test_words_tell_who_says_what(tmp_path):
     write_json(talk, tmp_path / "talk.json")
     found, _ = find_takes([tmp_path])
     assert found[0].transcripts
-    take = read_takes(found).takes[0]
+    take = read_take_batch(found).takes[0]
     assert take.marks.peaks
     assert not any("loudness tells who speaks" in note for note in take.notes)
 
@@ -141,7 +141,7 @@ def test_words_tell_who_says_what(tmp_path):
 def test_both_voices_in_one_channel_are_told_apart_by_words(tmp_path):
     _write(tmp_path, "talk", 12.0, sides=1)
     write_json(conversation(12), tmp_path / "talk.json")
-    take = read_takes(find_takes([tmp_path])[0]).takes[0]
+    take = read_take_batch(find_takes([tmp_path])[0]).takes[0]
     assert take.activity[:, 0].any()
     assert take.activity[:, 1].any()
     assert "one channel" in " ".join(take.notes)
@@ -150,7 +150,7 @@ def test_both_voices_in_one_channel_are_told_apart_by_words(tmp_path):
 def test_where_a_take_is_from_is_kept(tmp_path):
     _write(tmp_path / "deep" / "er", "talk")
     (tmp_path / "LICENSE.txt").write_text("\n  CC BY-NC 4.0  \nmore")
-    take = read_takes(find_takes([tmp_path])[0]).takes[0]
+    take = read_take_batch(find_takes([tmp_path])[0]).takes[0]
     folder = tmp_path / "deep" / "er"
     assert take.source.digests == (digest(folder / "talk.bvh"), digest(folder / "talk.wav"))
     assert take.source.licence == "LICENSE.txt: CC BY-NC 4.0"
@@ -161,10 +161,10 @@ def test_where_a_take_is_from_is_kept(tmp_path):
 def test_reading_can_be_stopped_and_a_missing_folder_is_told(tmp_path):
     _write(tmp_path, "talk")
     with pytest.raises(CancelledError):
-        read_takes(find_takes([tmp_path])[0], cancelled=lambda: True)
+        read_take_batch(find_takes([tmp_path])[0], cancelled=lambda: True)
     with pytest.raises(FileError, match="no such folder"):
         find_takes([tmp_path / "nowhere"])
-    assert read_takes([]).takes == ()
+    assert read_take_batch([]).takes == ()
 
 
 def test_skeletons_without_roles_are_told_once(tmp_path):
@@ -173,6 +173,6 @@ def test_skeletons_without_roles_are_told_once(tmp_path):
     odd = type(odd)("odd", rest, 30, np.repeat(rest.rest_rotations[None], 180, 0), np.zeros((180, 1, 3)))
     _write(tmp_path, "odd")
     write_bvh(odd, tmp_path / "odd.bvh")
-    batch = read_takes(find_takes([tmp_path])[0])
+    batch = read_take_batch(find_takes([tmp_path])[0])
     assert batch.rig is None
     assert "has no" in batch.failures[0]

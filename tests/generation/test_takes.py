@@ -9,17 +9,17 @@ import pytest
 
 from metagraph.generation.features import RATE
 from metagraph.generation.takes import (
-    Marks,
-    Source,
     SplitError,
     TakeError,
+    TakeMarks,
     TakeSound,
+    TakeSource,
     check_split,
-    mirrored,
+    make_take,
+    mirror_take,
     scales_of,
     shares_stretch,
-    split,
-    take_of,
+    split_takes,
 )
 from metagraph.motion.clip import Clip
 from tests.bodies import column
@@ -31,9 +31,9 @@ def _take(seconds=12.0, seed=1, name=None, digests=None, talk=True, **given):
     name = name or f"take {seed}"
     sound = np.stack([babble(seconds, 10 + seed), babble(seconds, 20 + seed)])
     told = conversation(seconds, seed) if talk else None
-    source = Source(name, (name,) if digests is None else digests, "MIT")
+    source = TakeSource(name, (name,) if digests is None else digests, "MIT")
     heard = TakeSound(given.pop("samples", sound), RATE, given.pop("clipped", ()))
-    return take_of(rig(), clip, heard, source, told, **given)
+    return make_take(rig(), clip, heard, source, told, **given)
 
 
 def test_a_take_is_as_long_as_the_shorter_of_motion_and_sound():
@@ -52,7 +52,7 @@ def test_marks_are_what_one_side_moves_with():
     take = _take()
     assert set(take.marks.peaks) == own
     assert take.part(50, 200).marks.peaks == tuple(p - 2 for p in sorted(own) if 2 <= p < 8)
-    assert Marks((1.0,), (2.0,), (3.0,)).shifted(1.0, 3.0) == Marks((0.0,), (1.0,), ())
+    assert TakeMarks((1.0,), (2.0,), (3.0,)).shifted(1.0, 3.0) == TakeMarks((0.0,), (1.0,), ())
 
 
 @pytest.mark.parametrize(
@@ -77,11 +77,11 @@ def test_another_skeleton_and_one_that_does_not_move_are_refused():
     clip = Clip("odd", other, 30, np.repeat(other.rest_rotations[None], 300, 0), np.zeros((300, 1, 3)))
     sound = np.stack([babble(10, 1), babble(10, 2)])
     with pytest.raises(TakeError, match=r"'odd'.*another skeleton"):
-        take_of(rig(), clip, TakeSound(sound, RATE), Source("odd"))
+        make_take(rig(), clip, TakeSound(sound, RATE), TakeSource("odd"))
     still = moving(10)
     still = replace(still, rotations=np.repeat(still.rotations[:1], still.frames, 0))
     with pytest.raises(TakeError, match="does not move"):
-        take_of(rig(), still, TakeSound(sound, RATE), Source("still"), conversation(10))
+        make_take(rig(), still, TakeSound(sound, RATE), TakeSource("still"), conversation(10))
 
 
 def test_what_can_be_learned_from_all_the_same_is_told():
@@ -103,28 +103,28 @@ def test_two_tracks_of_one_voice_leave_the_other_silent():
 
 def test_whole_takes_are_held_out_with_all_that_shares_a_file():
     takes = [_take(6, n, digests=(f"motion {n}", f"sound {n // 2}")) for n in range(6)]
-    learned, held = split(takes, 0.3)
+    learned, held = split_takes(takes, 0.3)
     assert len(held) == 2
     assert {t.source.digests[1] for t in learned}.isdisjoint(t.source.digests[1] for t in held)
     assert {id(t) for t in (*learned, *held)} == {id(t) for t in takes}
-    assert split(takes, 0.3)[1] == held
-    assert any(split(takes, 0.3, seed)[1] != held for seed in range(2, 9))
+    assert split_takes(takes, 0.3)[1] == held
+    assert any(split_takes(takes, 0.3, seed)[1] != held for seed in range(2, 9))
 
 
 def test_one_recording_gives_a_block_with_six_seconds_cut_away():
     take = _take(60)
-    learned, held = split([take], 0.2)
+    learned, held = split_takes([take], 0.2)
     assert len(learned) == len(held) == 1
     assert held[0].seconds == pytest.approx(12, abs=0.1)
     gap = held[0].source.start - (learned[0].source.start + learned[0].seconds)
     assert gap == pytest.approx(6, abs=0.05)
     with pytest.raises(SplitError, match="too short"):
-        split([_take(12)])
+        split_takes([_take(12)])
 
 
 def test_pieces_of_one_recording_are_cut_at_the_same_moment():
     take = _take(90)
-    learned, held = split([take.part(0, 700), take.part(700, 1500), take.part(1500, 2251)], 0.2)
+    learned, held = split_takes([take.part(0, 700), take.part(700, 1500), take.part(1500, 2251)], 0.2)
     begin = min(h.source.start for h in held)
     assert all(t.source.start + t.seconds <= begin - 6 + 0.05 for t in learned)
     assert all(len(t.poses) == len(t.features) > 0 for t in (*learned, *held))
@@ -134,20 +134,20 @@ def test_pieces_of_one_recording_are_cut_at_the_same_moment():
 def test_a_mirror_twin_goes_where_its_take_goes():
     clip = moving(60, 1)
     take = _take(60)
-    twin = mirrored(rig(), clip, take)
+    twin = mirror_take(rig(), clip, take)
     assert twin.source.mirrored
     assert np.abs(twin.poses - take.poses).max() > 0.05
-    learned, held = split([take, twin], 0.2)
+    learned, held = split_takes([take, twin], 0.2)
     assert len(learned) == len(held) == 2
 
 
 def test_a_mirror_twin_in_the_other_half_fails():
     take = _take(20)
-    twin = mirrored(rig(), moving(20, 1), take)
+    twin = mirror_take(rig(), moving(20, 1), take)
     with pytest.raises(SplitError, match="mirror twin"):
         check_split([take], [twin])
     # Also as another file: it sounds and moves alike.
-    stranger = replace(twin, source=Source("flipped", ("other", "files"), mirrored=True))
+    stranger = replace(twin, source=TakeSource("flipped", ("other", "files"), mirrored=True))
     with pytest.raises(SplitError, match=r"'flipped' .*mirror twin"):
         check_split([take], [stranger])
 
@@ -162,9 +162,9 @@ def test_an_overlapping_window_in_the_other_half_fails():
     # Cut by somebody else, into a file of its own, between two frames.
     clip = moving(40, 1, fps=100.0)
     sound = np.stack([babble(40, 11), babble(40, 21)])
-    whole = take_of(rig(), clip, TakeSound(sound, RATE), Source("whole", ("w",)), conversation(40))
+    whole = make_take(rig(), clip, TakeSound(sound, RATE), TakeSource("whole", ("w",)), conversation(40))
     cut = sound[:, round(12.41 * RATE) :], clip.trimmed(1241)
-    window = take_of(rig(), cut[1], TakeSound(cut[0], RATE), Source("window", ("v",)))
+    window = make_take(rig(), cut[1], TakeSound(cut[0], RATE), TakeSource("window", ("v",)))
     with pytest.raises(SplitError, match="'window' is held out"):
         check_split([whole], [window])
 
@@ -182,7 +182,7 @@ def test_empty_halves_are_refused():
     with pytest.raises(SplitError, match="empty"):
         check_split([], [_take(6)])
     with pytest.raises(SplitError, match="no take"):
-        split([])
+        split_takes([])
 
 
 def test_scales_are_of_what_is_learned_from():

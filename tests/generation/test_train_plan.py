@@ -11,16 +11,16 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.generation.features import RATE
-from metagraph.generation.takes import Source, SplitError, Take, TakeSound, take_of
+from metagraph.generation.takes import SplitError, Take, TakeSound, TakeSource, make_take
 from metagraph.generation.train_plan import (
     PLAN,
     TAKES,
-    Settings,
     TrainingPlan,
+    TrainingSettings,
     folder_of,
     plan_of,
-    read_plan,
-    read_takes,
+    read_planned_takes,
+    read_training_plan,
     settings_for,
     write_plan,
     write_training,
@@ -33,9 +33,9 @@ def takes() -> tuple[Take, Take]:
     out = []
     for seed in (1, 2):
         sound = np.stack([babble(8.0, seed), babble(8.0, seed + 50)])
-        source = Source(f"take {seed}", (f"motion {seed}",), "CC0", 2.0)
+        source = TakeSource(f"take {seed}", (f"motion {seed}",), "CC0", 2.0)
         heard = TakeSound(sound, RATE)
-        out.append(take_of(rig(), moving(8.0, seed), heard, source, conversation(8.0, seed)))
+        out.append(make_take(rig(), moving(8.0, seed), heard, source, conversation(8.0, seed)))
     return out[0], out[1]
 
 
@@ -47,9 +47,9 @@ def test_takes_and_plan_come_back_as_they_were(takes: Any, tmp_path: Path) -> No
     own = plan(takes, tmp_path / "a.mgmodel")
     folder = folder_of(tmp_path / "a.mgmodel")
     write_training(folder, own, takes[:1], takes[1:])
-    again = read_plan(folder)
+    again = read_training_plan(folder)
     assert again == own and again.fingerprint() == own.fingerprint()
-    learned, held = read_takes(folder, again)
+    learned, held = read_planned_takes(folder, again)
     for one, other in zip((*learned, *held), takes, strict=True):
         assert np.array_equal(one.poses, other.poses) and np.array_equal(one.features, other.features)
         assert one.marks == other.marks and one.source == other.source
@@ -63,7 +63,7 @@ def test_what_is_held_out_is_not_learned_from(takes: Any, tmp_path: Path) -> Non
 def test_more_time_goes_on_and_other_settings_do_not(takes: Any, tmp_path: Path) -> None:
     own = plan(takes, tmp_path / "a.mgmodel")
     longer = msgspec.structs.replace(own, minutes=90.0, threads=2, out="elsewhere")
-    other = msgspec.structs.replace(own, settings=Settings(rate=1e-4))
+    other = msgspec.structs.replace(own, settings=TrainingSettings(rate=1e-4))
     assert longer.fingerprint() == own.fingerprint() != other.fingerprint()
 
 
@@ -79,17 +79,17 @@ def test_a_training_begun_anew_forgets_the_one_before(takes: Any, tmp_path: Path
 def test_what_is_missing_or_damaged_is_told(takes: Any, tmp_path: Path) -> None:
     own, folder = plan(takes, tmp_path / "a.mgmodel"), folder_of(tmp_path / "a.mgmodel")
     with pytest.raises(FileError, match="no training to go on with"):
-        read_plan(folder)
+        read_training_plan(folder)
     write_training(folder, own, takes[:1], takes[1:])
     content = (folder / TAKES).read_bytes()
     for spoiled in (b"", content[: len(content) // 2], b"PK\x03\x04" + bytes(200)):
         (folder / TAKES).write_bytes(spoiled)
         with pytest.raises(FileError, match="damaged"):
-            read_takes(folder, own)
+            read_planned_takes(folder, own)
     for text in (b"{", b"[]", b'{"kind": "matching"}', b"\xff"):
         (folder / PLAN).write_bytes(text)
         with pytest.raises(FileError, match="no training's plan"):
-            read_plan(folder)
+            read_training_plan(folder)
 
 
 def test_by_the_papers_loss_nothing_is_done_that_the_paper_does_not() -> None:
@@ -110,7 +110,7 @@ def test_a_plan_names_no_file_on_another_computer(takes: Any, tmp_path: Path) ->
         f"{up}net/server/a",
         "nul",
     ):
-        write_plan(folder, msgspec.structs.replace(read_plan(folder), out=name))
+        write_plan(folder, msgspec.structs.replace(read_training_plan(folder), out=name))
         with pytest.raises(FileError, match="its model's file is not written: it is"):
-            read_plan(folder)
+            read_training_plan(folder)
         write_plan(folder, plan(takes, tmp_path / "a.mgmodel"))

@@ -15,7 +15,11 @@ from metagraph.motion.skeleton import Skeleton
 
 def test_a_project_without_clips_has_no_anatomy() -> None:
     project = Project()
-    assert anatomy.roles(project) == {} and anatomy.parts(project) == () and anatomy.sides(project) == ()
+    assert (
+        anatomy.project_roles(project) == {}
+        and anatomy.project_parts(project) == ()
+        and anatomy.project_sides(project) == ()
+    )
     with pytest.raises(ValueError, match="no base pose"):
         anatomy.base_pose(project)
 
@@ -23,22 +27,24 @@ def test_a_project_without_clips_has_no_anatomy() -> None:
 def test_corrections_override_what_was_found_and_unknown_joints_are_ignored(toy: Any) -> None:
     project = toy.project()
     s = project.skeleton
-    assert anatomy.roles(project)["head"] == s.index("Head")
+    assert anatomy.project_roles(project)["head"] == s.index("Head")
     corrected = edits.set_role(edits.set_part(project, ["Neck", "Nowhere"], "spine"), "head", "Neck")
-    assert anatomy.roles(corrected)["head"] == s.index("Neck")
-    assert anatomy.parts(corrected)[s.index("Neck")] == "spine"
-    assert "head" not in anatomy.roles(edits.set_role(project, "head", "Nowhere"))
-    assert anatomy.roles(project)["head"] == s.index("Head"), "the project corrected from is as it was"
+    assert anatomy.project_roles(corrected)["head"] == s.index("Neck")
+    assert anatomy.project_parts(corrected)[s.index("Neck")] == "spine"
+    assert "head" not in anatomy.project_roles(edits.set_role(project, "head", "Nowhere"))
+    assert anatomy.project_roles(project)["head"] == s.index("Head"), (
+        "the project corrected from is as it was"
+    )
 
 
 def test_an_action_of_both_arms_moves_every_joint(toy: Any) -> None:
     project = toy.project()
-    assert anatomy.mask(project, project.action(toy.id(project, "rest long"))) is None
+    assert anatomy.action_mask(project, project.action(toy.id(project, "rest long"))) is None
 
 
 def test_a_one_armed_action_leaves_the_other_arm_to_the_stance(toy: Any) -> None:
     project = toy.project()
-    mask = anatomy.mask(project, project.action(toy.id(project, "rest beat lf")))
+    mask = anatomy.action_mask(project, project.action(toy.id(project, "rest beat lf")))
     still = {project.skeleton.names[i] for i in np.flatnonzero(mask == 0)}
     assert still == {"RightUpperArm", "RightLowerArm", "RightHand"}
 
@@ -47,7 +53,7 @@ def test_named_joints_are_the_only_ones_moved(toy: Any) -> None:
     project = toy.project()
     ident = toy.id(project, "rest beat lf")
     project = edits.update_actions(project, [ident], joints=("LeftHand", "RightHand", "Nowhere"))
-    mask = anatomy.mask(project, project.action(ident))
+    mask = anatomy.action_mask(project, project.action(ident))
     assert {project.skeleton.names[i] for i in np.flatnonzero(mask)} == {"LeftHand"}
 
 
@@ -56,7 +62,7 @@ def test_joints_move_as_far_as_their_weights_say_where_the_action_moves_them_at_
     ident = toy.id(project, "rest beat lf")
     weights = (("Head", 0.25), ("RightHand", 0.5), ("LeftHand", 0.5), ("Nowhere", 0.5))
     project = edits.update_actions(project, [ident], joints=("Head", "RightHand"), joint_weights=weights)
-    mask = anatomy.mask(project, project.action(ident))
+    mask = anatomy.action_mask(project, project.action(ident))
     found = {project.skeleton.names[i]: float(mask[i]) for i in np.flatnonzero(mask)}
     assert found == {"Head": 0.25}, "one hand is the other arm's, the other is not among its joints"
     assert anatomy.unknown_joints(project.skeleton, project.action(ident)) == ["Nowhere"]
@@ -66,14 +72,16 @@ def test_joints_move_as_far_as_their_weights_say_where_the_action_moves_them_at_
 def test_a_mask_is_told_by_what_does_not_move_wholly(toy: Any) -> None:
     project = toy.project()
     skeleton = project.skeleton
-    assert anatomy.masked_by(skeleton, {}) == {"joints": (), "joint_weights": ()}
-    soft = anatomy.masked_by(skeleton, {"Head": 0.25, "Neck": 1.0, "Nowhere": 0.5})
+    assert anatomy.as_joint_mask(skeleton, {}) == {"joints": (), "joint_weights": ()}
+    soft = anatomy.as_joint_mask(skeleton, {"Head": 0.25, "Neck": 1.0, "Nowhere": 0.5})
     assert soft == {"joints": (), "joint_weights": (("Head", 0.25),)}
-    hard = anatomy.masked_by(skeleton, {"Head": 0.0, "Neck": -3.0, "LeftHand": 7.0})
+    hard = anatomy.as_joint_mask(skeleton, {"Head": 0.0, "Neck": -3.0, "LeftHand": 7.0})
     assert hard["joint_weights"] == () and set(skeleton.names) - {*hard["joints"]} == {"Head", "Neck"}
     ident = toy.id(project, "rest long")
-    placed = edits.update_actions(project, [ident], **anatomy.masked_by(skeleton, {"Head": 0.5, "Neck": 0}))
-    mask = anatomy.mask(placed, placed.action(ident))
+    placed = edits.update_actions(
+        project, [ident], **anatomy.as_joint_mask(skeleton, {"Head": 0.5, "Neck": 0})
+    )
+    mask = anatomy.action_mask(placed, placed.action(ident))
     assert mask[skeleton.index("Head")] == 0.5 and mask[skeleton.index("Neck")] == 0 and (mask == 1).sum() > 5
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from metagraph.graph import edits
-from metagraph.graph.check import check
+from metagraph.graph.check import check_project
 from metagraph.graph.model import BasePose, Project
 from metagraph.graph.problem import Problem
 from metagraph.motion import rotation
@@ -20,12 +20,12 @@ pytestmark = pytest.mark.usefixtures("numbered_ids")
 
 
 def codes(project: Project) -> list[str]:
-    return [p.code for p in check(project)]
+    return [p.code for p in check_project(project)]
 
 
 def only(project: Project, code: str) -> Problem:
-    found = [p for p in check(project) if p.code == code]
-    assert len(found) == 1, [(p.code, p.message) for p in check(project)]
+    found = [p for p in check_project(project) if p.code == code]
+    assert len(found) == 1, [(p.code, p.message) for p in check_project(project)]
     assert found[0].message and found[0].remedy.endswith(".")
     return found[0]
 
@@ -46,29 +46,29 @@ def healthy(toy: Any) -> Project:
         ],
     )
     far = toy.id(project, "far")
-    project = edits.place(project, [entry(project, "far beat")], "arms", "gesture", far)
-    return edits.place(project, [entry(project, "far fidget")], "arms", "fidget", far)
+    project = edits.place_clips(project, [entry(project, "far beat")], "arms", "gesture", far)
+    return edits.place_clips(project, [entry(project, "far fidget")], "arms", "fidget", far)
 
 
 def test_an_empty_project_has_no_problems() -> None:
-    assert check(Project()) == []
+    assert check_project(Project()) == []
 
 
 def test_a_healthy_project_has_no_problems(healthy: Project, sample: Project) -> None:
-    assert check(healthy) == []
-    assert check(sample) == []
+    assert check_project(healthy) == []
+    assert check_project(sample) == []
 
 
 def test_checking_changes_nothing(healthy: Project) -> None:
     before = repr(healthy)
-    check(healthy)
+    check_project(healthy)
     assert repr(healthy) == before
 
 
 def test_errors_come_first_hints_last(healthy: Project, toy: Any) -> None:
     project = edits.add_stance(healthy, "arms", "bare")
     project = edits.update_actions(project, [toy.id(project, "far beat")], likelihood=0)
-    severities = [p.severity for p in check(project)]
+    severities = [p.severity for p in check_project(project)]
     assert severities == sorted(severities, key=["error", "warning", "hint"].index) and set(severities) == {
         "error",
         "warning",
@@ -128,7 +128,7 @@ def lying(toy: Any, turn: float, up: float = 0.0, facing: float = 0.0) -> Clip:
 
 
 def test_base_rest(healthy: Project, toy: Any) -> None:
-    far = edits.set_start(edits.set_base(healthy, None), toy.id(healthy, "far"))
+    far = edits.set_start_stance(edits.set_base(healthy, None), toy.id(healthy, "far"))
     assert only(far, "base-rest").severity == "warning"
     assert "base-rest" not in codes(edits.set_base(healthy, None))  # this character stands as it rests
 
@@ -150,7 +150,7 @@ def test_base_twisted(healthy: Project, toy: Any) -> None:
 
 def test_no_part(healthy: Project) -> None:
     project = edits.set_part(healthy, healthy.skeleton.names, "spine")
-    found = [p for p in check(project) if p.code == "no-part"]
+    found = [p for p in check_project(project) if p.code == "no-part"]
     assert [p.message.split()[-1] for p in found] == ["arms", "head", "legs"]
 
 
@@ -198,7 +198,7 @@ def test_lost_stance(healthy: Project, toy: Any) -> None:
 
 
 def test_no_end_lost_end_and_circle(healthy: Project, toy: Any) -> None:
-    project = edits.place(
+    project = edits.place_clips(
         healthy,
         [entry(healthy, "rest to up")],
         "arms",
@@ -262,7 +262,7 @@ def test_trim_empty_blend_and_exit(healthy: Project, toy: Any, timing: dict[str,
     ident = toy.id(healthy, "far beat")
     found = [
         p
-        for p in check(edits.update_actions(healthy, [ident], timing=timing))
+        for p in check_project(edits.update_actions(healthy, [ident], timing=timing))
         if not p.code.startswith("far")
     ]
     assert [(p.code, p.action) for p in found] == [(code, ident)]
@@ -281,7 +281,7 @@ def test_a_blend_that_cannot_be_is_told_of_a_loop_and_beside_another_fault(
         and side[6:] in found.message
     )
     ident = toy.id(healthy, "far beat")
-    both = check(edits.update_actions(healthy, [ident], timing={side: blend, "start": -1.0}))
+    both = check_project(edits.update_actions(healthy, [ident], timing={side: blend, "start": -1.0}))
     assert {"trim", "blend"} <= {p.code for p in both}
 
 
@@ -291,7 +291,7 @@ def test_half_a_frame_beyond_the_end_is_rounding(healthy: Project, toy: Any) -> 
 
 def test_open_loop(healthy: Project, toy: Any) -> None:
     project = edits.add_clips(healthy, [("open.glb", 0, "", toy.clip("open", 2.0, 0.0, 0.5))])
-    project = edits.place(project, [entry(project, "open")], "arms", "stance", toy.id(project, "rest"))
+    project = edits.place_clips(project, [entry(project, "open")], "arms", "stance", toy.id(project, "rest"))
     ident = [*project.actions()][-1].id
     assert codes(project) == []  # its seam is blended
     assert only(edits.update_actions(project, [ident], timing={"blend_in": 0.0}), "open-loop").action == ident
@@ -299,7 +299,7 @@ def test_open_loop(healthy: Project, toy: Any) -> None:
 
 def test_far_start_and_far_end(healthy: Project, toy: Any) -> None:
     project = edits.move_actions(healthy, [toy.id(healthy, "up beat")], "gesture", toy.id(healthy, "rest"))
-    found = [p for p in check(project) if p.code.startswith("far")]
+    found = [p for p in check_project(project) if p.code.startswith("far")]
     assert [p.code for p in found] == ["far-start", "far-end"]
     assert "cm from stance 'rest'" in found[0].message and found[0].severity == "warning"
 
@@ -309,7 +309,9 @@ def test_a_long_slow_blend_is_no_pop(healthy: Project, toy: Any, blend: float, p
     """Its hands are some 40 cm away: too far for a seam, and an unhurried way for half a second."""
     clip = toy.clip("from afar", 2.4, 0.4, 0.0, swing=0.0)
     project = edits.add_clips(healthy, [("from afar.glb", 0, "", clip)])
-    project = edits.place(project, [toy.id(project, "from afar")], "arms", "gesture", toy.id(project, "rest"))
+    project = edits.place_clips(
+        project, [toy.id(project, "from afar")], "arms", "gesture", toy.id(project, "rest")
+    )
     ident = [*project.actions()][-1].id
     project = edits.update_actions(project, [ident], timing={"blend_in": blend, "blend_out": 0.0})
     assert codes(project) == (["far-start"] if pops else [])

@@ -22,8 +22,8 @@ EVERY: dict[str, Callable[[Project, Any], Project]] = {
     "add_stance": lambda p, t: edits.add_stance(p, "head", "still", ["c1"]),
     "rename_stance": lambda p, t: edits.rename_stance(p, t.id(p, "up"), "arms up"),
     "remove_stance": lambda p, t: edits.remove_stance(p, t.id(p, "up")),
-    "set_start": lambda p, t: edits.set_start(p, t.id(p, "far")),
-    "place": lambda p, t: edits.place(p, ["c5", "c6"], "arms", "fidget", t.id(p, "far")),
+    "set_start": lambda p, t: edits.set_start_stance(p, t.id(p, "far")),
+    "place": lambda p, t: edits.place_clips(p, ["c5", "c6"], "arms", "fidget", t.id(p, "far")),
     "update_actions": lambda p, t: edits.update_actions(
         p, [t.id(p, "up yawn")], timing={"start": 0.1}, tags=("bored",)
     ),
@@ -103,7 +103,7 @@ def test_removing_a_clip_removes_its_actions_and_a_base_pose_taken_from_it(toy: 
     ],
 )  # fmt: skip
 def test_the_limb_is_guessed_from_the_name(name: str, limb: Limb) -> None:
-    assert edits.limb_of(name) == limb
+    assert edits.guess_limb(name) == limb
 
 
 # --- stances
@@ -137,7 +137,7 @@ def test_names_of_stances_are_made_different_and_never_empty(toy: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    "edit", [edits.remove_stance, edits.set_start, lambda p, s: edits.rename_stance(p, s, "x")]
+    "edit", [edits.remove_stance, edits.set_start_stance, lambda p, s: edits.rename_stance(p, s, "x")]
 )
 def test_a_stance_that_is_gone_is_said_to_be_gone(edit: Any, toy: Any) -> None:
     with pytest.raises(EditError, match="no longer"):
@@ -155,7 +155,7 @@ def test_a_clip_that_is_gone_is_said_to_be_gone(toy: Any) -> None:
 
 
 def test_dropped_on_the_middle_of_an_empty_layer_a_clip_makes_a_stance(toy: Any) -> None:
-    project = edits.place(toy.project(), ["c5", "c6"], "head", "stance", None)
+    project = edits.place_clips(toy.project(), ["c5", "c6"], "head", "stance", None)
     [stance] = project.graphs["head"].stances.values()
     assert stance.name == "rest beat lf" and len(project.graphs["head"].of(stance.id, "stance")) == 2
 
@@ -163,7 +163,7 @@ def test_dropped_on_the_middle_of_an_empty_layer_a_clip_makes_a_stance(toy: Any)
 def test_refusals_say_what_to_do(toy: Any) -> None:
     project = toy.project()
     rest, up = toy.id(project, "rest"), toy.id(project, "up")
-    assert edits.refusal(project, [], "arms", "gesture", rest) == "nothing to place"
+    assert edits.find_placing_refusal(project, [], "arms", "gesture", rest) == "nothing to place"
     for clip, layer, kind, stance, end, piece in (
         ("c999", "arms", "gesture", rest, None, "not in this project"),
         ("c1", "head", "gesture", None, None, "the head layer"),
@@ -171,11 +171,15 @@ def test_refusals_say_what_to_do(toy: Any) -> None:
         ("c1", "arms", "transition", rest, None, "ends in"),
         ("c1", "arms", "transition", rest, rest, "another stance"),
     ):
-        assert piece in (edits.refusal(project, [clip], layer, kind, stance, end) or ""), (clip, kind, end)
-    assert edits.refusal(project, ["c1"], "arms", "transition", rest, up) is None
-    assert edits.refusal(project, ["c1"], "arms", "stance", None) is None
+        assert piece in (edits.find_placing_refusal(project, [clip], layer, kind, stance, end) or ""), (
+            clip,
+            kind,
+            end,
+        )
+    assert edits.find_placing_refusal(project, ["c1"], "arms", "transition", rest, up) is None
+    assert edits.find_placing_refusal(project, ["c1"], "arms", "stance", None) is None
     with pytest.raises(EditError, match="choose the stance"):
-        edits.place(project, ["c1"], "arms", "transition", rest)
+        edits.place_clips(project, ["c1"], "arms", "transition", rest)
 
 
 def test_a_clip_of_another_skeleton_is_refused(toy: Any) -> None:
@@ -187,7 +191,9 @@ def test_a_clip_of_another_skeleton_is_refused(toy: Any) -> None:
     other = Skeleton(s.names, s.parents, s.rest_rotations, s.rest_translations * 2)
     clip = replace(toy.clip("big"), skeleton=other)
     project = edits.add_clips(toy.project(), [("big.glb", 0, "", clip)])
-    words = edits.refusal(project, [list(project.clips)[-1]], "arms", "gesture", toy.id(project, "rest"))
+    words = edits.find_placing_refusal(
+        project, [list(project.clips)[-1]], "arms", "gesture", toy.id(project, "rest")
+    )
     assert "'big'" in words and "skeleton" in words
 
 

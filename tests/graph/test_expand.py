@@ -7,41 +7,50 @@ from typing import Any
 import pytest
 
 from metagraph.graph import edits
-from metagraph.graph.expand import Size, chain, connections, ends_in, reachable, size
+from metagraph.graph.expand import (
+    Size,
+    chain,
+    count_machine_size,
+    find_end_stance,
+    list_connections,
+    reachable,
+)
 from metagraph.graph.model import LAYERS, MetaGraph, Project
 
 pytestmark = pytest.mark.usefixtures("numbered_ids")
 
 
 def listed(project: Project) -> int:
-    return sum(1 for layer in LAYERS for _ in connections(project, project.graphs[layer]))
+    return sum(1 for layer in LAYERS for _ in list_connections(project, project.graphs[layer]))
 
 
 def test_an_empty_project_is_an_empty_machine() -> None:
-    assert size(Project()) == Size(0, 0, 0)
-    assert list(connections(Project(), MetaGraph("arms"))) == []
+    assert count_machine_size(Project()) == Size(0, 0, 0)
+    assert list(list_connections(Project(), MetaGraph("arms"))) == []
 
 
 def test_a_lone_loop_is_connected_to_nothing(toy: Any) -> None:
     project = edits.add_stance(
         edits.add_clips(Project(), [("a.glb", 0, "", toy.clip("a"))]), "arms", "rest", ["c1"]
     )
-    assert size(project) == Size(1, 1, 0)
+    assert count_machine_size(project) == Size(1, 1, 0)
 
 
 def test_two_loops_lead_to_each_other_but_not_to_themselves(toy: Any) -> None:
     project = edits.add_stance(
         edits.add_clips(Project(), [("a.glb", 0, "", toy.clip("a"))]), "arms", "rest", ["c1", "c1"]
     )
-    assert size(project) == Size(1, 2, 2)
+    assert count_machine_size(project) == Size(1, 2, 2)
 
 
 def test_the_size_is_what_listing_every_connection_gives(toy: Any, sample: Project) -> None:
     for project in (toy.project(), sample):
-        assert size(project).connections == listed(project)
+        assert count_machine_size(project).connections == listed(project)
         for layer in LAYERS:
-            assert size(project, layer).connections == len(list(connections(project, project.graphs[layer])))
-    assert size(sample) == Size(152, 152, listed(sample))
+            assert count_machine_size(project, layer).connections == len(
+                list(list_connections(project, project.graphs[layer]))
+            )
+    assert count_machine_size(sample) == Size(152, 152, listed(sample))
 
 
 def test_broken_projects_are_counted_like_they_are_listed(toy: Any) -> None:
@@ -54,20 +63,20 @@ def test_broken_projects_are_counted_like_they_are_listed(toy: Any) -> None:
     )
     lost = project.with_graph(graph.but(stances={i: s for i, s in graph.stances.items() if s.name != "up"}))
     for broken in (no_end, gone, lost):
-        assert size(broken).connections == listed(broken)
-    assert size(itself).connections == listed(itself)
+        assert count_machine_size(broken).connections == listed(broken)
+    assert count_machine_size(itself).connections == listed(itself)
 
 
 def test_one_stance_is_counted_with_what_starts_or_ends_in_it(toy: Any) -> None:
     project = toy.project()
     far = toy.id(project, "far")
-    assert size(project, "arms", far) == Size(3, 3, 4)  # its loop, the way in, the way out
+    assert count_machine_size(project, "arms", far) == Size(3, 3, 4)  # its loop, the way in, the way out
 
 
 def test_an_action_leads_to_everything_in_the_stance_it_ends_in(toy: Any) -> None:
     project = toy.project()
     way = toy.id(project, "up to far")
-    out = [c for c in connections(project, project.graphs["arms"]) if c.source == way]
+    out = [c for c in list_connections(project, project.graphs["arms"]) if c.source == way]
     assert [project.action(c.target).name for c in out] == ["far loop", "far to up"]
     assert out[0].leave == pytest.approx(0.8) and out[0].blend == project.action(way).timing.blend_out
     assert out[1].blend == project.action(out[1].target).timing.blend_in
@@ -77,7 +86,7 @@ def test_a_stance_may_be_left_at_any_time_and_an_action_from_its_earliest_exit(t
     project = toy.project()
     beat = toy.id(project, "up beat")
     project = edits.update_actions(project, [beat], timing={"earliest_exit": 0.4})
-    leave = {c.source: c.leave for c in connections(project, project.graphs["arms"])}
+    leave = {c.source: c.leave for c in list_connections(project, project.graphs["arms"])}
     assert leave[beat] == 0.4 and leave[toy.id(project, "up loop")] is None
 
 
@@ -88,7 +97,7 @@ def test_the_shortest_chain_is_found_and_none_where_there_is_no_way(toy: Any) ->
     assert chain(graph, rest, rest) == ()
     assert chain(graph, rest, up) == (up,)
     assert chain(graph, rest, far) == (up, far)
-    short = edits.place(project, ["c1"], "arms", "transition", rest, far).graphs["arms"]
+    short = edits.place_clips(project, ["c1"], "arms", "transition", rest, far).graphs["arms"]
     assert chain(short, rest, far) == (far,)
     cut = edits.remove_actions(project, [toy.id(project, "up to far")]).graphs["arms"]
     assert chain(cut, rest, far) is None and chain(cut, far, rest) == (up, rest)
@@ -97,8 +106,8 @@ def test_the_shortest_chain_is_found_and_none_where_there_is_no_way(toy: Any) ->
 def test_of_two_ways_as_short_the_first_placed_is_taken(toy: Any) -> None:
     project = edits.add_stance(toy.project(), "arms", "other")
     rest, far, other = (toy.id(project, name) for name in ("rest", "far", "other"))
-    project = edits.place(project, ["c1"], "arms", "transition", rest, other)
-    project = edits.place(project, ["c1"], "arms", "transition", other, far)
+    project = edits.place_clips(project, ["c1"], "arms", "transition", rest, other)
+    project = edits.place_clips(project, ["c1"], "arms", "transition", other, far)
     assert chain(project.graphs["arms"], rest, far) == (toy.id(project, "up"), far)
 
 
@@ -112,5 +121,5 @@ def test_what_can_be_reached_follows_transitions_whose_end_exists(toy: Any) -> N
 
 def test_only_a_transition_ends_elsewhere(toy: Any) -> None:
     project = toy.project()
-    assert ends_in(project.action(toy.id(project, "up yawn"))) == toy.id(project, "up")
-    assert ends_in(project.action(toy.id(project, "up to far"))) == toy.id(project, "far")
+    assert find_end_stance(project.action(toy.id(project, "up yawn"))) == toy.id(project, "up")
+    assert find_end_stance(project.action(toy.id(project, "up to far"))) == toy.id(project, "far")

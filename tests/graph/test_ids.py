@@ -41,7 +41,7 @@ def everything() -> Project:
     one, two = project.clips
     project = edits.add_stance(project, "arms", "rest", [one])
     (stance,) = project.graphs["arms"].stances
-    project = edits.place(project, [one, two, one], "arms", "gesture", stance)
+    project = edits.place_clips(project, [one, two, one], "arms", "gesture", stance)
     project = manual_edits.add_states(project, [one, two, one], "head")
     a, b, c = project.manual["head"].states
     project = manual_edits.add_links(project, "head", [a, b], [b, c])
@@ -67,7 +67,7 @@ def test_what_two_people_add_to_one_project_has_other_ids(toy: Any) -> None:
     rest = toy.id(base, "rest")
     for n, side in enumerate(sides):
         (new,) = side.clips.keys() - base.clips.keys()
-        sides[n] = edits.place(side, [new], "arms", "gesture", rest)
+        sides[n] = edits.place_clips(side, [new], "arms", "gesture", rest)
     mine, theirs = (set(every_id(side)) - set(every_id(base)) for side in sides)
     assert len(mine) == len(theirs) == 2 and not mine & theirs
 
@@ -84,8 +84,8 @@ def test_the_same_thing_made_a_thousand_times_has_a_thousand_ids() -> None:
     one, _ = project.clips
     project = edits.add_stance(project, "arms", "rest", [one])
     (stance,) = project.graphs["arms"].stances
-    project = edits.place(project, [one] * 1000, "arms", "gesture", stance)
-    project = edits.place(project, [one] * 1000, "arms", "gesture", stance)
+    project = edits.place_clips(project, [one] * 1000, "arms", "gesture", stance)
+    project = edits.place_clips(project, [one] * 1000, "arms", "gesture", stance)
     assert len({a.id for a in project.actions()}) == 2001
 
 

@@ -127,7 +127,7 @@ def apply(project: Project, step: tuple[Any, ...]) -> Project:
     word, *rest = step
     if word == "place":
         own = list(project.graphs[rest[1]].stances)
-        return edits.place(
+        return edits.place_clips(
             project, [some(clips, rest[0])], rest[1], rest[2], some(own, rest[3]), some(own, rest[4])
         )
     if word == "move":

@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 
 from metagraph.formats.project.data import from_data, to_data
-from metagraph.formats.project.journal import changes
+from metagraph.formats.project.journal import find_changes
 from metagraph.formats.project.text import to_text
-from metagraph.formats.store import from_text
+from metagraph.formats.store import parse_project
 from metagraph.graph import edits
-from metagraph.graph.editing.differences import differences
+from metagraph.graph.editing.differences import describe_differences
 from metagraph.graph.model import Project
 from metagraph.graph.notes import PROJECT, set_note
 
@@ -21,10 +21,10 @@ def test_a_note_comes_back_from_the_file_as_it_was_written(toy, tmp_path, text):
     project = toy.project()
     action = next(iter(project.actions()))
     noted = set_note(set_note(project, action.id, text), PROJECT, text)
-    assert from_text(to_text(to_data(noted)), tmp_path / "a.metagraph.yaml").notes == noted.notes
+    assert parse_project(to_text(to_data(noted)), tmp_path / "a.metagraph.yaml").notes == noted.notes
     assert noted.notes == {action.id: text.rstrip(), PROJECT: text.rstrip()}
-    assert changes(project, noted) == {"notes": dict(noted.notes)}
-    assert any("Notes" in line for line in differences(project, noted))
+    assert find_changes(project, noted) == {"notes": dict(noted.notes)}
+    assert any("Notes" in line for line in describe_differences(project, noted))
 
 
 def test_an_empty_note_is_none_and_changes_nothing(toy):

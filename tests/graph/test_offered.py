@@ -10,7 +10,7 @@ import pytest
 
 from metagraph.engines.character import Character
 from metagraph.graph.model import Project
-from metagraph.graph.offered import CHOICES, ENGINES, offered, tools
+from metagraph.graph.offered import CHOICES, ENGINES, offered_requests, tools
 from metagraph.graph.requests import WORDS, Line, request_from
 
 
@@ -23,7 +23,7 @@ def takes(schema: dict[str, Any], given: Any) -> bool:
 
 
 def test_a_project_with_nothing_offers_words_and_tools_all_the_same() -> None:
-    told = offered(Project())
+    told = offered_requests(Project())
     assert told["joints"] == told["lines"] == told["layers"]["arms"]["actions"] == []
     assert told["words"] == list(ENGINES) and "bml" not in ENGINES and {*ENGINES, "bml"} == set(WORDS)
     assert takes(tool(Project(), "gesture"), {"tags": ["whatever"]}), (
@@ -67,8 +67,8 @@ def test_whatever_a_tool_lists_is_understood_when_it_is_asked_for(sample: Projec
 
 def test_lines_are_told_by_id_and_only_so_many_where_that_is_asked() -> None:
     project = replace(Project(), lines={x: Line(text=x) for x in ("b", "10", "é", "a")})
-    assert [line["id"] for line in offered(project)["lines"]] == ["10", "a", "b", "é"]
-    assert len(offered(project, most={"lines": 2})["lines"]) == 2
+    assert [line["id"] for line in offered_requests(project)["lines"]] == ["10", "a", "b", "é"]
+    assert len(offered_requests(project, most={"lines": 2})["lines"]) == 2
 
 
 @pytest.mark.parametrize("count", [CHOICES, CHOICES + 1])
@@ -80,4 +80,6 @@ def test_a_tool_with_too_many_choices_takes_any_text(count: int) -> None:
 def test_a_character_describes_what_its_export_offers(sample: Project) -> None:
     character = Character(sample)
     assert character.tools() == tools(sample)
-    assert character.describe() == {**offered(sample), "words": list(WORDS)}, "this one reads BML too"
+    assert character.describe() == {**offered_requests(sample), "words": list(WORDS)}, (
+        "this one reads BML too"
+    )

@@ -33,7 +33,7 @@ def test_gaps_are_kept_and_ids_are_new(two):
     made = paste_requests(project, second, text, 10.0)
     asks = made.project.performances[second].asks
     assert holds_requests(text) and len({x.id for x in asks}) == 4 and made.left_out == ()
-    assert [edits.asked_at(x) for x in asks if x.id in made.idents] == [10.0, 12.5, 15.0]
+    assert [edits.ask_time(x) for x in asks if x.id in made.idents] == [10.0, 12.5, 15.0]
     assert made.project.performances[first] == project.performances[first]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from metagraph.formats.project.data import from_data, to_data
-from metagraph.formats.project.journal import changes
+from metagraph.formats.project.journal import find_changes
 from metagraph.graph import requests as a
 from metagraph.graph import timeline_edits as t
 from metagraph.graph.edit_error import EditError
@@ -63,19 +63,19 @@ def test_what_is_noted_is_saved_and_goes_with_its_performance(project):
 def test_a_note_alone_is_told_from_other_edits(project):
     before, ident = project
     after, _ = t.add_marker(before, ident, 1.0)
-    assert t.only_noted(before, after) and set(changes(before, after)) == {"timelines"}
-    assert not t.only_noted(before, edits.add_request(after, ident, a.Nod(at=2.0)))
-    assert not t.only_noted(before, before)
+    assert t.differs_only_in_timeline(before, after) and set(find_changes(before, after)) == {"timelines"}
+    assert not t.differs_only_in_timeline(before, edits.add_request(after, ident, a.Nod(at=2.0)))
+    assert not t.differs_only_in_timeline(before, before)
 
 
 def test_closing_up_moves_what_follows_by_what_is_gone_before_it(project):
     before, ident = project
     after = edits.close_up_after(before, ident, {"n1"}, [(4.0, 5.5)]).performances[ident]
-    assert {x.id: edits.asked_at(x) for x in after.asks} == {"g1": 1.0, "g2": 4.5, "s": 6.5}
+    assert {x.id: edits.ask_time(x) for x in after.asks} == {"g1": 1.0, "g2": 4.5, "s": 6.5}
     both = edits.close_up_after(
         before, ident, {"g1", "n1"}, [(1.0, 3.0), (2.0, 3.0), (4.0, 5.0)], {"s"}
     ).performances[ident]
-    assert {x.id: edits.asked_at(x) for x in both.asks} == {"g2": 3.0, "s": 8.0}, "what is locked stays"
+    assert {x.id: edits.ask_time(x) for x in both.asks} == {"g2": 3.0, "s": 8.0}, "what is locked stays"
 
 
 def test_what_follows_a_request_goes_along_but_for_what_stays(project):

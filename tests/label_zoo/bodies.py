@@ -70,7 +70,7 @@ def breath(stance: str, frames: int, phase: float, size: float = 1.0) -> Motion:
     still = loop(stance).motion
     away = rotation.multiply(swaying.turns, rotation.conjugate(still.turns[:1]))
     return Motion(
-        rotation.multiply(rotation.power(away, np.full(away.shape[:-1], size)), base().turns),
+        rotation.multiply(rotation.scale_rotation(away, np.full(away.shape[:-1], size)), base().turns),
         base().root + size * (swaying.root - still.root[:1]),
     )
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from metagraph.graph.model import Project
-from metagraph.suggest.flags import needs_a_look
+from metagraph.suggest.flags import needs_look
 from metagraph.suggest.memory import Memory
-from metagraph.suggest.proposal import Proposal, Proposals, plain
+from metagraph.suggest.proposal import Proposal, Proposals, plain_stance_name
 from metagraph.suggest.propose import SOURCES, accept, propose, waiting
 from metagraph.suggest.review import Review
 from metagraph.suggest.whole_body import CARRIER
@@ -186,7 +186,7 @@ def measured(project: Project, truth: Truth, found: Proposals) -> Tally:
         if p is None:
             continue
         out.believed("clip", p.confidence, right)
-        flagged = needs_a_look(p, taken.left)
+        flagged = needs_look(p, taken.left)
         out.flags.update({"clips": 1, "flagged": flagged, "wrong": not right, "both": flagged and not right})
         reasons = (p.confidence < SURE, bool(p.conflicts), p.good is False, p.clip in taken.left)
         for cause, is_ in zip(CAUSES, reasons, strict=True):
@@ -251,7 +251,7 @@ def read(project: Project, truth: Truth, found: Proposals) -> dict[str, str]:
 
 def _alike(name: str) -> str:
     """Return a stance's name as a person compares it: 'Idle01' is 'idle 1'."""
-    return " ".join(str(int(w)) if w.isdecimal() else w for w in plain(name).split())
+    return " ".join(str(int(w)) if w.isdecimal() else w for w in plain_stance_name(name).split())
 
 
 def corrected(project: Project, truth: Truth, review: Review, clip: str) -> Review:

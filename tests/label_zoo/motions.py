@@ -7,7 +7,7 @@ from functools import cache, lru_cache
 
 import numpy as np
 
-from metagraph.formats.takes import without_stray_poses
+from metagraph.formats.takes import drop_stray_poses
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.mirror import mirror, pairs_of
@@ -54,7 +54,9 @@ def recorded(clip: Clip, how: Recording, draw: np.random.Generator, loop: bool =
         turns = _trembling(turns, how.noise, draw)
     if how.strewn:
         yaw = turn("y", draw.uniform(-180, 180))
-        root = rotation.rotate(yaw, root) + np.array([*draw.uniform(-2, 2, 1), 0, *draw.uniform(-2, 2, 1)])
+        root = rotation.rotate_vectors(yaw, root) + np.array(
+            [*draw.uniform(-2, 2, 1), 0, *draw.uniform(-2, 2, 1)]
+        )
         turns[:, 0] = rotation.multiply(yaw, turns[:, 0])
     out = Clip(clip.name, skeleton(), FPS, rotation.continuous(turns), root[:, None])
     if how.trim:
@@ -79,7 +81,7 @@ def with_bind(clip: Clip, how: Recording) -> Clip:
     if "after" in how.bind:
         turns, places = np.concatenate([turns, pose]), np.concatenate([places, rest[None]])
     turns = rotation.continuous(np.asarray(turns, np.float64))
-    return without_stray_poses([replace(clip, rotations=turns, translations=places, weights=None)])[0]
+    return drop_stray_poses([replace(clip, rotations=turns, translations=places, weights=None)])[0]
 
 
 def scaled(clip: Clip, size: float) -> Clip:
@@ -106,7 +108,7 @@ def _sized(turns: Array, root: Array, size: float) -> tuple[Array, Array]:
     )
     away = rotation.multiply(rotation.conjugate(way), turns)
     line = root[:1] + (root[-1:] - root[:1]) * part[:, None]
-    grown = rotation.power(away, np.full(shape[:2], size))
+    grown = rotation.scale_rotation(away, np.full(shape[:2], size))
     return rotation.multiply(way, grown), line + (root - line) * size
 
 

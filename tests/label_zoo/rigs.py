@@ -117,7 +117,7 @@ def _rig(figure: Figure) -> _Rig:
                 offsets[j] *= factors.get(limb, 1.0)
     legs = factors.get("legs", 1.0)
     offsets[0] *= legs
-    rests = np.repeat(rotation.identity()[None], len(source), 0)
+    rests = np.repeat(rotation.identity_rotations()[None], len(source), 0)
     if figure.rest in ("T", "I"):
         for side, way in (("Left", 1.0), ("Right", -1.0)):
             rests[joint(f"{side}UpperArm")] = turn("z", way * (42.0 if figure.rest == "T" else -45.0))
@@ -128,7 +128,7 @@ def _rig(figure: Figure) -> _Rig:
     above = parents.copy()
     for j in gone:
         for c in np.flatnonzero(parents == j):
-            offsets[c] = offsets[j] + rotation.rotate(rests[j], offsets[c])
+            offsets[c] = offsets[j] + rotation.rotate_vectors(rests[j], offsets[c])
             rests[c] = rotation.multiply(rests[j], rests[c])
             parents[c] = parents[j]
     stay = [j for j, name in enumerate(source.names) if j not in gone and not _missing(name, figure.missing)]
@@ -136,15 +136,15 @@ def _rig(figure: Figure) -> _Rig:
     mine = [place[int(parents[j])] if j else -1 for j in stay]
     rests, offsets = rests[stay], offsets[stay]
     axes = _axes(figure, mine, rests, offsets, draw)
-    over = np.where(np.array(mine)[:, None] >= 0, axes[mine], rotation.identity())
+    over = np.where(np.array(mine)[:, None] >= 0, axes[mine], rotation.identity_rotations())
     rests = rotation.multiply(rotation.conjugate(over), rotation.multiply(rests, axes))
-    offsets[1:] = rotation.rotate(rotation.conjugate(over), offsets)[1:]
+    offsets[1:] = rotation.rotate_vectors(rotation.conjugate(over), offsets)[1:]
     names = [called(figure.names, source.names[j]) for j in stay]
     rows = [(n, p, r, o) for n, p, r, o in zip(names, mine, rests, offsets, strict=True)]
     placed = np.arange(len(stay))
     if "root" in figure.extra:
         rows = [(n, p + 1, r, o) for n, p, r, o in rows]
-        rows.insert(0, (CONVENTIONS[figure.names].root, -1, rotation.identity(), np.zeros(3)))
+        rows.insert(0, (CONVENTIONS[figure.names].root, -1, rotation.identity_rotations(), np.zeros(3)))
         placed = placed + 1
     swinging = _add_extras(figure, rows, stay, placed)
     shape = Skeleton(
@@ -179,15 +179,27 @@ def _add_extras(
             if "twist" in figure.extra:
                 name = called(figure.names, f"{side}{part}") + "_twist"
                 rows.append(
-                    (name, at[f"{side}{part}"], rotation.identity(), rows[at[f"{side}{below}"]][3] / 2)
+                    (
+                        name,
+                        at[f"{side}{part}"],
+                        rotation.identity_rotations(),
+                        rows[at[f"{side}{below}"]][3] / 2,
+                    )
                 )
         if "props" in figure.extra:
-            rows.append((f"weapon_{side[0]}", at[f"{side}Hand"], rotation.identity(), np.array([0, 0.05, 0])))
+            rows.append(
+                (
+                    f"weapon_{side[0]}",
+                    at[f"{side}Hand"],
+                    rotation.identity_rotations(),
+                    np.array([0, 0.05, 0]),
+                )
+            )
     swinging = []
     if "props" in figure.extra:
         above = at["Head"]
         for k in range(3):
-            rows.append((f"hair_{k}", above, rotation.identity(), np.array([0, 0.08, -0.04])))
+            rows.append((f"hair_{k}", above, rotation.identity_rotations(), np.array([0, 0.08, -0.04])))
             above = len(rows) - 1
             swinging.append(above)
     return tuple(swinging)
@@ -201,18 +213,18 @@ def _axes(
     if figure.axes == "random":
         return rotation.normalize(draw.normal(size=(count, 4)))
     if figure.axes == "bones":
-        out = np.repeat(rotation.identity()[None], count, 0)
+        out = np.repeat(rotation.identity_rotations()[None], count, 0)
         for j in range(count):
             below = [c for c in range(count) if parents[c] == j]
             along = offsets[below[0]] if below else None
             if along is not None and np.linalg.norm(along) > 1e-6:
-                out[j] = rotation.between(np.array([0.0, 1, 0]), along / np.linalg.norm(along))
+                out[j] = rotation.rotation_between(np.array([0.0, 1, 0]), along / np.linalg.norm(along))
             elif parents[j] >= 0:
                 out[j] = out[parents[j]]
         return out
     if figure.axes == "none":
-        whole = np.repeat(rotation.identity()[None], count, 0)
+        whole = np.repeat(rotation.identity_rotations()[None], count, 0)
         for j in range(count):
             whole[j] = rotation.multiply(whole[parents[j]], rests[j]) if parents[j] >= 0 else rests[j]
         return rotation.conjugate(whole)
-    return np.repeat(rotation.identity()[None], count, 0)
+    return np.repeat(rotation.identity_rotations()[None], count, 0)

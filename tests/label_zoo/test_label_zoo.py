@@ -70,7 +70,7 @@ def posed(clip: Clip, frames: Any = slice(None)) -> dict[str, Any]:
     arms = at[:, roles["left_upper_arm"]] - at[:, roles["right_upper_arm"]]
     yaw = np.arctan2(-arms[:, 2], arms[:, 0])
     back = rotation.from_axis_angle(np.array([0.0, 1, 0]), -yaw)[:, None]
-    seen = rotation.rotate(np.broadcast_to(back, turns.shape), at - hips) / clip.skeleton.height
+    seen = rotation.rotate_vectors(np.broadcast_to(back, turns.shape), at - hips) / clip.skeleton.height
     return {role: seen[:, j] for role, j in roles.items()}
 
 
@@ -80,7 +80,9 @@ def vector(clip: Clip, frame: int, layer: str) -> Any:
         head = find_roles(clip.skeleton)["head"]
         up = clip.skeleton.globals(clip.poses()[[frame]])[0][0, head]
         rest = clip.skeleton.globals(clip.skeleton.rest)[0][head]
-        return rotation.rotate(rotation.multiply(up, rotation.conjugate(rest)), np.array([0.0, 0.1, 0]))
+        return rotation.rotate_vectors(
+            rotation.multiply(up, rotation.conjugate(rest)), np.array([0.0, 0.1, 0])
+        )
     names = OF.get(layer, WATCHED)
     return np.concatenate([pose[r][0] for r in names if r in pose])
 
@@ -198,7 +200,7 @@ def test_another_rig_of_the_same_size_moves_alike(figure: Figure) -> None:
 def test_rests_differ_between_rigs_of_the_same_motion() -> None:
     clip = clip_of("x", loop("hands_at_sides").motion)
     t, bare = (rigs.on(clip, Figure(rest="T", axes=axes)) for axes in ("world", "none"))
-    assert rotation.angle_between(bare.skeleton.rest_rotations, rotation.identity()).max() < 1e-6
+    assert rotation.angle_between(bare.skeleton.rest_rotations, rotation.identity_rotations()).max() < 1e-6
     hand = skeleton().index("LeftHand")
     for other in (t, bare):  # in a T-pose both have the hand at the height of the shoulder
         _, at = other.skeleton.globals(other.skeleton.rest)

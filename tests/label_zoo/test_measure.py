@@ -11,7 +11,7 @@ import pytest
 
 from metagraph.graph.model import Project
 from metagraph.suggest.estimate import Belief
-from metagraph.suggest.proposal import Place, Proposal, Proposals
+from metagraph.suggest.proposal import Proposal, Proposals, StancePlace
 from tests.label_zoo.measure import LabelSet, Tally, looked, measured, others
 from tests.label_zoo.sets import MadeSet, Recipe, make
 
@@ -37,7 +37,7 @@ def told(
             change(entry.name, row)
             for name in (row["stance"], row["end_stance"]):
                 if name is not None:
-                    places[f"new {name}"] = Place(f"new {name}", "arms", name)
+                    places[f"new {name}"] = StancePlace(f"new {name}", "arms", name)
             end = Belief(f"new {row['end_stance']}", sure, "") if row["end_stance"] else None
             stance = Belief(f"new {row['stance']}", sure, "") if row["stance"] else None
             limb = Belief(row["limb"] or "both", sure, "")

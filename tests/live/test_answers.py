@@ -9,18 +9,22 @@ import msgspec
 
 from metagraph.graph import requests as a
 from metagraph.graph.model import Project
-from metagraph.live.answers import find, owner_of
-from metagraph.live.messages import HeardMessage, read
-from metagraph.playback.planning.extend_performance import answer
-from metagraph.playback.planning.running_plan import perform
+from metagraph.live.answers import find, find_owning_ask
+from metagraph.live.messages import HeardMessage, read_live_request
+from metagraph.playback.planning.extend_performance import answer_ask
+from metagraph.playback.planning.running_plan import plan_performance
 from tests.live.traffic import valid
 
 
 def test_an_owner_is_found_through_all_parts() -> None:
-    assert owner_of("a", {"a"}) == "a"
-    assert owner_of("a.1.12", {"a"}) == "a"
-    assert owner_of("a.1.12", {"a", "a.1"}) == "a.1"
-    assert owner_of("a.b", {"a"}) is None and owner_of("ab", {"a"}) is None and owner_of("a.", {"a"}) is None
+    assert find_owning_ask("a", {"a"}) == "a"
+    assert find_owning_ask("a.1.12", {"a"}) == "a"
+    assert find_owning_ask("a.1.12", {"a", "a.1"}) == "a.1"
+    assert (
+        find_owning_ask("a.b", {"a"}) is None
+        and find_owning_ask("ab", {"a"}) is None
+        and find_owning_ask("a.", {"a"}) is None
+    )
 
 
 def test_found_together_is_what_is_answered_one_by_one(sample: Project) -> None:
@@ -28,16 +32,16 @@ def test_found_together_is_what_is_answered_one_by_one(sample: Project) -> None:
         r = random.Random(seed)
         asks: list[Any] = []
         while len(asks) < 25:
-            heard = read(msgspec.json.encode(valid(r)))
+            heard = read_live_request(msgspec.json.encode(valid(r)))
             assert isinstance(heard, HeardMessage)
             if not isinstance(heard.message, a.Withdraw):
                 asks.append(
                     msgspec.structs.replace(heard.message, id=f"x{len(asks)}", at=round(r.random() * 40, 2))
                 )  # type: ignore[arg-type]
-        plan = perform(sample, asks, 25.0, idle=bool(seed % 2))
+        plan = plan_performance(sample, asks, 25.0, idle=bool(seed % 2))
         found = find(plan, {ask.id for ask in asks})
         for ask in asks:
-            one = answer(plan, ask.id)
+            one = answer_ask(plan, ask.id)
             if ask.id not in found:
                 assert (one.state, one.why) == ("refused", "nothing came of it")
                 continue

@@ -12,7 +12,7 @@ from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Project
 from metagraph.live.live_session import LiveSession
 from metagraph.live.messages import Reply, encode
-from metagraph.playback.planning.running_plan import perform
+from metagraph.playback.planning.running_plan import plan_performance
 from sample_clips.make.sample_keypoints import View, played, seen
 
 TICK = 1 / 60
@@ -83,7 +83,7 @@ def test_a_session_with_a_camera_performs_again_as_it_was_played(sample: Project
     session = LiveSession(sample)
     watch(session, talk, mirror=False, gaze=True)
     kept = session.performance("seen")
-    again = perform(sample, kept.asks, kept.length, kept.seed)
+    again = plan_performance(sample, kept.asks, kept.length, kept.seed)
     for layer in LAYERS:
         live = [c for c in session.plan.layers[layer].cues if c.start < kept.length]
         assert [c for c in again.layers[layer].cues if c.start < kept.length] == live

@@ -29,14 +29,14 @@ def section(title: str) -> str:
 
 
 def test_the_published_schemas_are_those_of_the_code() -> None:
-    for path, text in schemas.texts().items():
+    for path, text in schemas.schema_texts().items():
         assert path.read_bytes() == text, "write them anew: .venv/bin/python -m metagraph.live.schemas"
 
 
 def test_every_request_and_its_fields_are_in_the_table() -> None:
     rows = section("Requests")
     common = {"id", "at", "in", "priority", "told", "do"}
-    parts = messages.schema()["$defs"]
+    parts = messages.live_schema()["$defs"]
     for name in (ref["$ref"].rpartition("/")[2] for ref in parts["Request"]["anyOf"]):
         word = parts[name]["properties"]["do"]["enum"][0]
         row = next((line for line in rows.splitlines() if re.match(rf"\| (`\w+`, )?`{word}`[, ]", line)), "")
@@ -64,7 +64,9 @@ def test_what_synthesisers_tell_is_said_as_the_page_shows_it(sample: Project) ->
 @pytest.mark.parametrize(("part", "title"), [("Reply", "Replies"), ("Event", "Events"), ("Poses", "Poses")])
 def test_every_field_that_is_sent_back_is_described(part: str, title: str) -> None:
     text = section(title)
-    assert not [field for field in messages.schema()["$defs"][part]["properties"] if f"`{field}`" not in text]
+    assert not [
+        field for field in messages.live_schema()["$defs"][part]["properties"] if f"`{field}`" not in text
+    ]
 
 
 def test_every_address_is_listed_and_understood() -> None:

@@ -13,7 +13,7 @@ from metagraph.graph.model import Project
 from metagraph.live.hub import Hub
 from metagraph.live.limits import PLANNED_PER_TICK, RATES
 from metagraph.live.live_session import LiveSession
-from metagraph.live.tick_work import in_turn
+from metagraph.live.tick_work import order_requests
 from metagraph.live.wire import exchange
 from tests.live.test_hub import Wire
 
@@ -92,7 +92,9 @@ def test_others_have_their_share_of_a_kind_that_is_used_up(sample: Project) -> N
 
 def test_a_tick_s_work_is_shared_and_order_within_a_client_is_kept(sample: Project) -> None:
     assert (
-        in_turn([1, 1, 1, 2, 3, 2]) == [0, 3, 4, 1, 5, 2] and in_turn([7, 7]) == [0, 1] and in_turn([]) == []
+        order_requests([1, 1, 1, 2, 3, 2]) == [0, 3, 4, 1, 5, 2]
+        and order_requests([7, 7]) == [0, 1]
+        and order_requests([]) == []
     )
     talk = Talk(sample, 2)
     talk.send(0, *({"do": "place", "name": "user", "point": [0, 1, 2]} for _ in range(PLANNED_PER_TICK * 4)))

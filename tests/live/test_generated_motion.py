@@ -83,7 +83,7 @@ def test_arms_and_head_move_as_the_model_says_and_the_legs_as_the_body_does(sess
         rotations.append(session.pose(session.now).rotations)
         plain.append(pose_at(session.plan, sample, session.now).rotations)
     apart = np.abs(np.stack(rotations) - np.stack(plain)).max((0, 2))
-    parts = np.array(anatomy.parts(sample))
+    parts = np.array(anatomy.project_parts(sample))
     assert apart[parts == "legs"].max() < 1e-6 and apart[parts == "arms"].max() > 0.01
     steps = np.abs(np.diff(np.stack(rotations), axis=0)).max((1, 2))
     assert steps.max() < 0.2  # no jump, also where a chunk ends

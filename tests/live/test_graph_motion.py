@@ -14,12 +14,12 @@ import pytest
 
 from metagraph.graph import anatomy, edits
 from metagraph.graph.model import Project
-from metagraph.live.graph_motion import NEWS, WAITS, GraphMotion, LiveGraph, faded, said
-from metagraph.live.kept_motion import made_again, read_kept, write_kept
+from metagraph.live.graph_motion import NEWS, WAITS, GraphMotion, LiveGraph, as_clauses, fade_turns
+from metagraph.live.kept_motion import read_kept, remake_motion, write_kept
 from metagraph.live.live_session import LiveSession
 from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.life.track import Speech
-from metagraph.synthesis.extending.path import FADE, replayed
+from metagraph.synthesis.extending.path import FADE, replay_path
 from tests.live.test_heard_voice import voice
 from tests.posing import pose_at
 from tests.synthesis.talking import talkers, talkers_graph
@@ -86,7 +86,7 @@ def test_arms_and_head_move_as_the_takes_and_the_legs_as_the_body_does(session, 
         rotations.append(session.pose(session.now).rotations)
         plain.append(pose_at(session.plan, sample, session.now).rotations)
     apart = np.abs(np.stack(rotations) - np.stack(plain)).max((0, 2))
-    parts = np.array(anatomy.parts(sample))
+    parts = np.array(anatomy.project_parts(sample))
     assert apart[parts == "legs"].max() < 1e-6 and apart[parts == "arms"].max() > 0.1
     fastest = max(np.abs(np.diff(take.rotations, axis=0)).max() for take in graph.takes) / 2
     moved = np.abs(np.diff(np.stack(rotations)[40:], axis=0)).max((0, 2))
@@ -142,7 +142,7 @@ def test_what_the_character_says_itself_it_knows_beforehand(session, sample) -> 
     comes = [n for _, n in motion.told if n.what == "comes"]
     assert comes and abs(comes[0].at + motion.begun - reply["at"]) < 0.05
     assert all(a.end <= b.at + 1e-9 for a, b in pairwise(comes))
-    assert said(Speech("a", 1.0, 1.0), sample, 0.0) == []
+    assert as_clauses(Speech("a", 1.0, 1.0), sample, 0.0) == []
 
 
 def test_taking_back_what_it_was_about_to_say_hushes_it(session) -> None:
@@ -247,7 +247,7 @@ def test_the_same_messages_at_the_same_times_move_alike_whatever_the_ticks(sampl
             session.tick(session.now + every)
             way[motion.path.frame] = motion.path.at(motion.path.frame)
         ways.append(motion.kept())
-        again = replayed(graph.driver, motion.told, motion.path.frame + 1, 7)
+        again = replay_path(graph.driver, motion.told, motion.path.frame + 1, 7)
         assert all(again.states[frame] == state for frame, state in way.items())
     assert all(len(kept.told) == 4 for kept in ways)
 
@@ -263,13 +263,13 @@ def test_what_was_moved_is_kept_and_made_again(session, graph, tmp_path) -> None
     write_kept(path, session.generating.motions())
     one, two = read_kept(path)
     assert (one.seed, two.seed, two.frames) == (3, 4, motion.path.frame + 1) and len(one.told) == 1
-    clip = made_again(graph, one, "again")
+    clip = remake_motion(graph, one, "again")
     assert clip.frames == one.frames and clip.skeleton == graph.takes[0].skeleton
     less = LiveGraph(
         graph.takes, replace(graph.driver, graph=replace(graph.driver.graph, targets=np.zeros(3, int)))
     )
     with pytest.raises(ValueError, match="the takes and the speech"):
-        made_again(less, one, "again")
+        remake_motion(less, one, "again")
 
 
 def test_no_more_is_kept_of_what_became_known_than_may_be(session, graph, monkeypatch) -> None:
@@ -300,7 +300,7 @@ def test_frames_fade_from_what_was_shown_without_a_step() -> None:
         *range(1300, 1330),
     ]  # the second jump comes while the first fades
     angles = [
-        2 * np.arcsin(faded(turns, way[max(0, n - FADE) : n + 1], driver)[0, 2]) for n in range(len(way))
+        2 * np.arcsin(fade_turns(turns, way[max(0, n - FADE) : n + 1], driver)[0, 2]) for n in range(len(way))
     ]
     assert np.isclose(angles[10], turn[110]) and np.isclose(angles[-1], turn[1329], atol=1e-6)
     steps = np.abs(np.diff(angles))

@@ -9,9 +9,9 @@ import pytest
 
 from metagraph.graph import requests as a
 from metagraph.live import hub as hubs
-from metagraph.live.hub import Hub, same
+from metagraph.live.hub import Hub, is_right_token
 from metagraph.live.messages import Hello
-from metagraph.live.wire import Batch, Picture, Result, pack, unpack_batch, unpack_result
+from metagraph.live.wire import BatchResult, PosePicture, RequestBatch, pack, unpack_batch, unpack_result
 
 
 class Wire:
@@ -43,11 +43,11 @@ class Wire:
         return [data.decode() for data, _ in self.sent]
 
 
-def answered(batch: Batch | None) -> Result:
+def answered(batch: RequestBatch | None) -> BatchResult:
     """Say of each request who asked what."""
     assert batch is not None
     words = (f"{client}:{type(heard.message).__name__}".encode() for client, heard in batch.asked)
-    return Result(batch.number, tuple(b'"' + w + b'"' for w in words))
+    return BatchResult(batch.number, tuple(b'"' + w + b'"' for w in words))
 
 
 @pytest.fixture
@@ -93,7 +93,9 @@ def test_a_batch_is_answered_before_the_next_is_taken(wire: Wire) -> None:
 def test_events_and_poses_need_no_batch(wire: Wire) -> None:
     hub = Hub()
     number = hub.open(wire, 0.0)
-    hub.give(Result(events=((number, b"{}"), (99, b"{}")), poses=(Picture((number, 98), b"\1\2", True),)))
+    hub.give(
+        BatchResult(events=((number, b"{}"), (99, b"{}")), poses=(PosePicture((number, 98), b"\1\2", True),))
+    )
     assert wire.sent == [(b"{}", False), (b"\1\2", True)]
 
 
@@ -137,7 +139,7 @@ def test_who_does_not_read_is_hung_up_on_and_others_go_on() -> None:
     hub, slow, quick = Hub(), Wire(), Wire()
     numbers = hub.open(slow, 0.0), hub.open(quick, 0.0)
     slow.unread = hubs.POSES_BACKLOG + 1
-    poses = Result(poses=(Picture(numbers, b"pose", True),))
+    poses = BatchResult(poses=(PosePicture(numbers, b"pose", True),))
     hub.give(poses)
     assert slow.sent == [] and quick.sent == [(b"pose", True)]  # poses are left out first
     slow.unread = hubs.BACKLOG + 1
@@ -211,7 +213,7 @@ def test_who_shows_no_token_in_time_is_hung_up_on(wire: Wire) -> None:
 
 
 def test_tokens_of_any_text_are_compared() -> None:
-    assert same("ä", "ä") and not same("a", "b") and not same("\ud800", "a")
+    assert is_right_token("ä", "ä") and not is_right_token("a", "b") and not is_right_token("\ud800", "a")
 
 
 # --- the pipe
@@ -230,5 +232,5 @@ def test_batches_and_results_survive_the_pipe() -> None:
     assert again == batch and isinstance(again.asked[0][1].message, a.Look) and again.asked[0][1].after == 2.0
     hello = again.asked[1][1].message
     assert isinstance(hello, Hello) and hello.poses is None and hello.events is msgspec.UNSET
-    result = Result(3, (b"{}",), ((1, b"[]"),), (Picture((1, 2), b"\0", True),))
+    result = BatchResult(3, (b"{}",), ((1, b"[]"),), (PosePicture((1, 2), b"\0", True),))
     assert unpack_result(pack(result)) == result

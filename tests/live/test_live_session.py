@@ -20,7 +20,7 @@ from metagraph.live import limits, live_session
 from metagraph.live.live_session import LiveSession
 from metagraph.live.messages import Event, Reply, encode
 from metagraph.live.tick_work import Out
-from metagraph.playback.planning.running_plan import perform
+from metagraph.playback.planning.running_plan import plan_performance
 from tests.live.traffic import mixed, valid
 from tests.posing import pose_at
 from tests.thorough import many
@@ -522,7 +522,7 @@ def test_a_session_performs_again_exactly_as_it_was_played(seed: int, idle: bool
         if n % 171 == 0:
             shown[session.now] = pose_at(session.plan, project, session.now)
     kept = msgspec.json.decode(msgspec.json.encode(session.performance("again")), type=a.Performance)
-    again = perform(project, kept.asks, kept.length + 20, kept.seed, kept.stances, kept.idle)
+    again = plan_performance(project, kept.asks, kept.length + 20, kept.seed, kept.stances, kept.idle)
     for layer in LAYERS:
         live = [c for c in session.plan.layers[layer].cues if c.start <= session.now]
         assert [c for c in again.layers[layer].cues if c.start <= session.now][-len(live) :] == live

@@ -23,37 +23,39 @@ from metagraph.live.messages import (
     Reply,
     Status,
     encode,
-    read,
-    schema,
-    split,
+    live_schema,
+    read_live_request,
+    split_message,
 )  # fmt: skip
 
 
 def error(text: str | bytes) -> str:
-    reply = read(text)
+    reply = read_live_request(text)
     assert isinstance(reply, Reply) and reply.error
     return reply.error
 
 
 def test_an_ask_is_read_as_it_is() -> None:
-    assert read('{"do":"gesture","tags":["beat"],"at":2.1}') == HeardMessage(
+    assert read_live_request('{"do":"gesture","tags":["beat"],"at":2.1}') == HeardMessage(
         a.Gesture(tags=("beat",), at=2.1)
     )
-    assert read(b'{"do":"nod"}') == HeardMessage(a.Nod())
-    assert read(msgspec.Raw(b'{"do":"blink"}')) == HeardMessage(a.Blink())
+    assert read_live_request(b'{"do":"nod"}') == HeardMessage(a.Nod())
+    assert read_live_request(msgspec.Raw(b'{"do":"blink"}')) == HeardMessage(a.Blink())
 
 
 def test_seconds_from_now_are_kept_beside_the_ask() -> None:
-    assert read('{"do":"nod","in":2}') == HeardMessage(a.Nod(), 2.0)
-    assert read('{"in":0,"do":"nod","id":"n"}') == HeardMessage(a.Nod(id="n"), 0.0)
+    assert read_live_request('{"do":"nod","in":2}') == HeardMessage(a.Nod(), 2.0)
+    assert read_live_request('{"in":0,"do":"nod","id":"n"}') == HeardMessage(a.Nod(id="n"), 0.0)
 
 
 def test_the_sessions_own_questions_are_read() -> None:
-    assert read('{"do":"status","id":"s"}') == HeardMessage(Status(id="s"))
-    assert read('{"do":"describe"}') == HeardMessage(Describe())
-    hello = read('{"do":"hello","token":"t","poses":{"rate":60,"format":"binary"},"events":true}')
+    assert read_live_request('{"do":"status","id":"s"}') == HeardMessage(Status(id="s"))
+    assert read_live_request('{"do":"describe"}') == HeardMessage(Describe())
+    hello = read_live_request(
+        '{"do":"hello","token":"t","poses":{"rate":60,"format":"binary"},"events":true}'
+    )
     assert hello == HeardMessage(Hello(token="t", poses=Poses(rate=60, format="binary"), events=True))
-    off = read('{"do":"hello","poses":null}')
+    off = read_live_request('{"do":"hello","poses":null}')
     assert (
         isinstance(off, HeardMessage)
         and isinstance(off.message, Hello)
@@ -101,21 +103,21 @@ def test_what_is_wrong_is_told_by_field_and_remedy(text: str | bytes, words: str
 
 
 def test_what_is_wrong_is_told_with_the_id_it_came_with() -> None:
-    reply = read('{"id":"q7","do":"dance"}')
+    reply = read_live_request('{"id":"q7","do":"dance"}')
     assert isinstance(reply, Reply) and reply.id == "q7"
-    other = read('{"id":7,"do":"nod"}')
+    other = read_live_request('{"id":7,"do":"nod"}')
     assert isinstance(other, Reply) and other.id is None
 
 
 def test_blocks_of_bml_may_be_longer() -> None:
-    assert isinstance(read(json.dumps({"do": "bml", "bml": "x" * 190_000})), HeardMessage)
+    assert isinstance(read_live_request(json.dumps({"do": "bml", "bml": "x" * 190_000})), HeardMessage)
 
 
 def test_a_list_is_several_requests_in_order() -> None:
-    requests, listed = split(' [{"do":"nod"}, 7, {"do":"blink"}]')
-    assert listed and [type(read(r)) for r in requests] == [HeardMessage, Reply, HeardMessage]
-    assert split('{"do":"nod"}') == (['{"do":"nod"}'], False)
-    assert split("[]") == ([], True)
+    requests, listed = split_message(' [{"do":"nod"}, 7, {"do":"blink"}]')
+    assert listed and [type(read_live_request(r)) for r in requests] == [HeardMessage, Reply, HeardMessage]
+    assert split_message('{"do":"nod"}') == (['{"do":"nod"}'], False)
+    assert split_message("[]") == ([], True)
 
 
 @pytest.mark.parametrize(
@@ -128,18 +130,18 @@ def test_a_list_is_several_requests_in_order() -> None:
 )
 def test_lists_that_cannot_be_taken_apart_are_refused_whole(data: str, words: str) -> None:
     with pytest.raises(a.RequestError, match=words):
-        split(data)
+        split_message(data)
 
 
 @given(st.one_of(st.text(max_size=300), st.binary(max_size=300)))
 def test_any_bytes_get_an_answer(data: str | bytes) -> None:
     try:
-        requests, _ = split(data)
+        requests, _ = split_message(data)
     except a.RequestError as refused:
         assert str(refused)
         return
     for request in requests:
-        found = read(request)
+        found = read_live_request(request)
         assert isinstance(found, HeardMessage) or (found.error and encode(found))
 
 
@@ -157,15 +159,15 @@ values = st.recursive(
     ),
 )
 def test_any_fields_get_an_answer(word: str, fields: dict[str, object]) -> None:
-    found = read(json.dumps(fields | {"do": word}))
+    found = read_live_request(json.dumps(fields | {"do": word}))
     assert isinstance(found, HeardMessage) or found.error
 
 
 def test_the_schema_says_what_is_read() -> None:
     import jsonschema
 
-    validator = jsonschema.Draft202012Validator(schema())
-    validator.check_schema(schema())
+    validator = jsonschema.Draft202012Validator(live_schema())
+    validator.check_schema(live_schema())
     for text in (
         '{"do":"nod"}',
         '{"do":"nod","in":2}',
@@ -181,7 +183,7 @@ def test_the_schema_says_what_is_read() -> None:
         "7",
         '{"do":"say","speed":1}',
     ):
-        requests, _ = split(text)
+        requests, _ = split_message(text)
         assert validator.is_valid(json.loads(text)) == all(
-            isinstance(read(r), HeardMessage) for r in requests
+            isinstance(read_live_request(r), HeardMessage) for r in requests
         ), text

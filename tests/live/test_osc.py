@@ -10,13 +10,13 @@ from hypothesis import strategies as st
 
 from metagraph.graph import requests as a
 from metagraph.live.hub import Hub
-from metagraph.live.messages import HeardMessage, Hello, Poses, encode, read
+from metagraph.live.messages import HeardMessage, Hello, Poses, encode, read_live_request
 from metagraph.live.osc import SENDERS, SILENT, OscError, OscLine, request, texts_of
-from metagraph.live.osc_bytes import padded
+from metagraph.live.osc_bytes import pad_osc
 
 
 def said(address: str, *values: Any) -> Any:
-    found = read(encode(request(f"/metagraph/{address}", values)))
+    found = read_live_request(encode(request(f"/metagraph/{address}", values)))
     assert isinstance(found, HeardMessage), found
     return found.message if found.after is None else found
 
@@ -78,7 +78,7 @@ def test_any_datagram_is_taken_apart_or_refused(data: bytes) -> None:
     for each in (
         data,
         b"#bundle\0" + b"\0" * 7 + b"\1" + data,
-        padded("/metagraph/gesture") + padded(",s") + data,
+        pad_osc("/metagraph/gesture") + pad_osc(",s") + data,
     ):
         for _, text in texts_of(each):
             assert isinstance(text, bytes | str | bool | OscError)
@@ -96,7 +96,7 @@ def test_senders_are_forgotten_when_they_are_silent_and_only_so_many_are_known()
     now = [0.0]
     hub = Hub()
     line = OscLine(hub, lambda: now[0])
-    message = padded("/metagraph/nod") + padded(",")
+    message = pad_osc("/metagraph/nod") + pad_osc(",")
     for n in range(SENDERS + 10):
         line.datagram_received(message, ("127.0.0.1", 1000 + n))
     assert len(hub.clients) == SENDERS
@@ -139,14 +139,14 @@ def test_junk_is_told_in_words_and_never_shown(
 
 
 def test_bundles_within_bundles_end_somewhere() -> None:
-    from metagraph.live.osc_bytes import OscError, messages_of, padded
+    from metagraph.live.osc_bytes import OscError, messages_of, pad_osc
 
-    data = padded("/a") + padded(",")
+    data = pad_osc("/a") + pad_osc(",")
     for _ in range(30):
         data = b"#bundle\0" + bytes(8) + len(data).to_bytes(4, "big") + data
     with pytest.raises(OscError, match="deep"):
         list(messages_of(data))
-    many = b"#bundle\0" + bytes(8) + (b"\0\0\0\x08" + padded("/a") + padded(",")) * 1001
+    many = b"#bundle\0" + bytes(8) + (b"\0\0\0\x08" + pad_osc("/a") + pad_osc(",")) * 1001
     with pytest.raises(OscError, match="more than"):
         list(messages_of(many))
 

@@ -12,7 +12,7 @@ from metagraph.graph.conversation.model import Segment
 from metagraph.graph.model import Project
 from metagraph.live.graph_motion import GraphMotion, LiveGraph
 from metagraph.live.live_session import LiveSession
-from metagraph.live.played_voice import CLIENT, PlayedVoice, read_voice
+from metagraph.live.played_voice import CLIENT, PlayedVoice, read_played_voice
 from tests.live.test_heard_voice import RATE, voice
 from tests.synthesis.talking import talkers, talkers_graph
 from tests.wavs import wav
@@ -51,9 +51,9 @@ def test_its_clauses_are_told_as_long_before_as_was_asked(session: LiveSession) 
 
 def test_files_are_read_at_any_rate_and_what_is_no_sound_is_said(tmp_path: Path) -> None:
     samples = np.clip(voice(1.0, [0.5])[::2] * 32768, -32768, 32767).astype("<i2")
-    one = read_voice(wav(tmp_path / "a.wav", RATE // 2, samples.tobytes()), "takes", 1.0)
+    one = read_played_voice(wav(tmp_path / "a.wav", RATE // 2, samples.tobytes()), "takes", 1.0)
     assert abs(len(one.samples) - 2 * len(samples)) < 10 and [s.kind for s in one.segments] == ["clause"]
-    assert not read_voice(tmp_path / "a.wav", "takes").segments
+    assert not read_played_voice(tmp_path / "a.wav", "takes").segments
     (tmp_path / "b.wav").write_bytes(b"no sound")
     with pytest.raises(FileError):
-        read_voice(tmp_path / "b.wav", "takes")
+        read_played_voice(tmp_path / "b.wav", "takes")

@@ -23,10 +23,10 @@ from metagraph.graph.model import Project
 from metagraph.live import hub as hubs
 from metagraph.live import websocket as lines
 from metagraph.live.live_session import LiveSession
-from metagraph.live.osc_bytes import padded
+from metagraph.live.osc_bytes import pad_osc
 from metagraph.live.pose_stream import HEADER, MAGIC
-from metagraph.live.server import LiveError, Options, Server, checked, is_loopback
-from metagraph.live.wire import Batch, Ready, Result, exchange
+from metagraph.live.server import LiveError, Options, Server, check_live_options, is_loopback
+from metagraph.live.wire import BatchResult, Ready, RequestBatch, exchange
 from tests.posing import pose_at
 
 FREE = Options(port=0, osc=0)
@@ -41,7 +41,7 @@ async def serving(
     ready = await server.open()
     begin = time.monotonic()
 
-    def step(batch: Batch | None) -> Result:
+    def step(batch: RequestBatch | None) -> BatchResult:
         return exchange(session, time.monotonic() - begin, batch)
 
     running = asyncio.create_task(server.run(step))
@@ -73,7 +73,7 @@ async def say(line: ClientConnection, request: Any) -> Any:
 
 @pytest.mark.parametrize("host", ["", "localhost", "127.0.0.1", "127.8.8.8", "::1", "[::1]"])
 def test_loopback_is_loopback(host: str) -> None:
-    assert is_loopback(host) and checked(Options(host=host)).host == host
+    assert is_loopback(host) and check_live_options(Options(host=host)).host == host
 
 
 @pytest.mark.parametrize(
@@ -81,15 +81,15 @@ def test_loopback_is_loopback(host: str) -> None:
 )
 def test_nothing_listens_beyond_loopback_without_a_token(host: str) -> None:
     with pytest.raises(LiveError, match="--token "):
-        checked(Options(host=host))
-    assert checked(Options(host=host, token="secret")).token == "secret"
+        check_live_options(Options(host=host))
+    assert check_live_options(Options(host=host, token="secret")).token == "secret"
 
 
 def test_options_that_make_no_sense_are_refused() -> None:
     with pytest.raises(LiveError, match="the token is empty"):
-        checked(Options(token=""))
+        check_live_options(Options(token=""))
     with pytest.raises(LiveError, match="between 0 and 65535"):
-        checked(Options(port=70000))
+        check_live_options(Options(port=70000))
 
 
 def test_by_default_only_loopback_is_bound(sample: Project) -> None:
@@ -390,18 +390,18 @@ class Osc:
             "s" if isinstance(v, str) else "f" if isinstance(v, float) else "i" for v in values
         )
         parts = [
-            padded(v) if isinstance(v, str) else struct.pack(">f" if isinstance(v, float) else ">i", v)
+            pad_osc(v) if isinstance(v, str) else struct.pack(">f" if isinstance(v, float) else ">i", v)
             for v in values
         ]
-        self.line.send(padded(address) + padded(tags) + b"".join(parts))
+        self.line.send(pad_osc(address) + pad_osc(tags) + b"".join(parts))
 
     async def receive(self) -> bytes:
         return await asyncio.wait_for(asyncio.get_running_loop().sock_recv(self.line, 65536), 5)
 
     async def reply(self) -> Any:
         data = await self.receive()
-        assert data.startswith(padded("/metagraph/reply") + padded(",s"))
-        return json.loads(data[len(padded("/metagraph/reply")) + 4 :].rstrip(b"\0"))
+        assert data.startswith(pad_osc("/metagraph/reply") + pad_osc(",s"))
+        return json.loads(data[len(pad_osc("/metagraph/reply")) + 4 :].rstrip(b"\0"))
 
     async def ask(self, address: str, *values: str | float | int) -> Any:
         self.send(address, *values)

@@ -74,7 +74,7 @@ def somebody(skeleton: Skeleton) -> Project:
             project = edits.add_stance(project, layer, name, [clip[f"{layer} {name}"]])  # type: ignore[arg-type]
     stance = {(layer, s.name): s.id for layer in names for s in project.graphs[layer].stances.values()}  # type: ignore[index]
     for layer, a, b in ways:
-        project = edits.place(
+        project = edits.place_clips(
             project, [clip[f"{layer} {a} to {b}"]], layer, "transition", stance[layer, a], stance[layer, b]
         )  # type: ignore[arg-type]
     return edits.set_base(project, clip["arms down"])

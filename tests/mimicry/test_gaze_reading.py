@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from metagraph.mimicry.gaze_reading import EVERY, FAR, Gaze, head_turn
+from metagraph.mimicry.gaze_reading import EVERY, FAR, HeadFollower, head_turn
 from metagraph.mimicry.keypoint_layouts import PLACE
-from metagraph.mimicry.pose_measures import turned
+from metagraph.mimicry.pose_measures import turn_about_y
 from metagraph.motion import rotation
 
 FACE = {
@@ -24,8 +24,8 @@ def face(turn: float = 0.0, pitch: float = 0.0) -> np.ndarray:
     for name, at in FACE.items():
         out[PLACE[name]] = at
     middle = np.array([0, 1.6, 0])
-    seen = rotation.rotate(rotation.from_axis_angle([1, 0, 0], -pitch), out - middle)
-    return turned(seen, turn) + middle
+    seen = rotation.rotate_vectors(rotation.from_axis_angle([1, 0, 0], -pitch), out - middle)
+    return turn_about_y(seen, turn) + middle
 
 
 @pytest.mark.parametrize("turn", [-0.8, -0.3, 0.0, 0.5])
@@ -43,7 +43,7 @@ def test_a_head_that_is_hidden_or_turned_away_says_nothing() -> None:
 
 
 def test_the_gaze_follows_in_steps_and_not_too_often() -> None:
-    gaze = Gaze(face())
+    gaze = HeadFollower(face())
     first = gaze.feed(0.0, face(), np.ones(17), 3)
     assert first is not None and np.allclose(np.array(first) - gaze.eyes, [0, 0, FAR], atol=1e-3)
     assert gaze.feed(1.0, face(0.05), np.ones(17), 3) is None

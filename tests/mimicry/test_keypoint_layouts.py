@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from metagraph.mimicry.keypoint_layouts import BY_COUNT, LAYOUTS, POINTS, Keypoints, choose, swap
+from metagraph.mimicry.keypoint_layouts import BY_COUNT, LAYOUTS, POINTS, KeypointTrack, choose_points, swap
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
@@ -31,7 +31,7 @@ def test_openpose_and_mediapipe_count_as_they_say() -> None:
 def test_choosing_keeps_each_point_its_place(layout: str) -> None:
     names = LAYOUTS[layout]
     points = np.array([[hash(name) % 97, n] for n, name in enumerate(names)], float)
-    chosen, sure = choose(points, np.arange(len(names)) / 50)
+    chosen, sure = choose_points(points, np.arange(len(names)) / 50)
     for n, name in enumerate(POINTS):
         assert chosen[n, 0] == hash(name) % 97
         assert sure[n] == names.index(name) / 50
@@ -42,7 +42,7 @@ def test_a_number_of_points_that_no_layout_has_is_refused_with_those_known() -> 
         ValueError,
         match=r"21 points .* 17 \(coco\), 18 \(openpose coco\), 25 \(openpose body_25\), 33 \(mediapipe\)",
     ):
-        choose(np.zeros((21, 2)), np.zeros(21))
+        choose_points(np.zeros((21, 2)), np.zeros(21))
 
 
 def test_a_mirror_changes_left_and_right_over_and_back() -> None:
@@ -60,14 +60,14 @@ def test_recordings_mirror_as_their_points_do() -> None:
         np.random.default_rng(2).normal(size=(4, 33, 3)),
         np.random.default_rng(3).uniform(size=(4, 33)),
     )
-    seen = Keypoints(np.arange(4.0), points, sure, LAYOUTS["mediapipe"], 3)
+    seen = KeypointTrack(np.arange(4.0), points, sure, LAYOUTS["mediapipe"], 3)
     a, b = seen.mirrored().canonical, swap(*seen.canonical)
     assert (a[0] == b[0]).all() and (a[1] == b[1]).all()
     assert len(seen) == 4 and seen.seconds == 3.0
 
 
 def test_points_a_recording_does_not_have_are_not_found() -> None:
-    seen = Keypoints(np.zeros(1), np.ones((1, 2, 3)), np.ones((1, 2)), ("nose", "left_wrist"), 2)
+    seen = KeypointTrack(np.zeros(1), np.ones((1, 2, 3)), np.ones((1, 2)), ("nose", "left_wrist"), 2)
     points, sure = seen.canonical
     assert (
         sure.sum() == 2

@@ -16,7 +16,7 @@ from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.requests import Go, Look, read_request
 from metagraph.mimicry.keypoint_layouts import LAYOUTS, PLACE, POINTS, swap
 from metagraph.mimicry.mimic import Mimic
-from metagraph.mimicry.pose_measures import turned
+from metagraph.mimicry.pose_measures import turn_about_y
 from metagraph.mimicry.tuning import JUDGING, Tuning
 from sample_clips.make import sample_keypoints
 from sample_clips.make.sample_keypoints import SECONDS, View, played, seen, truth
@@ -234,7 +234,7 @@ def test_whoever_is_gone_for_long_leaves_the_stances_to_the_models(somebody: Pro
 def test_somebody_who_turns_the_back_is_not_judged(somebody: Project) -> None:
     mimic = Mimic(somebody, mirror=False)
     points = people.standing(somebody, "raised")
-    assert feed(mimic, (turned(points, np.pi) * [1, 1, 0])[:, :2], 2.0) == []
+    assert feed(mimic, (turn_about_y(points, np.pi) * [1, 1, 0])[:, :2], 2.0) == []
 
 
 def test_frames_out_of_order_are_passed_over_and_gaps_begin_anew(somebody: Project) -> None:
@@ -279,7 +279,7 @@ def test_with_the_gaze_the_character_looks_where_the_head_is_turned(somebody: Pr
     ahead, aside = people.standing(somebody, "down"), people.standing(somebody, "down")
     head = [n for n, name in enumerate(POINTS) if name == "nose" or "eye" in name or "ear" in name]
     middle = aside[head].mean(0)
-    aside[head] = turned(aside[head] - middle, 0.6) + middle
+    aside[head] = turn_about_y(aside[head] - middle, 0.6) + middle
     looks = [a for a in feed(mimic, ahead, 2.0) + feed(mimic, aside, 3.0, 2.0) if isinstance(a, Look)]
     first, last = np.array(looks[0].to), np.array(looks[-1].to)
     assert abs(first[0]) < 0.1 and first[2] > 1.5

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from metagraph.mimicry.people import Person, follow
+from metagraph.mimicry.people import SeenPerson, follow_person
 
 
-def person(x: float, size: float = 1.0, ident: int | None = None) -> Person:
+def person(x: float, size: float = 1.0, ident: int | None = None) -> SeenPerson:
     points = np.array([[x, 0, 0], [x, size, 0], [x + 0.3 * size, size / 2, 0], [x - 0.3 * size, size / 2, 0]])
-    return Person(points, np.ones(4), ident)
+    return SeenPerson(points, np.ones(4), ident)
 
 
 def followed(
-    frames: list[list[Person]], times: list[float] | None = None, middle: float | None = None
+    frames: list[list[SeenPerson]], times: list[float] | None = None, middle: float | None = None
 ) -> list[float | None]:
     times = [n / 25 for n in range(len(frames))] if times is None else times
-    return [None if p is None else float(p.points[0, 0]) for p in follow(times, frames, middle)]
+    return [None if p is None else float(p.points[0, 0]) for p in follow_person(times, frames, middle)]
 
 
 def test_nobody_is_followed_where_nobody_is() -> None:
@@ -25,8 +25,8 @@ def test_nobody_is_followed_where_nobody_is() -> None:
 
 
 def test_too_few_points_or_all_in_one_place_are_nobody() -> None:
-    few = Person(np.ones((4, 3)), np.array([1.0, 1.0, 0, 0]))
-    one = Person(np.ones((4, 3)), np.ones(4))
+    few = SeenPerson(np.ones((4, 3)), np.array([1.0, 1.0, 0, 0]))
+    one = SeenPerson(np.ones((4, 3)), np.ones(4))
     assert followed([[few], [one]]) == [None, None]
 
 

@@ -43,7 +43,7 @@ def figure() -> np.ndarray:
 def measures(points: np.ndarray, dims: int = 3, sure: np.ndarray = SURE) -> dict[str, np.ndarray]:
     frame = m.frame_of(points, sure, dims, WIDTH)
     assert frame is not None
-    return {layer: m.measured(layer, points, frame) for layer in m.MEASURES}
+    return {layer: m.measure_pose(layer, points, frame) for layer in m.MEASURES}
 
 
 def test_points_that_make_no_torso_have_no_frame() -> None:
@@ -57,14 +57,14 @@ def test_points_that_make_no_torso_have_no_frame() -> None:
 @given(st.floats(-3, 3), st.floats(0.01, 1000), st.floats(-100, 100), st.floats(-100, 100))
 def test_place_size_and_heading_change_nothing_in_space(turn: float, size: float, x: float, z: float) -> None:
     before = measures(figure())
-    after = measures(m.turned(figure(), turn) * size + [x, 0, z])
+    after = measures(m.turn_about_y(figure(), turn) * size + [x, 0, z])
     for layer, some in before.items():
         assert np.allclose(some, after[layer], atol=1e-6), layer
 
 
 def test_the_heading_is_found_in_space() -> None:
     for angle in (-1.2, -0.3, 0.0, 0.7):
-        frame = m.frame_of(m.turned(figure(), angle), SURE, 3, WIDTH)
+        frame = m.frame_of(m.turn_about_y(figure(), angle), SURE, 3, WIDTH)
         assert frame is not None and frame.heading == pytest.approx(angle, abs=1e-9)
         assert frame.size == pytest.approx(0.5) and frame.width == pytest.approx(WIDTH * np.cos(angle))
 
@@ -74,7 +74,7 @@ def test_arms_are_seen_from_the_torso_and_the_body_upright() -> None:
     middle = np.array([0, 0.95, 0])
     leaning = figure()
     upper = [PLACE[n] for n in POINTS if not n.endswith(("hip", "knee", "ankle"))]
-    leaning[upper] = rotation.rotate(tilt, leaning[upper] - middle) + middle
+    leaning[upper] = rotation.rotate_vectors(tilt, leaning[upper] - middle) + middle
     before, after = measures(figure()), measures(leaning)
     rows = [
         n for n, measure in enumerate(m.MEASURES["arms"]) if not any(k.endswith("hip") for k in measure.minus)
@@ -94,7 +94,7 @@ def test_without_hips_the_torso_is_guessed_from_shoulders_and_ears() -> None:
     sure[[PLACE["left_hip"], PLACE["right_hip"]]] = 0
     frame = m.frame_of(figure(), sure, 2, WIDTH)
     assert frame is not None and frame.size == pytest.approx(0.5, rel=0.02) and tuple(frame.up) == (0, 1, 0)
-    aside = m.turned(figure(), 0.9) * [1, 1, 0]  # the shoulders say less, the ears as much
+    aside = m.turn_about_y(figure(), 0.9) * [1, 1, 0]  # the shoulders say less, the ears as much
     turned = m.frame_of(aside, sure, 2, WIDTH)
     assert turned is not None and turned.size == pytest.approx(0.5, rel=0.2)
     sure[[PLACE["left_ear"], PLACE["right_ear"]]] = 0
@@ -104,7 +104,7 @@ def test_without_hips_the_torso_is_guessed_from_shoulders_and_ears() -> None:
 def test_a_measure_is_trusted_as_far_as_its_least_certain_point() -> None:
     sure = SURE.copy()
     sure[PLACE["left_wrist"]], sure[PLACE["right_hip"]] = 0.0, 0.4
-    for measure, t in zip(m.MEASURES["arms"], m.trusted("arms", sure), strict=True):
+    for measure, t in zip(m.MEASURES["arms"], m.measure_trust("arms", sure), strict=True):
         names = {*measure.plus, *measure.minus}
         assert t == (0.0 if "left_wrist" in names else 0.4 if "right_hip" in names else 1.0)
 
@@ -119,7 +119,7 @@ def test_straightening_takes_up_to_y_and_keeps_lengths(x: float, y: float, z: fl
     up = np.array([x, 1.0 + y, z])
     up /= np.linalg.norm(up)
     vectors = np.vstack([up, np.eye(3)])
-    out = m.straightened(vectors, up)
+    out = m.straighten(vectors, up)
     assert np.allclose(out[0], [0, 1, 0], atol=1e-9)
     assert np.allclose(np.linalg.norm(out, axis=1), 1)
 

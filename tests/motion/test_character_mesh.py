@@ -10,12 +10,12 @@ import pytest
 
 from metagraph.formats.gltf.reader import read_character
 from metagraph.motion import rotation
-from metagraph.motion.character_mesh import Character, Surface, no_character
+from metagraph.motion.character_mesh import CharacterMesh, Surface, explain_no_character
 from metagraph.motion.skeleton import Skeleton
 from tests.bodies import body, column, everywhere
 
 
-def scaled(character: Character, factor: float) -> Character:
+def scaled(character: CharacterMesh, factor: float) -> CharacterMesh:
     skeleton = character.skeleton
     return replace(
         character,
@@ -31,7 +31,7 @@ def scaled(character: Character, factor: float) -> Character:
 
 @pytest.mark.parametrize("factor", [1e-3, 1.0, 100.0])
 def test_a_body_round_the_joints_is_a_character_at_any_scale(factor: float) -> None:
-    assert no_character(scaled(everywhere(column()), factor)) is None
+    assert explain_no_character(scaled(everywhere(column()), factor)) is None
 
 
 @pytest.mark.parametrize("size", [1e-3, 0.14, 3.0])
@@ -48,25 +48,25 @@ def test_a_single_triangle_is_a_stand_in_however_large(size: float) -> None:
         triangles=np.array([[0, 1, 2]]),
         surfaces=(Surface(0, 1, 0),),
     )
-    assert no_character(flat) == "is 1 triangle, a stand-in"
+    assert explain_no_character(flat) == "is 1 triangle, a stand-in"
 
 
 def test_a_mesh_gathered_in_one_point_or_on_a_line_has_no_surface() -> None:
     whole = everywhere(column())
     for squeeze in ([0, 0, 0], [0, 1, 0]):
         thin = replace(whole, positions=whole.positions * np.float32(squeeze))
-        assert no_character(thin) == "has no surface"
+        assert explain_no_character(thin) == "has no surface"
 
 
 def test_a_small_thing_away_from_the_joints_it_follows_is_a_stand_in() -> None:
     skeleton = column()
     small = body(skeleton, {3: 0.05, 4: 0.05}, {3: [0, 0, 0], 4: [0.05, 0, 0]})
-    assert "a stand-in" in (no_character(small) or "")
+    assert "a stand-in" in (explain_no_character(small) or "")
 
 
 def test_a_small_head_where_its_joints_are_is_a_character() -> None:
     skeleton = column(12)
-    assert no_character(body(skeleton, {10: 0.15, 11: 0.15})) is None
+    assert explain_no_character(body(skeleton, {10: 0.15, 11: 0.15})) is None
 
 
 def test_a_control_far_away_makes_no_stand_in_of_a_body() -> None:
@@ -74,15 +74,17 @@ def test_a_control_far_away_makes_no_stand_in_of_a_body() -> None:
     far = Skeleton(
         (*skeleton.names, "goal"),
         np.append(skeleton.parents, 0),
-        rotation.identity((7,)),
+        rotation.identity_rotations((7,)),
         np.vstack([skeleton.rest_translations, [[0, 0, 40.0]]]),
     )
-    assert no_character(body(far, dict.fromkeys(range(6), 0.15))) is None
+    assert explain_no_character(body(far, dict.fromkeys(range(6), 0.15))) is None
 
 
 def test_a_statue_moves_with_one_joint_alone() -> None:
     whole = everywhere(column())
-    assert no_character(replace(whole, joints=np.zeros_like(whole.joints))).startswith("moves with one joint")
+    assert explain_no_character(replace(whole, joints=np.zeros_like(whole.joints))).startswith(
+        "moves with one joint"
+    )
 
 
 def test_a_head_of_morph_targets_may_hang_on_one_joint() -> None:
@@ -93,7 +95,7 @@ def test_a_head_of_morph_targets_may_hang_on_one_joint() -> None:
         morphs=("aa",),
         morph_positions=np.zeros((1, *whole.positions.shape), np.float32),
     )
-    assert no_character(talking) is None
+    assert explain_no_character(talking) is None
 
 
 def test_a_body_of_other_names_is_bound_to_none_of_the_skeletons_joints() -> None:
@@ -103,7 +105,7 @@ def test_a_body_of_other_names_is_bound_to_none_of_the_skeletons_joints() -> Non
         column().rest_rotations,
         column().rest_translations,
     )
-    assert no_character(everywhere(column()), other).startswith("is bound to none")
+    assert explain_no_character(everywhere(column()), other).startswith("is bound to none")
 
 
 def test_meshes_left_out_take_their_triangles_with_them_and_their_names_stay() -> None:
@@ -121,7 +123,7 @@ def test_meshes_left_out_take_their_triangles_with_them_and_their_names_stay() -
 @pytest.mark.parametrize("who", ["alien", "adult_female", "adult_male"])
 def test_files_of_animations_hold_stand_ins(shared_data: Path, who: str) -> None:
     for path in (shared_data / "sumerian-hosts/glTF/animations" / who).glob("*.glb"):
-        assert no_character(read_character(path)) == "is 1 triangle, a stand-in"
+        assert explain_no_character(read_character(path)) == "is 1 triangle, a stand-in"
 
 
 @pytest.mark.parametrize(
@@ -137,4 +139,4 @@ def test_files_of_animations_hold_stand_ins(shared_data: Path, who: str) -> None
     ],
 )
 def test_characters_others_made_are_characters(shared_data: Path, file: str) -> None:
-    assert no_character(read_character(shared_data / file)) is None
+    assert explain_no_character(read_character(shared_data / file)) is None

@@ -9,7 +9,7 @@ from metagraph.graph import anatomy, edits
 from metagraph.graph.clip_source import source_of
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing.retiming import keep_hand
-from metagraph.motion.contact_hold import Contact, held
+from metagraph.motion.contact_hold import Contact, hold_hands
 
 
 @pytest.fixture(scope="module")
@@ -22,7 +22,7 @@ def beside(clip, hand, to):
     from metagraph.motion import rotation
 
     turns, places = clip.skeleton.globals(clip.poses())
-    return rotation.rotate(rotation.conjugate(turns[:, to]), places[:, hand] - places[:, to])
+    return rotation.rotate_vectors(rotation.conjugate(turns[:, to]), places[:, hand] - places[:, to])
 
 
 @pytest.mark.parametrize("side", ["left", "right"])
@@ -47,7 +47,7 @@ def test_bones_keep_their_lengths_and_nothing_else_moves(toy, project):
     clip = toy.id(project, "wide")
     kept = keep_hand(project, clip, "right", 0.6, 1.2).clips[clip].motion
     before = source_of(project.clips[clip])
-    roles = anatomy.roles(project)
+    roles = anatomy.project_roles(project)
     arm = {roles[f"right_{part}"] for part in ("upper_arm", "lower_arm", "hand")}
     others = [j for j in range(len(before.skeleton)) if j not in arm]
     assert np.array_equal(kept.rotations[:, others], before.rotations[:, others])
@@ -57,8 +57,8 @@ def test_bones_keep_their_lengths_and_nothing_else_moves(toy, project):
 def test_what_is_no_limb_is_left_out(toy, project):
     clip = source_of(project.clips[toy.id(project, "wide")])
     names = clip.skeleton.names
-    assert held(clip, [Contact("no", "such", "joint", names[0], 0, 1)]) is clip
-    assert held(clip, [Contact(names[0], names[0], names[0], names[0], 0, 1)]) is clip
+    assert hold_hands(clip, [Contact("no", "such", "joint", names[0], 0, 1)]) is clip
+    assert hold_hands(clip, [Contact(names[0], names[0], names[0], names[0], 0, 1)]) is clip
 
 
 def test_an_arm_that_is_not_known_is_said(toy, project):
@@ -78,11 +78,11 @@ def test_another_contact_of_the_same_hand_takes_the_place_of_the_one_it_meets(to
 
 @pytest.mark.parametrize("name", ["Idle01_YouLf01", "Idle01_NegativeBt01", "Idle02_MeRt01"])
 def test_hands_of_a_figure_nobody_here_made_stay_too(shared_data, name):
-    from metagraph.formats.clips import read_clips
+    from metagraph.formats.clips import read_clip_file
     from metagraph.graph.model import Project
 
     path = shared_data / "smartbody-brad" / f"ChrBrad@{name}.bvh"
-    project = edits.add_clips(Project(), [(path.as_posix(), 0, "", read_clips(path)[0])])
+    project = edits.add_clips(Project(), [(path.as_posix(), 0, "", read_clip_file(path)[0])])
     (clip,) = project.clips
     length = project.clips[clip].duration
     for side in ("left", "right"):

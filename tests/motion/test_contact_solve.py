@@ -66,7 +66,7 @@ def test_a_hand_comes_to_its_goal_on_a_joint_that_has_moved_and_turned() -> None
     goal = HandGoal(0, 1, (0.1, -0.1, 0.25), turn, 1.0)  # type: ignore[arg-type]
     assert solve_contacts(one, pose, [goal])
     spread(one, pose)
-    wanted = np.array(pose.at[1]) + rotation.rotate(np.array(pose.turned[1]), np.array(goal.at))
+    wanted = np.array(pose.at[1]) + rotation.rotate_vectors(np.array(pose.turned[1]), np.array(goal.at))
     assert_allclose(pose.at[4], wanted, atol=1e-9)
     assert rotation.angle_between(pose.turned[4], rotation.multiply(pose.turned[1], goal.turn)) < 1e-6
 
@@ -94,7 +94,9 @@ def test_a_hand_on_the_other_follows_where_that_one_is_brought() -> None:
     pose = posed(one, LUpper=(-1.0, -0.6, 0.0), RUpper=(-1.0, 0.6, 0.0))
     goals = [HandGoal(1, 4, (0.0, 0.0, 0.05), STILL, 1.0), HandGoal(0, 1, (0.05, -0.1, 0.3), STILL, 1.0)]
     solve_contacts(one, pose, goals)
-    wanted = np.array(pose.at[4]) + rotation.rotate(np.array(pose.turned[4]), np.array([0.0, 0.0, 0.05]))
+    wanted = np.array(pose.at[4]) + rotation.rotate_vectors(
+        np.array(pose.turned[4]), np.array([0.0, 0.0, 0.05])
+    )
     assert_allclose(pose.at[7], wanted, atol=1e-6)
 
 
@@ -120,7 +122,7 @@ def test_a_hand_that_is_held_is_not_pushed() -> None:
     one = rig(TRUNK, *forearms(), guard=True)
     pose = posed(one, LLower=(-0.3, 0.0, -0.7))
     turn = tuple(rotation.multiply(rotation.conjugate(pose.turned[1]), pose.turned[4]).tolist())
-    at = rotation.rotate(rotation.conjugate(pose.turned[1]), np.subtract(pose.at[4], pose.at[1]))
+    at = rotation.rotate_vectors(rotation.conjugate(pose.turned[1]), np.subtract(pose.at[4], pose.at[1]))
     wrist = pose.at[4]
     solve_contacts(one, pose, [HandGoal(0, 1, tuple(at.tolist()), turn, 1.0)])  # type: ignore[arg-type]
     assert_allclose(pose.at[4], wrist, atol=1e-9)
@@ -156,7 +158,7 @@ def test_the_shortest_way_between_lines_is_the_least_of_many(seed: int) -> None:
 
 def test_opposite_directions_are_half_a_turn_apart() -> None:
     for v in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.6, -0.8)):
-        turned = rotation.rotate(np.array(between(v, tuple(-x for x in v))), np.array(v))  # type: ignore[arg-type]
+        turned = rotation.rotate_vectors(np.array(between(v, tuple(-x for x in v))), np.array(v))  # type: ignore[arg-type]
         assert_allclose(turned, np.negative(v), atol=1e-9)
 
 

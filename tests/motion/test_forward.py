@@ -15,7 +15,7 @@ def joint_after_joint(skeleton: Skeleton, pose: Pose) -> tuple[np.ndarray, np.nd
     for joint, parent in enumerate(skeleton.parents.tolist()):
         if parent >= 0:
             above = turns[..., parent, :]
-            moved = rotation.rotate(above, pose.translations[..., joint, :])
+            moved = rotation.rotate_vectors(above, pose.translations[..., joint, :])
             turns[..., joint, :] = rotation.multiply(above, pose.rotations[..., joint, :])
             places[..., joint, :] = places[..., parent, :] + moved
     return turns, places
@@ -41,7 +41,7 @@ def test_whatever_the_tree_the_types_and_how_many_poses(
     skeleton = Skeleton(
         tuple(f"j{n}" for n in range(count)),
         np.array(tree),
-        rotation.identity((count,)),
+        rotation.identity_rotations((count,)),
         np.zeros((count, 3)),
     )
     turns = rotation.normalize(drawn.normal(size=(*shape, count, 4))).astype(types[0])

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.formats.clips import read_clips
+from metagraph.formats.clips import read_clip_file
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.mirror import mirror, pairs_of, swap_sides
@@ -47,7 +47,7 @@ def twisted(skeleton: Skeleton, seed: int) -> Skeleton:
     above = skeleton.parents[inner]
     local, offsets = model.copy(), places.copy()
     local[inner] = rotation.multiply(rotation.conjugate(model[above]), model[inner])
-    offsets[inner] = rotation.rotate(rotation.conjugate(model[above]), places[inner] - places[above])
+    offsets[inner] = rotation.rotate_vectors(rotation.conjugate(model[above]), places[inner] - places[above])
     return Skeleton(skeleton.names, skeleton.parents, local, offsets)
 
 
@@ -126,7 +126,7 @@ def test_the_mirror_image_does_not_depend_on_the_axes_of_the_bones(toy: Any, see
 def test_a_figure_that_looks_along_another_axis_is_mirrored_across_its_own_body(toy: Any) -> None:
     turn = rotation.from_axis_angle(np.array([0, 1.0, 0]), np.pi / 2)
     local, offsets = toy.skeleton.rest_rotations.copy(), toy.skeleton.rest_translations.copy()
-    local[0], offsets[0] = rotation.multiply(turn, local[0]), rotation.rotate(turn, offsets[0])
+    local[0], offsets[0] = rotation.multiply(turn, local[0]), rotation.rotate_vectors(turn, offsets[0])
     skeleton = Skeleton(toy.skeleton.names, toy.skeleton.parents, local, offsets)
     clip = random_clip(skeleton, 3)
     pairs = pairs_of(skeleton)
@@ -234,7 +234,7 @@ def test_clips_of_the_zoo_come_back_when_mirrored_twice_and_put_hands_where_the_
 
 
 def mirrored_twice(file: Path) -> None:
-    for clip in read_clips(file)[:5]:
+    for clip in read_clip_file(file)[:5]:
         pairs = pairs_of(clip.skeleton)
         twin = mirror(clip, pairs)
         degrees, metres = apart(clip, mirror(twin, pairs))
@@ -251,7 +251,7 @@ def mirrored_twice(file: Path) -> None:
 
 
 def test_a_rest_pose_in_which_the_body_lies_across_the_middle_is_told(shared_data: Path) -> None:
-    clip = read_clips(next(iter(sorted((shared_data / "bandai-namco-1").glob("*.bvh")))))[0]
+    clip = read_clip_file(next(iter(sorted((shared_data / "bandai-namco-1").glob("*.bvh")))))[0]
     with pytest.raises(ValueError, match="beside the middle"):
         mirror(clip, pairs_of(clip.skeleton))
 

@@ -12,10 +12,10 @@ from hypothesis import given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
-from metagraph.formats.clips import read_clips
+from metagraph.formats.clips import read_clip_file
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.motion.joint_map import JointMap, proposed
+from metagraph.motion.joint_map import JointMap, propose_joint_map
 from metagraph.motion.own_contact import OwnContact
 from metagraph.motion.retarget import retarget
 from metagraph.motion.standing import standing_pose
@@ -25,12 +25,12 @@ CLIPS = Path(__file__).parents[2] / "sample_clips" / "clips"
 
 
 def ours(name: str) -> Clip:
-    return read_clips(CLIPS / f"{name}.glb")[0]
+    return read_clip_file(CLIPS / f"{name}.glb")[0]
 
 
 def both(clip: Clip, target: Any) -> list[Clip]:
     """Brought over without contacts, and with."""
-    joint_map = proposed(clip.skeleton, target)
+    joint_map = propose_joint_map(clip.skeleton, target)
     return [retarget(clip, target, replace(joint_map, contacts=on)) for on in (False, True)]
 
 
@@ -76,7 +76,7 @@ def test_frames_far_from_a_touch_and_all_but_the_arms_stay_to_the_bit() -> None:
     clip = ours("hands_at_sides__wave_hello_rt_01")
     target = variant(clip.skeleton)
     off, on = both(clip, target)
-    pair = figures(clip, target, proposed(clip.skeleton, target), clip.skeleton.rest, target.rest)
+    pair = figures(clip, target, propose_joint_map(clip.skeleton, target), clip.skeleton.rest, target.rest)
     near = OwnContact(*pair, *motion(pair[0], clip)).near["right"]
     arm = {target.index(f"Right{part}") for part in ("UpperArm", "LowerArm", "Hand")}
     free = np.flatnonzero(np.convolve(near > 0, np.ones(41), "same") == 0)
@@ -124,7 +124,7 @@ def test_a_clip_of_hardly_any_frames_comes_through(frames: int) -> None:
 
 
 def test_a_map_remembers_that_hands_are_left_alone(toy: Any) -> None:
-    free = replace(proposed(toy.skeleton, toy.skeleton), contacts=False)
+    free = replace(propose_joint_map(toy.skeleton, toy.skeleton), contacts=False)
     assert JointMap.from_json(free.to_json()) == free == free.reversed
     assert JointMap.from_json({**free.to_json(), "contacts": True}).contacts
     assert (
@@ -137,7 +137,7 @@ def test_hands_of_a_real_talker_touch_on_another(shared_data: Path) -> None:
     target = variant(mannequin)
     gaps: list[list[np.ndarray]] = [[], []]
     for name in ("Idle01_ScratchChest01", "Idle01_Contemplate01", "Idle01_SqueezeHand01"):
-        clip = read_clips(next((shared_data / "smartbody-brad").rglob(f"*{name}.bvh")))[0]
+        clip = read_clip_file(next((shared_data / "smartbody-brad").rglob(f"*{name}.bvh")))[0]
         for carried in (False, True):
             gaps[carried].append(contact_errors(clip, target, standing_pose(clip), target.rest, carried)[0])
     off, on = (np.concatenate(some) for some in gaps)

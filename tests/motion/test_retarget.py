@@ -17,13 +17,13 @@ from hypothesis import example, given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
-from metagraph.formats.clips import read_clips
+from metagraph.formats.clips import read_clip_file
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint, proposed
+from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint, propose_joint_map
 from metagraph.motion.retarget import retarget
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.motion.standing import standing_pose, stands
+from metagraph.motion.standing import is_standing, standing_pose
 from tests.retarget_measures import round_trip
 from tests.zoo import ANIMALS
 
@@ -58,7 +58,7 @@ def rebuilt(
     for name in ("LeftHand", "RightHand"):
         offsets[skeleton.index(name)] *= lower
     turn = rotation.from_axis_angle(np.array([0, 1.0, 0]), quarter * np.pi / 2)
-    local[0], offsets[0] = rotation.multiply(turn, local[0]), rotation.rotate(turn, offsets[0])
+    local[0], offsets[0] = rotation.multiply(turn, local[0]), rotation.rotate_vectors(turn, offsets[0])
     if axes is None:
         return Skeleton(skeleton.names, skeleton.parents, local, offsets)
     model, where = skeleton.globals(Pose(local, offsets))
@@ -67,7 +67,7 @@ def rebuilt(
     above = skeleton.parents[inner]
     local, offsets = model.copy(), where.copy()
     local[inner] = rotation.multiply(rotation.conjugate(model[above]), model[inner])
-    offsets[inner] = rotation.rotate(rotation.conjugate(model[above]), where[inner] - where[above])
+    offsets[inner] = rotation.rotate_vectors(rotation.conjugate(model[above]), where[inner] - where[above])
     return Skeleton(skeleton.names, skeleton.parents, local, offsets)
 
 
@@ -97,7 +97,7 @@ def gesture(skeleton: Skeleton, seed: int, frames: int = 5) -> Clip:
 
 
 def test_a_skeleton_maps_to_itself_joint_by_joint_and_surely(sample: Any) -> None:
-    found = proposed(sample.skeleton, sample.skeleton)
+    found = propose_joint_map(sample.skeleton, sample.skeleton)
     assert {p.source: p.target for p in found.pairs} == {n: n for n in sample.skeleton.names}
     assert min(p.sure for p in found.pairs) >= 0.8
     assert not found.missing
@@ -119,17 +119,17 @@ def test_fingers_are_paired_by_their_names_and_order_whatever_they_are_called(to
         ("LeftHandRingPinky1", "LeftHandRingPinky2"),
         ("L_Finger4", "L_Finger41"),
     ):
-        found = proposed(hand(first, second), sample.skeleton)
+        found = propose_joint_map(hand(first, second), sample.skeleton)
         assert [found.of(n).target for n in (first, second)] == ["LeftLittle1", "LeftLittle2"]  # type: ignore[union-attr]
 
 
 def test_no_joint_is_mapped_twice(sample: Any, toy: Any) -> None:
-    found = proposed(toy.skeleton, sample.skeleton)
+    found = propose_joint_map(toy.skeleton, sample.skeleton)
     assert len({p.source for p in found.pairs}) == len({p.target for p in found.pairs}) == len(found.pairs)
 
 
 def test_a_map_is_written_and_read_back(sample: Any, toy: Any) -> None:
-    found = proposed(toy.skeleton, sample.skeleton)
+    found = propose_joint_map(toy.skeleton, sample.skeleton)
     assert JointMap.from_json(json.loads(json.dumps(found.to_json()))) == found
 
 
@@ -148,7 +148,7 @@ def test_what_is_no_map_is_refused(data: dict[str, Any]) -> None:
 
 
 def test_a_map_is_edited_by_hand_and_says_what_it_lacks(toy: Any) -> None:
-    found = proposed(toy.skeleton, toy.skeleton)
+    found = propose_joint_map(toy.skeleton, toy.skeleton)
     less = found.without("LeftHand")
     assert less.of("LeftHand") is None and [words.startswith("no left hand") for words in less.missing] == [
         True
@@ -185,7 +185,7 @@ def test_a_map_is_remembered_by_what_stays_the_same_in_every_file_and_size_of_a_
 
 
 def test_a_retargeted_clip_knows_what_it_was_brought_from(toy: Any, sample: Any) -> None:
-    out = retarget(toy.clip("c"), sample.skeleton, proposed(toy.skeleton, sample.skeleton))
+    out = retarget(toy.clip("c"), sample.skeleton, propose_joint_map(toy.skeleton, sample.skeleton))
     assert out.brought_from == fingerprint(toy.skeleton)
     assert toy.clip("c").brought_from == ""
 
@@ -202,20 +202,20 @@ def test_too_little_to_go_by_is_refused_in_words(toy: Any) -> None:
         match=r"'rope' cannot be brought onto this character: no hips in both, no head in both.* and \d+ "
         r"more",
     ):
-        retarget(clip, toy.skeleton, proposed(rope, toy.skeleton))
+        retarget(clip, toy.skeleton, propose_joint_map(rope, toy.skeleton))
 
 
 def test_a_map_for_another_skeleton_is_refused(toy: Any, sample: Any) -> None:
     with pytest.raises(RetargetError, match="does not have"):
-        retarget(toy.clip("c"), sample.skeleton, proposed(sample.skeleton, sample.skeleton))
+        retarget(toy.clip("c"), sample.skeleton, propose_joint_map(sample.skeleton, sample.skeleton))
 
 
 def test_a_target_whose_rest_pose_does_not_stand_needs_a_pose_that_does(toy: Any) -> None:
     lying = toy.skeleton.rest_rotations.copy()
     lying[0] = rotation.from_axis_angle(np.array([1.0, 0, 0]), np.pi / 2)
     skeleton = Skeleton(toy.skeleton.names, toy.skeleton.parents, lying, toy.skeleton.rest_translations)
-    assert stands(toy.skeleton) and not stands(skeleton)
-    clip, joint_map = toy.clip("c"), proposed(toy.skeleton, skeleton)
+    assert is_standing(toy.skeleton) and not is_standing(skeleton)
+    clip, joint_map = toy.clip("c"), propose_joint_map(toy.skeleton, skeleton)
     with pytest.raises(RetargetError, match="does not stand"):
         retarget(clip, skeleton, joint_map)
     upright = Pose(toy.skeleton.rest_rotations, toy.skeleton.rest_translations)
@@ -228,7 +228,7 @@ def test_a_target_whose_rest_pose_does_not_stand_needs_a_pose_that_does(toy: Any
 
 def test_onto_itself_a_clip_stays_what_it_is(sample: Any) -> None:
     for entry in list(sample.clips.values())[::12]:
-        out = retarget(entry.motion, sample.skeleton, proposed(sample.skeleton, sample.skeleton))
+        out = retarget(entry.motion, sample.skeleton, propose_joint_map(sample.skeleton, sample.skeleton))
         assert np.degrees(rotation.angle_between(out.rotations, entry.motion.rotations).max()) < 0.2
         np.testing.assert_allclose(places(out), places(entry.motion), atol=1e-4)
 
@@ -242,9 +242,9 @@ def test_size_rest_pose_bone_axes_and_facing_make_no_difference_to_the_motion(
 ) -> None:
     target = rebuilt(toy.skeleton, scale=scale, arms_down=down, axes=seed, quarter=quarter)
     clip = gesture(toy.skeleton, seed)
-    out = retarget(clip, target, proposed(toy.skeleton, target))
+    out = retarget(clip, target, propose_joint_map(toy.skeleton, target))
     turn = rotation.from_axis_angle(np.array([0, 1.0, 0]), quarter * np.pi / 2)
-    wanted = rotation.rotate(turn, places(clip) * scale)
+    wanted = rotation.rotate_vectors(turn, places(clip) * scale)
     assert np.abs(places(out) - wanted).max() < 2e-3 * scale
 
 
@@ -255,7 +255,7 @@ def test_there_and_back_a_clip_is_itself_within_two_degrees(
 ) -> None:
     target = rebuilt(toy.skeleton, scale=scale, lower=lower, arms_down=down, axes=seed)
     clip = gesture(toy.skeleton, seed)
-    joint_map = proposed(toy.skeleton, target)
+    joint_map = propose_joint_map(toy.skeleton, target)
     back = retarget(retarget(clip, target, joint_map), toy.skeleton, joint_map.reversed)
     assert np.degrees(rotation.angle_between(clip.rotations, back.rotations).mean()) < 2
 
@@ -284,7 +284,7 @@ def test_wrists_and_ankles_keep_their_height_and_elbows_their_side(
 ) -> None:
     target = rebuilt(toy.skeleton, scale=scale, lower=lower)
     clip = gesture(toy.skeleton, seed)
-    out = retarget(clip, target, proposed(toy.skeleton, target))
+    out = retarget(clip, target, propose_joint_map(toy.skeleton, target))
     before, after = places(clip), places(out)
     at = toy.skeleton.index
     arm = scale * (0.3 + 0.25 * lower) / 0.55
@@ -324,9 +324,9 @@ def test_a_clip_of_one_frame_a_figure_without_a_neck_and_one_without_fingers_com
     )
     rest = bare.rest
     clip = Clip("one", bare, 24, rest.rotations[None], rest.translations[None, :1])
-    out = retarget(clip, sample.skeleton, proposed(bare, sample.skeleton))
+    out = retarget(clip, sample.skeleton, propose_joint_map(bare, sample.skeleton))
     assert out.frames == 1 and out.fps == 24 and out.skeleton is sample.skeleton
-    back = retarget(next(iter(sample.clips.values())).motion, bare, proposed(sample.skeleton, bare))
+    back = retarget(next(iter(sample.clips.values())).motion, bare, propose_joint_map(sample.skeleton, bare))
     assert np.isfinite(back.rotations).all()
 
 
@@ -341,9 +341,9 @@ def test_limbs_that_a_file_keeps_apart_from_the_body_are_carried_along(toy: Any)
         offsets[j] = where[j] - (where[above] if above >= 0 else 0)
     apart = Skeleton(skeleton.names, parents, skeleton.rest_rotations, offsets)
     clip = gesture(skeleton, 3)
-    out = retarget(clip, apart, proposed(skeleton, apart))
+    out = retarget(clip, apart, propose_joint_map(skeleton, apart))
     np.testing.assert_allclose(places(out), places(clip), atol=1e-3)
-    again = retarget(out, skeleton, proposed(apart, skeleton))
+    again = retarget(out, skeleton, propose_joint_map(apart, skeleton))
     np.testing.assert_allclose(places(again), places(clip), atol=1e-3)
 
 
@@ -353,11 +353,11 @@ def test_a_rest_pose_that_hangs_in_the_air_or_lies_in_the_ground_still_puts_the_
     offsets[0] = 0
     sunk = Skeleton(toy.skeleton.names, toy.skeleton.parents, toy.skeleton.rest_rotations, offsets)
     clip = toy.clip("c")
-    out = retarget(clip, sunk, proposed(toy.skeleton, sunk))
+    out = retarget(clip, sunk, propose_joint_map(toy.skeleton, sunk))
     np.testing.assert_allclose(
         places(out), places(clip) - [0, 0.05, 0], atol=2e-3
     )  # its lowest joint, the ankle, is on the ground
-    back = retarget(out, toy.skeleton, proposed(sunk, toy.skeleton))
+    back = retarget(out, toy.skeleton, propose_joint_map(sunk, toy.skeleton))
     np.testing.assert_allclose(places(back), places(clip), atol=2e-3)
 
 
@@ -382,14 +382,14 @@ def test_faces_of_one_family_of_characters_move_on(toy: Any) -> None:
         translated=(0, len(names) - 1),
     )
     target = Skeleton(names, parents, face.rest_rotations, face.rest_translations * 2)
-    out = retarget(clip, target, proposed(face, target))
+    out = retarget(clip, target, propose_joint_map(face, target))
     np.testing.assert_allclose(
         out.poses().translations[:, -1], np.broadcast_to([0, 0.14, 0.2], (clip.frames, 3)), atol=1e-4
     )
 
 
 def test_what_was_done_is_noted(toy: Any, sample: Any) -> None:
-    out = retarget(toy.clip("c"), sample.skeleton, proposed(toy.skeleton, sample.skeleton))
+    out = retarget(toy.clip("c"), sample.skeleton, propose_joint_map(toy.skeleton, sample.skeleton))
     assert "16 joints: 16 " in out.notes[-1]
 
 
@@ -416,11 +416,11 @@ if not (Path(__file__).parents[3] / "shared" / "data").is_dir():
 @cache
 def real(folder: Path, who: str) -> Clip:
     if who == "sample":
-        return read_clips(
+        return read_clip_file(
             Path(__file__).parents[2] / "sample_clips/clips/hands_at_sides__air_quotes_bt_01.glb"
         )[0]
     file, wanted = FILES[who]
-    return next(c for c in read_clips(folder / file) if wanted(c))
+    return next(c for c in read_clip_file(folder / file) if wanted(c))
 
 
 # Of the zoo, everyone with the sample, both ways, and with the next.
@@ -429,7 +429,7 @@ ZOO = [pair for name in ANIMALS for pair in (("sample", name), (name, "sample"))
 
 @cache
 def of_zoo(files: tuple[tuple[str, Path], ...], who: str) -> Clip:
-    return real(Path(), who) if who == "sample" else read_clips(dict(files)[who])[0]
+    return real(Path(), who) if who == "sample" else read_clip_file(dict(files)[who])[0]
 
 
 @pytest.fixture
@@ -473,7 +473,7 @@ def test_hands_and_feet_of_the_zoo_keep_their_height_and_planted_feet_stay(
 
 
 def heights_and_feet(clip: Clip, other: Clip) -> None:
-    joint_map = proposed(clip.skeleton, other.skeleton)
+    joint_map = propose_joint_map(clip.skeleton, other.skeleton)
     pose = standing_pose(other)
     out = retarget(clip, other.skeleton, replace(joint_map, contacts=False), target_pose=pose)
     ours, theirs = roles_of(joint_map.reversed, clip.skeleton), roles_of(joint_map, other.skeleton)
@@ -513,17 +513,17 @@ def heights_and_feet(clip: Clip, other: Clip) -> None:
 
 def test_quadrupeds_and_birds_are_refused(shared_data: Path, sample: Any) -> None:
     for file in ("quad-creature-animations.glb", "bird-animations.glb"):
-        clip = read_clips(shared_data / "mesh2motion-cmu" / file)[0]
+        clip = read_clip_file(shared_data / "mesh2motion-cmu" / file)[0]
         with pytest.raises(RetargetError, match=re.escape(repr(clip.name))):
-            retarget(clip, sample.skeleton, proposed(clip.skeleton, sample.skeleton))
+            retarget(clip, sample.skeleton, propose_joint_map(clip.skeleton, sample.skeleton))
 
 
 def test_a_head_that_rests_back_to_front_looks_ahead(shared_data: Path, sample: Any) -> None:
     clip = real(shared_data, "robot")
-    out = retarget(clip, sample.skeleton, proposed(clip.skeleton, sample.skeleton))
+    out = retarget(clip, sample.skeleton, propose_joint_map(clip.skeleton, sample.skeleton))
     turns, _ = out.skeleton.globals(out.poses())
     head = rotation.multiply(
         turns[:, out.skeleton.index("Head")],
         rotation.conjugate(out.skeleton.globals(out.skeleton.rest)[0][5]),
     )
-    assert (rotation.rotate(head, np.array([0, 0, 1.0]))[:, 2] > 0.8).all()
+    assert (rotation.rotate_vectors(head, np.array([0, 0, 1.0]))[:, 2] > 0.8).all()

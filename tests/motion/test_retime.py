@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.motion.retime import Course, Hold, Retime, retimed
+from metagraph.motion.retime import Course, Hold, Retime, apply_retiming
 
 holds = st.lists(st.tuples(st.floats(-1, 4), st.floats(0, 3)), max_size=5).map(
     lambda found: tuple(Hold(a, s) for a, s in found)
@@ -21,12 +21,12 @@ def clip(toy):
 
 
 def test_a_plain_retiming_is_the_clip_itself(clip):
-    assert retimed(clip, Retime()) is clip
+    assert apply_retiming(clip, Retime()) is clip
 
 
 @pytest.mark.parametrize(("speed", "seconds"), [(2.0, 1.0), (0.5, 4.0), (1.25, 1.6)])
 def test_speed_changes_how_long_it_is_and_not_where_it_goes(clip, speed, seconds):
-    out = retimed(clip, Retime(speed))
+    out = apply_retiming(clip, Retime(speed))
     assert out.fps == clip.fps and out.duration == pytest.approx(seconds, abs=0.5 / clip.fps)
     for pose, other in ((0, 0), (-1, -1), (out.frames // 2, clip.frames // 2)):
         assert np.allclose(out.rotations[pose], clip.rotations[other], atol=0.05)
@@ -35,7 +35,7 @@ def test_speed_changes_how_long_it_is_and_not_where_it_goes(clip, speed, seconds
 
 def test_a_hold_lengthens_the_clip_by_itself_and_stands_still(clip):
     retime = Retime(1.0, (Hold(0.7, 0.8),))
-    out, course = retimed(clip, retime), Course(retime, clip.duration, clip.fps)
+    out, course = apply_retiming(clip, retime), Course(retime, clip.duration, clip.fps)
     assert out.duration == pytest.approx(clip.duration + 0.8, abs=0.5 / clip.fps)
     first, last = course.stays[0]
     frames = range(int(np.ceil(first * out.fps)), int(last * out.fps))
@@ -83,5 +83,5 @@ def test_what_is_before_a_new_hold_stays_and_what_is_after_it_goes_on(clip):
 
 def test_a_clip_of_one_frame_is_left_alone(toy):
     one = toy.clip("one", 2.0).trimmed(0, 1)
-    assert retimed(one, Retime(2.0)) is one
+    assert apply_retiming(one, Retime(2.0)) is one
     assert Course(Retime(2.0), 0.0, 30.0).frames == 1

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from metagraph.formats.clips import read_clips
+from metagraph.formats.clips import read_clip_file
 from metagraph.motion import rotation
 from metagraph.motion.roles import (
     PARTS,
@@ -43,7 +43,7 @@ def tree(text: str) -> Skeleton:
     count = len(names)
     offsets = np.zeros((count, 3))
     offsets[:, 1] = 0.1
-    return Skeleton(tuple(names), np.array(parents), rotation.identity((count,)), offsets)
+    return Skeleton(tuple(names), np.array(parents), rotation.identity_rotations((count,)), offsets)
 
 
 def both(block: str, left: str, right: str) -> str:
@@ -307,7 +307,7 @@ def with_twists(skeleton: Skeleton) -> Skeleton:
         if j in limbs:
             names.append(f"{j}.5")
             parents.append(parent)
-            rotations.append(rotation.identity())
+            rotations.append(rotation.identity_rotations())
             offsets.append(offset / 2)
             parent, offset = len(names) - 1, offset / 2
         place[j] = len(names)
@@ -320,7 +320,7 @@ def with_twists(skeleton: Skeleton) -> Skeleton:
 
 @pytest.mark.parametrize("name", ANIMALS)
 def test_the_zoo_is_known_by_its_shape_alone(zoo_files: dict[str, Path], name: str) -> None:
-    skeleton = read_clips(zoo_files[name])[0].skeleton
+    skeleton = read_clip_file(zoo_files[name])[0].skeleton
     named = find_roles(skeleton)
     assert find_roles(renamed(skeleton, [f"joint{n}" for n in range(len(skeleton))])) == named
     twisted = with_twists(skeleton)
@@ -344,7 +344,7 @@ def test_the_zoo_is_known_by_its_shape_alone(zoo_files: dict[str, Path], name: s
     ],
 )
 def test_real_people_are_known_by_their_shape_alone(shared_data: Path, file: str) -> None:
-    skeleton = read_clips(shared_data / file)[0].skeleton
+    skeleton = read_clip_file(shared_data / file)[0].skeleton
     named = find_roles(skeleton)
     found = find_roles(renamed(skeleton, [f"joint{n}" for n in range(len(skeleton))]))
     body = [role for role in named if not role.endswith(("jaw", "eye", "lid"))]
@@ -352,7 +352,7 @@ def test_real_people_are_known_by_their_shape_alone(shared_data: Path, file: str
 
 
 def test_a_skull_under_two_joints_of_the_neck_is_the_head(shared_data: Path) -> None:
-    skeleton = read_clips(shared_data / "smartbody-brad/ChrBrad@Idle03.bvh")[0].skeleton
+    skeleton = read_clip_file(shared_data / "smartbody-brad/ChrBrad@Idle03.bvh")[0].skeleton
     assert skeleton.names[find_roles(skeleton)["head"]] == "JtSkullA"
     other = renamed(skeleton, [n.replace("Skull", "Cabeza") for n in skeleton.names])
     assert other.names[find_roles(other)["head"]] == "JtCabezaA"
@@ -403,11 +403,16 @@ def test_a_bare_stick_figure_is_known_by_its_shape_and_its_toes_tell_left_from_r
     parents = np.array([p for p, _ in places.values()])
     offsets = np.array([o for _, o in places.values()], float)
     names = tuple(f"n{i}" for i in range(len(places)))
-    roles = find_roles(Skeleton(names, parents, rotation.identity((len(places),)), offsets))
+    roles = find_roles(Skeleton(names, parents, rotation.identity_rotations((len(places),)), offsets))
     assert is_humanoid(roles)
     assert roles["left_hand"] == 8 and roles["right_foot"] == 19 and roles["head"] == 4
     offsets = offsets * np.array([1, 1, -1])
-    assert find_roles(Skeleton(names, parents, rotation.identity((len(places),)), offsets))["right_hand"] == 8
+    assert (
+        find_roles(Skeleton(names, parents, rotation.identity_rotations((len(places),)), offsets))[
+            "right_hand"
+        ]
+        == 8
+    )
 
 
 def test_the_mannequin_has_every_role_and_every_part() -> None:
@@ -458,7 +463,7 @@ PEOPLE = {
 def test_real_people_have_the_roles_one_would_point_at(shared_data: Path, file: str) -> None:
     if file.endswith(".fbx"):
         pytest.importorskip("ufbx", reason="the extra metagraph-studio[fbx] is not installed")
-    skeleton = read_clips(shared_data / file)[0].skeleton
+    skeleton = read_clip_file(shared_data / file)[0].skeleton
     roles = find_roles(skeleton)
     assert is_humanoid(roles), missing_roles(roles)
     hips, hand, arm = PEOPLE[file]
@@ -474,7 +479,7 @@ def test_real_people_have_the_roles_one_would_point_at(shared_data: Path, file: 
 
 @pytest.mark.parametrize("name", ANIMALS)
 def test_joints_of_the_zoo_have_the_roles_they_are_named_for(zoo_files: dict[str, Path], name: str) -> None:
-    skeleton = read_clips(zoo_files[name])[0].skeleton
+    skeleton = read_clip_file(zoo_files[name])[0].skeleton
     roles = find_roles(skeleton)
     assert is_humanoid(roles), missing_roles(roles)
     named = {role: skeleton.names[joint] for role, joint in roles.items()}
@@ -486,4 +491,4 @@ def test_joints_of_the_zoo_have_the_roles_they_are_named_for(zoo_files: dict[str
 
 @pytest.mark.parametrize("file", ["bird-animations.glb", "quad-creature-animations.glb"])
 def test_real_animals_are_told_apart_from_people(shared_data: Path, file: str) -> None:
-    assert not is_humanoid(find_roles(read_clips(shared_data / "mesh2motion-cmu" / file)[0].skeleton))
+    assert not is_humanoid(find_roles(read_clip_file(shared_data / "mesh2motion-cmu" / file)[0].skeleton))

@@ -7,8 +7,8 @@ from typing import Any
 
 from metagraph.graph import requests as a
 from metagraph.graph.model import Project
-from metagraph.playback.planning.extend_performance import answer, answers
-from metagraph.playback.planning.running_plan import perform
+from metagraph.playback.planning.extend_performance import answer_ask, answer_asks
+from metagraph.playback.planning.running_plan import plan_performance
 
 
 class Counted(tuple[Any, ...]):
@@ -36,18 +36,18 @@ def some(sample: Project) -> list[Any]:
 
 def test_many_answers_are_the_same_as_one_at_a_time(sample: Project) -> None:
     asks = some(sample)
-    plan = perform(sample, asks, 20.0)
-    many = answers(plan, [x.id for x in asks])
-    assert many == {x.id: answer(plan, x.id) for x in asks}
+    plan = plan_performance(sample, asks, 20.0)
+    many = answer_asks(plan, [x.id for x in asks])
+    assert many == {x.id: answer_ask(plan, x.id) for x in asks}
     assert {x.state for x in many.values()} >= {"planned", "refused", "done"}
 
 
 def test_the_plan_is_gone_through_as_often_for_many_as_for_one(sample: Project) -> None:
     asks = some(sample)
-    plan = replace(plan := perform(sample, asks, 20.0), reports=Counted(plan.reports))
+    plan = replace(plan := plan_performance(sample, asks, 20.0), reports=Counted(plan.reports))
     passes = []
     for idents in ([asks[0].id], [x.id for x in asks]):
         Counted.passes = 0
-        answers(plan, idents)
+        answer_asks(plan, idents)
         passes.append(Counted.passes)
     assert passes == [2, 2]  # once for what serves others, once for all else

@@ -11,7 +11,7 @@ from metagraph.graph.model import Project
 from metagraph.graph.requests import Gesture, Go, Play, request_from
 from metagraph.playback.plan import Cue, MetaRequest, Plan, Report
 from metagraph.playback.planner import make_plan
-from metagraph.playback.planning.extend_performance import answers, hear
+from metagraph.playback.planning.extend_performance import answer_asks, hear_asks
 from metagraph.playback.timing.phases import phases
 
 
@@ -20,7 +20,7 @@ def stroke_of(project: Project, cue: Cue) -> float:
 
 
 def planned(project: Project, *asks: Any, end: float = 40.0) -> Plan:
-    return hear(project, Plan(1, 0.0), 0.0, list(asks), end, idle=False)
+    return hear_asks(project, Plan(1, 0.0), 0.0, list(asks), end, idle=False)
 
 
 def cue_of(plan: Plan, ident: str, layer: str = "arms") -> Cue:
@@ -50,18 +50,18 @@ def test_on_time_or_not_at_all_is_refused_with_by_how_much_and_what_it_waits_for
     assert report.late > 0.1
     assert f"{report.late:.2f} s late" in report.message
     assert f"'{running.action.name}'" in report.message and f"{running.end:.2f} s" in report.message
-    assert answers(plan, ["b"])["b"].state == "refused"
+    assert answer_asks(plan, ["b"])["b"].state == "refused"
 
 
 def test_a_little_late_plays_and_tells_how_late(sample: Project) -> None:
-    first = answers(planned(sample, beat("a", 5.0), beat("b", 5.6)), ["b"])["b"]
+    first = answer_asks(planned(sample, beat("a", 5.0), beat("b", 5.6)), ["b"])["b"]
     assert first.state == "refused"
     plan = planned(sample, beat("a", 5.0), beat("b", 5.6, 2.0))
     (report,) = told(plan, "b")
     assert report.outcome == "late" and report.played
     assert stroke_of(sample, cue_of(plan, "b")) == pytest.approx(5.6 + report.late)
     assert 0 < report.late <= 2.0
-    assert answers(plan, ["b"])["b"].state == "late"
+    assert answer_asks(plan, ["b"])["b"].state == "late"
 
 
 def test_a_stroke_that_its_own_preparation_makes_late_says_so(sample: Project) -> None:
@@ -104,7 +104,7 @@ def test_one_gesture_serves_two_strokes_that_nearly_coincide(sample: Project) ->
     assert cue.meta == "a" and {"beat", "emphasis"} <= set(cue.action.tags)
     (report,) = told(plan, "b")
     assert (report.outcome, report.by, report.played) == ("shared", "a", True)
-    found = answers(plan, ["a", "b"])
+    found = answer_asks(plan, ["a", "b"])
     assert found["a"].state == found["b"].state == "planned"
     assert found["b"].what == found["a"].what and found["b"].at == found["a"].at
 
@@ -113,9 +113,9 @@ def test_what_was_served_is_not_played_again_once_it_has_begun(sample: Project) 
     plan = planned(sample, beat("a", 5.0), beat("b", 5.2, 0.0, "emphasis"))
     now = cue_of(plan, "a").start + 0.05
     for step in (now, 5.1, 5.3, 6.0, 9.0):
-        plan = hear(sample, plan, step, [], 50.0, idle=False)
+        plan = hear_asks(sample, plan, step, [], 50.0, idle=False)
         assert [c.meta for c in plan.layers["arms"].cues] == ["a"]
-        assert answers(plan, ["b"])["b"].state == "planned"
+        assert answer_asks(plan, ["b"])["b"].state == "planned"
 
 
 def test_strokes_that_no_one_clip_has_are_not_shared(sample: Project) -> None:
@@ -129,7 +129,7 @@ def test_what_leaves_room_for_the_next_is_preferred(sample: Project) -> None:
     """Of gestures with the tag beat, doubles and triples are longer than 1.6 s at the least."""
     names = set()
     for seed in range(30):
-        plan = hear(sample, Plan(seed, 0.0), 0.0, [beat("a", 5.0), beat("b", 6.35)], 20.0, idle=False)
+        plan = hear_asks(sample, Plan(seed, 0.0), 0.0, [beat("a", 5.0), beat("b", 6.35)], 20.0, idle=False)
         assert {c.meta for c in plan.layers["arms"].cues} == {"a", "b"}
         names.add(cue_of(plan, "a").action.name)
     assert not any("double" in n or "triple" in n for n in names), names
@@ -137,25 +137,25 @@ def test_what_leaves_room_for_the_next_is_preferred(sample: Project) -> None:
 
 
 def test_what_a_model_began_is_left_for_a_stroke(sample: Project) -> None:
-    plan = hear(sample, Plan(3, 0.0), 0.0, [], 60.0)
+    plan = hear_asks(sample, Plan(3, 0.0), 0.0, [], 60.0)
     cue = next(c for c in plan.layers["arms"].cues if c.action.kind == "fidget" and c.end - c.start > 2.0)
     now = cue.start + 0.6
     asked = Gesture(id="a", stroke=now + 1.2, late=0.0)
-    after = hear(sample, plan, now, [asked], 60.0)
+    after = hear_asks(sample, plan, now, [asked], 60.0)
     left = next(c for c in after.layers["arms"].cues if c.start == cue.start)
     assert left.end < cue.end and left.end - left.blend_out >= now + sample.settings.lookahead - 1e-9
     assert stroke_of(sample, cue_of(after, "a")) == pytest.approx(now + 1.2)
-    plain = hear(sample, plan, now, [Gesture(id="a", stroke=now + 1.2)], 60.0)
+    plain = hear_asks(sample, plan, now, [Gesture(id="a", stroke=now + 1.2)], 60.0)
     assert next(c for c in plain.layers["arms"].cues if c.start == cue.start) == cue  # not without `late`
 
 
 def test_poses_up_to_now_stay_when_something_is_left_early(sample: Project) -> None:
     from tests.posing import pose_at
 
-    plan = hear(sample, Plan(3, 0.0), 0.0, [], 60.0)
+    plan = hear_asks(sample, Plan(3, 0.0), 0.0, [], 60.0)
     cue = next(c for c in plan.layers["arms"].cues if c.action.kind == "fidget" and c.end - c.start > 2.0)
     now = cue.start + 0.6
-    after = hear(sample, plan, now, [Gesture(id="a", stroke=now + 1.2, late=0.0)], 60.0)
+    after = hear_asks(sample, plan, now, [Gesture(id="a", stroke=now + 1.2, late=0.0)], 60.0)
     assert after.layers["arms"].cues != plan.layers["arms"].cues
     for t in (now - 0.3, now, now + sample.settings.lookahead - 1e-6):
         a, b = pose_at(plan, sample, t), pose_at(after, sample, t)
@@ -193,7 +193,7 @@ def test_planning_in_steps_tells_it_once(sample: Project) -> None:
     plan = planned(sample, beat("a", 5.0), beat("b", 5.6, 2.0), beat("c", 12.0), beat("d", 12.5))
     whole = [(r.request, r.outcome) for r in plan.reports]
     for now in (0.5, 2.0, 4.0, 5.0, 7.0, 9.0, 11.9):
-        plan = hear(sample, plan, now, [], 50.0, idle=False)
+        plan = hear_asks(sample, plan, now, [], 50.0, idle=False)
     assert [(r.request, r.outcome) for r in plan.reports] == whole
     assert len(whole) == len(set(whole)) == 2
 

@@ -15,7 +15,7 @@ from metagraph.graph.manual.machine import ANY
 from metagraph.graph.model import PARTS, Life, Project
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.manual_playback import Fire, link_alone, make_manual_plan, route, state_alone
+from metagraph.playback.manual_playback import Fire, link_alone, make_manual_plan, play_state_alone, route
 from tests.posing import manual_morphs_at, manual_pose_at
 
 
@@ -279,7 +279,7 @@ def test_the_life_layers_play_on_top(drawn: Any) -> None:
 
 def test_a_state_is_looked_at_alone_and_a_link_with_what_is_around_it(drawn: Any) -> None:
     project, ids = drawn("rest long>rest loop", "any>rest long", start="rest long")
-    only = state_alone(project, ids["rest long"])
+    only = play_state_alone(project, ids["rest long"])
     assert only.end == pytest.approx(2.4)
     project = m.update_links(project, [ids["rest long>rest loop"]], blend=0.4)
     link = link_alone(project, ids["rest long>rest loop"])
@@ -293,7 +293,7 @@ def test_a_state_is_looked_at_alone_and_a_link_with_what_is_around_it(drawn: Any
         "rest long",
     ]
     with pytest.raises(KeyError):
-        state_alone(project, "m999")
+        play_state_alone(project, "m999")
 
 
 def test_the_plan_shows_as_cues_that_do_not_overlap(drawn: Any) -> None:

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Project
 from metagraph.playback.plan import MetaRequest, Plan
-from metagraph.playback.planner import extend, make_plan
+from metagraph.playback.planner import extend_plan, make_plan
 
 PROJECT = Project()
 
@@ -23,7 +23,7 @@ def _project(toy: Any) -> None:
     global PROJECT
     project = toy.project()
     for clip in ("rest scratch", "rest cough"):  # a stance with several loops
-        project = edits.place(
+        project = edits.place_clips(
             project, [project.action(toy.id(project, clip)).clip], "arms", "stance", toy.id(project, "rest")
         )
     PROJECT = edits.update_actions(project, [toy.id(project, "rest long")], timing={"earliest_exit": 1.0})
@@ -59,7 +59,7 @@ def test_the_same_seed_gives_the_same_plan_and_another_another() -> None:
 def test_a_layer_begins_where_it_is_told_to_else_at_its_start_else_where_there_is_a_loop(toy: Any) -> None:
     up, far = toy.id(PROJECT, "up"), toy.id(PROJECT, "far")
     assert make_plan(PROJECT, 5, stances={"arms": up}).layers["arms"].stance_at(0) == up
-    assert make_plan(edits.set_start(PROJECT, far), 5).layers["arms"].stance_at(0) == far
+    assert make_plan(edits.set_start_stance(PROJECT, far), 5).layers["arms"].stance_at(0) == far
     assert make_plan(PROJECT, 5, stances={"arms": "s999"}).layers["arms"].stance_at(0) == toy.id(
         PROJECT, "rest"
     )
@@ -72,7 +72,7 @@ def test_requests_beyond_the_horizon_wait_for_it() -> None:
     request = MetaRequest("r", "arms", "gesture", 12.0)
     plan = make_plan(PROJECT, 10, [request], idle=False)
     assert not plan.layers["arms"].cues and plan.reports == () and plan.requests == (request,)
-    later = extend(PROJECT, plan, 5, (), 20, idle=False)
+    later = extend_plan(PROJECT, plan, 5, (), 20, idle=False)
     assert [(c.meta, c.start) for c in later.layers["arms"].cues] == [("r", 12.0)]
 
 
@@ -97,9 +97,9 @@ def test_of_two_requests_of_one_id_the_later_counts() -> None:
         idle=False,
     )
     assert [(c.meta, c.start, c.action.kind) for c in plan.layers["arms"].cues] == [("r", 5.0, "fidget")]
-    moved = extend(PROJECT, plan, 1.0, [MetaRequest("r", "arms", "gesture", 8.0)], 20, idle=False)
+    moved = extend_plan(PROJECT, plan, 1.0, [MetaRequest("r", "arms", "gesture", 8.0)], 20, idle=False)
     assert [(c.meta, c.start) for c in moved.layers["arms"].cues] == [("r", 8.0)] and len(moved.requests) == 1
-    gone = extend(PROJECT, plan, 1.0, [MetaRequest("r", "head", "gesture", 8.0)], 20, idle=False)
+    gone = extend_plan(PROJECT, plan, 1.0, [MetaRequest("r", "head", "gesture", 8.0)], 20, idle=False)
     assert not gone.layers["arms"].cues, "asked for on another layer, it leaves this one"
 
 
@@ -109,7 +109,7 @@ def test_of_two_requests_of_one_id_the_later_counts() -> None:
 def test_the_running_action_is_kept_and_a_new_request_waits_for_it(toy: Any) -> None:
     long = MetaRequest("a", "arms", "gesture", 1.0, action=toy.id(PROJECT, "rest wave rt"))
     plan = make_plan(PROJECT, 20, [long], idle=False)
-    then = extend(
+    then = extend_plan(
         PROJECT, plan, 1.5, [MetaRequest("now", "arms", "gesture", 1.5, priority=9)], 20, idle=False
     )
     cues = then.layers["arms"].cues
@@ -118,7 +118,7 @@ def test_the_running_action_is_kept_and_a_new_request_waits_for_it(toy: Any) -> 
 
 
 def test_a_request_for_the_far_past_is_told_to_be_past() -> None:
-    then = extend(
+    then = extend_plan(
         PROJECT,
         make_plan(PROJECT, 30, idle=False),
         20,
@@ -131,7 +131,7 @@ def test_a_request_for_the_far_past_is_told_to_be_past() -> None:
 
 def test_new_requests_are_merged_with_what_was_planned() -> None:
     old = [MetaRequest("a", "arms", "gesture", 5.0), MetaRequest("b", "arms", "gesture", 10.0)]
-    plan = extend(
+    plan = extend_plan(
         PROJECT,
         make_plan(PROJECT, 20, old, idle=False),
         1,
@@ -146,7 +146,7 @@ def test_a_chain_that_has_begun_is_finished(toy: Any) -> None:
     ask = MetaRequest("go", "arms", "gesture", 1.0, action=toy.id(PROJECT, "up point"))
     plan = make_plan(PROJECT, 20, [ask], idle=False)
     for now in (1.0, 1.1, 1.5, 1.8, 2.0, 3.5):
-        assert played(extend(PROJECT, plan, now, (), 20, idle=False)) == played(plan)
+        assert played(extend_plan(PROJECT, plan, now, (), 20, idle=False)) == played(plan)
 
 
 def test_a_meta_action_that_waits_for_a_long_clip_is_not_forgotten_meanwhile(toy: Any) -> None:
@@ -158,7 +158,7 @@ def test_a_meta_action_that_waits_for_a_long_clip_is_not_forgotten_meanwhile(toy
     assert [c.meta for c in plan.layers["arms"].cues] == ["a", "b"] and plan.layers["arms"].cues[
         1
     ].start == pytest.approx(2.2)
-    assert played(extend(PROJECT, plan, 2.0, (), 20, idle=False)) == played(plan)
+    assert played(extend_plan(PROJECT, plan, 2.0, (), 20, idle=False)) == played(plan)
 
 
 def test_what_was_told_stays_told(toy: Any) -> None:
@@ -171,7 +171,7 @@ def test_what_was_told_stays_told(toy: Any) -> None:
     plan = make_plan(PROJECT, 30, asked, idle=False)
     assert {r.request for r in plan.reports} >= {"long", "late", "lost"}
     for now in (1.0, 6.5, 20.0):
-        plan = extend(PROJECT, plan, now, (), 30, idle=False)
+        plan = extend_plan(PROJECT, plan, now, (), 30, idle=False)
         assert {r.request for r in plan.reports} >= {"long", "late", "lost"} and len(
             set(plan.reports)
         ) == len(plan.reports)
@@ -182,7 +182,7 @@ def test_a_stance_that_was_removed_meanwhile_does_not_break_the_plan(toy: Any) -
         PROJECT, 20, [MetaRequest("go", "arms", "transition", 1.0, stance=toy.id(PROJECT, "up"))], idle=False
     )
     without = edits.remove_stance(PROJECT, toy.id(PROJECT, "up"))
-    then = extend(without, plan, 5.0, [MetaRequest("g", "arms", "gesture", 6.0)], 20, idle=False)
+    then = extend_plan(without, plan, 5.0, [MetaRequest("g", "arms", "gesture", 6.0)], 20, idle=False)
     assert then.layers["arms"].cues[-1].action.id in without.graphs["arms"].actions
 
 
@@ -258,7 +258,7 @@ def test_extending_with_nothing_new_is_planning_at_once(
     requests = build(rows)
     plan = whole = make_plan(PROJECT, 60, requests, seed, idle=idle)
     for now in sorted(moments):
-        plan = extend(PROJECT, plan, now, (), 60, idle=idle)
+        plan = extend_plan(PROJECT, plan, now, (), 60, idle=idle)
         assert played(plan) == played(whole)
         assert told(plan) == told(whole)
 
@@ -273,7 +273,7 @@ def test_a_performance_planned_piece_by_piece_is_the_one_planned_at_once(
     for moment in sorted(moments):
         now = min(moment, end)  # what would have begun in between can no longer
         end = max(end, now + 15)
-        plan = extend(PROJECT, plan, now, (), end)
+        plan = extend_plan(PROJECT, plan, now, (), end)
     whole = make_plan(PROJECT, end, seed=seed)
     assert played(plan)["arms"][0] == played(whole)["arms"][0]
 
@@ -284,7 +284,7 @@ def test_what_started_before_now_stays_exactly_as_it_was(
     rows: list[Any], more: list[Any], now: float, seed: int
 ) -> None:
     plan = make_plan(PROJECT, 60, build(rows), seed)
-    then = extend(PROJECT, plan, now, build(more, "n"), 70)
+    then = extend_plan(PROJECT, plan, now, build(more, "n"), 70)
     for layer in LAYERS:
         kept = [c for c in plan.layers[layer].cues if c.start < now]
         assert list(then.layers[layer].cues[: len(kept)]) == kept

@@ -16,7 +16,7 @@ from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.plan import LayerPlan, MetaRequest, Plan, Rest
 from metagraph.playback.planner import make_plan
-from metagraph.playback.posing.layers import cue_weight, ease, keep_to, loop_seconds
+from metagraph.playback.posing.layers import ease_blend, keep_to, loop_seconds, weight_of_cue
 from tests.posing import morphs_at, pose_at
 
 pytestmark = pytest.mark.usefixtures("numbered_ids")
@@ -237,7 +237,7 @@ def test_a_soft_joint_that_turns_halfway_round_takes_the_shorter_way_and_stays_a
 
 
 def test_the_blend_curve_starts_and_ends_flat_and_is_clamped() -> None:
-    assert ease(np.array([-1.0, 0, 0.5, 1, 2])).tolist() == [0, 0, 0.5, 1, 1]
+    assert ease_blend(np.array([-1.0, 0, 0.5, 1, 2])).tolist() == [0, 0, 0.5, 1, 1]
 
 
 def test_a_cues_weight_is_0_outside_it_and_1_in_its_middle(project: Project, toy: Any) -> None:
@@ -245,9 +245,9 @@ def test_a_cues_weight_is_0_outside_it_and_1_in_its_middle(project: Project, toy
     times = np.array(
         [cue.start - 0.01, cue.start, cue.start + cue.blend_in, cue.end - cue.blend_out, cue.end, cue.end + 1]
     )
-    assert cue_weight(cue, times).tolist() == pytest.approx([0, 0, 1, 1, 0, 0])
+    assert weight_of_cue(cue, times).tolist() == pytest.approx([0, 0, 1, 1, 0, 0])
     hard = replace(cue, blend_in=0.0, blend_out=0.0)
-    assert cue_weight(hard, times).tolist() == [0, 1, 1, 1, 0, 0]
+    assert weight_of_cue(hard, times).tolist() == [0, 1, 1, 1, 0, 0]
 
 
 def jump(plan: Plan, project: Project, moment: float, step: float = 1e-4) -> float:

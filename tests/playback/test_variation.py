@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 from metagraph.playback.plan import Cue, LayerPlan, MetaRequest, Plan
-from metagraph.playback.planner import extend, make_plan
+from metagraph.playback.planner import extend_plan, make_plan
 from metagraph.playback.timing.phases import phases
 from tests.posing import pose_at
 
@@ -127,7 +127,7 @@ def test_actions_of_a_layer_are_as_far_apart_as_the_settings_say(project: Projec
 def test_rest_holds_across_extensions(project: Project) -> None:
     project = edits.set_settings(project, rest=1.5)
     plan = make_plan(project, 10, [MetaRequest("a", "arms", "gesture", 1.0)], idle=False)
-    plan = extend(
+    plan = extend_plan(
         project,
         plan,
         plan.layers["arms"].cues[0].end + 0.1,

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from metagraph.motion.character_mesh import Character
+from metagraph.motion.character_mesh import CharacterMesh
 from metagraph.motion.skeleton import Skeleton
 from preview.offscreen import Offscreen, OpenGLError
 from preview.sheet import write_png
@@ -28,7 +28,7 @@ def offscreen() -> Iterator[Offscreen]:
 
 
 @pytest.fixture(scope="session")
-def mannequin() -> Character:
+def mannequin() -> CharacterMesh:
     from metagraph.formats.gltf.reader import read_character
 
     return read_character(Path(__file__).parents[2] / "sample_clips" / "mannequin.glb")

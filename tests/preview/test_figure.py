@@ -10,7 +10,7 @@ import pytest
 import sample_clips
 from metagraph.formats.gltf.reader import read_character, read_gltf_clips
 from metagraph.motion import rotation
-from metagraph.motion.character_mesh import Character, Material, Surface, bound
+from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, Surface, bind_character
 from metagraph.motion.skeleton import Pose, Skeleton
 from preview.figure import SkinnedFigure, StickFigure
 from preview.mesh import ball, capsule
@@ -22,7 +22,7 @@ UNIT = np.eye(3, 4)
 MANNEQUIN = Path(sample_clips.__file__).with_name("mannequin.glb")
 
 
-def character(skeleton: Skeleton, **changes) -> Character:
+def character(skeleton: Skeleton, **changes) -> CharacterMesh:
     """One vertex for each joint, at the joint."""
     _, positions = skeleton.globals(skeleton.rest)
     count = len(skeleton)
@@ -37,10 +37,10 @@ def character(skeleton: Skeleton, **changes) -> Character:
         "joints": joints,
         "weights": weights,
         "triangles": triangles,
-        "materials": (Material("m"),),
+        "materials": (MeshMaterial("m"),),
         "surfaces": (Surface(0, 1, 0),),
     }
-    return Character("c", skeleton, **{**values, **changes})
+    return CharacterMesh("c", skeleton, **{**values, **changes})
 
 
 def bent(skeleton: Skeleton, joint: str) -> tuple[np.ndarray, np.ndarray]:
@@ -200,7 +200,7 @@ def test_weights_that_do_not_add_up_are_mended_and_materials_of_one_texture_are_
         skeleton,
         weights=weights,
         triangles=np.array([[0, 1, 2], [2, 1, 0]]),
-        materials=(Material("m", (1, 0, 0, 1)), Material("n", (0, 1, 0, 1))),
+        materials=(MeshMaterial("m", (1, 0, 0, 1)), MeshMaterial("n", (0, 1, 0, 1))),
         surfaces=(Surface(0, 1, 0), Surface(1, 1, 1)),
     )
     mesh = SkinnedFigure(made).mesh
@@ -231,7 +231,7 @@ def test_shapes_are_closed_and_face_outwards():
 
 
 def skinned(
-    figure: SkinnedFigure, body: Character, rotations: np.ndarray, positions: np.ndarray
+    figure: SkinnedFigure, body: CharacterMesh, rotations: np.ndarray, positions: np.ndarray
 ) -> np.ndarray:
     """The vertices `[V, 3]` of a figure's character in a pose."""
     matrices = figure.palette(rotations, positions)[body.joints].astype(float)
@@ -242,7 +242,7 @@ def skinned(
 def test_what_is_exported_of_a_mesh_on_another_skeleton_is_what_is_drawn() -> None:
     body, skeleton = read_character(MANNEQUIN), stick_skeleton()
     assert body.skeleton != skeleton
-    drawn, exported = ((SkinnedFigure(x, skeleton), x) for x in (body, bound(body, skeleton)))
+    drawn, exported = ((SkinnedFigure(x, skeleton), x) for x in (body, bind_character(body, skeleton)))
     rest = skeleton.globals(skeleton.rest)
     assert np.abs(skinned(*drawn, *rest) - skinned(*exported, *rest)).max() < 1e-5
     turns = rotation.multiply(skeleton.rest_rotations, rotation.exp(np.full((len(skeleton), 3), 0.15)))
@@ -253,7 +253,7 @@ def test_what_is_exported_of_a_mesh_on_another_skeleton_is_what_is_drawn() -> No
 
 
 def test_a_bound_mesh_names_no_joint_twice_for_a_vertex() -> None:
-    body = bound(read_character(MANNEQUIN), stick_skeleton())
+    body = bind_character(read_character(MANNEQUIN), stick_skeleton())
     for joints, weights in zip(body.joints, body.weights, strict=True):
         used = joints[weights > 0].tolist()
         assert len(used) == len(set(used)) and np.isclose(weights.sum(), 1, atol=1e-5)
@@ -265,7 +265,9 @@ def test_a_host_whose_mesh_came_with_another_skeleton_is_exported_as_it_is_drawn
     body = read_character(home / "characters" / "adult_female" / "cristine" / "cristine.gltf")
     idle = read_gltf_clips(home / "animations" / "adult_female" / "stand_idle.glb")[0]
     assert body.skeleton.names == idle.skeleton.names and body.skeleton != idle.skeleton
-    drawn, exported = ((SkinnedFigure(x, idle.skeleton), x) for x in (body, bound(body, idle.skeleton)))
+    drawn, exported = (
+        (SkinnedFigure(x, idle.skeleton), x) for x in (body, bind_character(body, idle.skeleton))
+    )
     pose = idle.skeleton.globals(idle.pose_at(1.0))
     apart = np.linalg.norm(skinned(*drawn, *pose) - skinned(*exported, *pose), axis=1)
     assert len(apart) > 10_000 and apart.max() < 1e-3

@@ -45,38 +45,38 @@ def test_sides_come_from_names_and_pass_down():
         ("l_arm", "Hips"),
         ("Neck", "Hips"),
     )
-    assert joints.sides(skeleton).tolist() == [0, 1, 1, -1, 1, 0]
+    assert joints.sides_of_joints(skeleton).tolist() == [0, 1, 1, -1, 1, 0]
 
 
 def test_a_root_on_the_ground_is_not_drawn_but_the_hips_are():
     skeleton = rig(("Root", None), ("Hips", "Root"), ("LeftLeg", "Hips"), ("RightLeg", "Hips"))
-    assert joints.drawn(skeleton).tolist() == [False, True, True, True]
+    assert joints.find_drawn_joints(skeleton).tolist() == [False, True, True, True]
 
 
 def test_a_chain_without_branches_is_drawn_whole():
-    assert joints.drawn(rig(("a", None), ("b", "a"), ("c", "b"))).all()
+    assert joints.find_drawn_joints(rig(("a", None), ("b", "a"), ("c", "b"))).all()
 
 
 def test_something_is_always_drawn():
-    assert joints.drawn(rig(("ik_target", None))).any()
+    assert joints.find_drawn_joints(rig(("ik_target", None))).any()
 
 
 def test_the_mannequins_face_is_left_to_its_head():
     skeleton = mannequin_skeleton()
-    shown = {skeleton.names[i] for i in np.flatnonzero(joints.drawn(skeleton))}
+    shown = {skeleton.names[i] for i in np.flatnonzero(joints.find_drawn_joints(skeleton))}
     assert not any("Eye" in n or "Lid" in n or "Brow" in n or n == "Jaw" for n in shown)
     assert {"Hips", "Head", "LeftIndex2", "RightToes"} <= shown
-    assert skeleton.names[joints.head(skeleton) or 0] == "Head"
+    assert skeleton.names[joints.find_head(skeleton) or 0] == "Head"
 
 
 def test_a_head_that_is_not_called_one_is_drawn_by_its_role():
     skeleton = mannequin_skeleton()
     names = tuple(n.replace("Head", "JtSkullA").replace("Neck", "JtNeckB") for n in skeleton.names)
     renamed = Skeleton(names, skeleton.parents, skeleton.rest_rotations, skeleton.rest_translations)
-    assert joints.head(renamed) == skeleton.names.index("Head")
+    assert joints.find_head(renamed) == skeleton.names.index("Head")
 
 
 def test_a_bone_goes_past_what_is_not_drawn_to_the_nearest_joint_that_is():
     rows = ("Hips", None), ("ik_spine", "Hips"), ("Spine", "ik_spine"), ("Head", "Spine"), ("Prop", None)
     shown = np.array([True, False, True, True, True])
-    assert joints.above(rig(*rows), shown).tolist() == [-1, 0, 0, 2, -1]
+    assert joints.nearest_above(rig(*rows), shown).tolist() == [-1, 0, 0, 2, -1]

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from preview import levels
-from preview.figure import Figure
-from preview.levels import ERRORS, Level, kept_in, levels_of
+from preview.figure import MeshFigure
+from preview.levels import ERRORS, Level, levels_folder, levels_of
 from preview.mesh import ball, egg
 from tests.preview.test_simplify import mesh_of
 
@@ -39,7 +39,7 @@ def test_levels_are_made_once_and_read_from_then_on(folder, monkeypatch):
     first = levels_of(a_ball(), 1.0)
     errors = [level.error for level in first]
     assert errors and errors == sorted(set(errors) & set(ERRORS))
-    monkeypatch.setattr(levels, "simplified", lambda *_: pytest.fail("it was there"))
+    monkeypatch.setattr(levels, "simplify", lambda *_: pytest.fail("it was there"))
     assert same(levels_of(a_ball(), 1.0), first)
 
 
@@ -93,16 +93,16 @@ def test_a_level_with_hardly_fewer_triangles_is_none(folder):
 
 def test_a_folder_is_named_by_the_environment_or_there_is_none(monkeypatch):
     monkeypatch.setenv("METAGRAPH_MESH_CACHE", "")
-    assert kept_in() is None
+    assert levels_folder() is None
     monkeypatch.delenv("METAGRAPH_MESH_CACHE")
-    found = kept_in()
+    found = levels_folder()
     assert found is not None and found.name == "meshes"
 
 
 def test_a_figure_is_drawn_with_the_fewest_triangles_that_are_near_enough(mannequin):
     from preview.figure import SkinnedFigure
 
-    figure: Figure = SkinnedFigure(mannequin)
+    figure: MeshFigure = SkinnedFigure(mannequin)
     assert figure.finest(1.0) is figure.mesh, "before there are any"
     figure.simplify()
     made = figure.levels
@@ -116,16 +116,16 @@ def test_a_figure_is_drawn_with_the_fewest_triangles_that_are_near_enough(manneq
 @pytest.mark.gl
 def test_levels_may_come_while_a_picture_is_drawn(offscreen, mannequin, monkeypatch):
     """They are made on another thread."""
-    from preview.camera import whole_figure
+    from preview.camera import frame_whole_figure
     from preview.figure import SkinnedFigure
-    from preview.scene import DARK, Actor, Scene
+    from preview.scene import DARK, Scene, SceneActor
     from preview.shadows import Shadows
 
     figure = SkinnedFigure(mannequin)
-    scene = Scene((Actor(figure, *figure.skeleton.globals(figure.skeleton.rest)),))
+    scene = Scene((SceneActor(figure, *figure.skeleton.globals(figure.skeleton.rest)),))
     cast = Shadows.cast
     monkeypatch.setattr(Shadows, "cast", lambda *told: figure.simplify() or cast(*told))
-    camera = whole_figure(scene.bounds(), 4 / 3)
+    camera = frame_whole_figure(scene.bounds(), 4 / 3)
     before = offscreen.render(scene, camera, DARK, (160, 120)).astype(int)
     assert figure.levels
     after = offscreen.render(scene, camera, DARK, (160, 120)).astype(int)

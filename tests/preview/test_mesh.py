@@ -4,12 +4,12 @@ import pytest
 import sample_clips
 from metagraph.formats.gltf.reader import read_character
 from preview.figure import SkinnedFigure
-from preview.mesh import VERTEX, Mesh, arranged, pieces
+from preview.mesh import VERTEX, SkinnedMesh, arrange_vertices, cut_at_bones
 
 
 def test_an_arranged_mesh_has_the_same_triangles_in_each_batch():
     mesh = SkinnedFigure(read_character(sample_clips.__path__[0] + "/mannequin.glb")).mesh
-    order, triangles = arranged(mesh)
+    order, triangles = arrange_vertices(mesh)
     assert sorted(order.tolist()) == np.unique(mesh.triangles).tolist()
     for batch in mesh.batches:
         part = slice(batch.first, batch.first + batch.count)
@@ -22,14 +22,14 @@ def test_an_arranged_mesh_has_the_same_triangles_in_each_batch():
 @pytest.mark.parametrize("count", [0, 3])
 def test_a_mesh_without_triangles_or_extent_is_arranged_too(count):
     triangles = np.zeros((count and 1, 3), np.uint32)
-    order, after = arranged(Mesh(np.zeros(count, VERTEX), triangles, (), 1))
+    order, after = arrange_vertices(SkinnedMesh(np.zeros(count, VERTEX), triangles, (), 1))
     assert after.shape == triangles.shape and len(order) == (count and 1)
 
 
 def test_pieces_hold_the_triangles_of_their_bones_as_tightly_as_the_margin_lets_them():
     figure = SkinnedFigure(read_character(sample_clips.__path__[0] + "/mannequin.glb"))
     mesh, length, margin = figure.mesh, 0.06 * figure.height, 0.012 * figure.height
-    matrices, corners = pieces(mesh, length, margin)
+    matrices, corners = cut_at_bones(mesh, length, margin)
     low, high = corners.min(1), corners.max(1)
     held = {m: [] for m in range(mesh.matrices)}
     for triangle in mesh.triangles:

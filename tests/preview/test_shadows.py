@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from metagraph.motion.character_mesh import Character, Material, Surface
+from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, Surface
 from preview import shadows
-from preview.camera import Camera
+from preview.camera import OrbitCamera
 from preview.figure import SkinnedFigure
-from preview.frame import Frame, boxes
+from preview.frame import Frame, piece_boxes
 from preview.offscreen import Offscreen
-from preview.scene import DARK, Actor, Scene
+from preview.scene import DARK, Scene, SceneActor
 from tests.preview.conftest import chain
 from tests.preview.test_figure import character
 
@@ -39,16 +39,16 @@ def shelf() -> Scene:
         uvs=np.zeros((8, 2)),
         joints=np.zeros((8, 4), int),
         weights=np.tile([1.0, 0, 0, 0], (8, 1)),
-        materials=(Material("white", (0.8, 0.8, 0.8, 1)),),
+        materials=(MeshMaterial("white", (0.8, 0.8, 0.8, 1)),),
         surfaces=(Surface(0, 4, 0),),
     )
     figure = SkinnedFigure(made)
-    return Scene((Actor(figure, *figure.skeleton.globals(figure.skeleton.rest)),))
+    return Scene((SceneActor(figure, *figure.skeleton.globals(figure.skeleton.rest)),))
 
 
-def near() -> Camera:
+def near() -> OrbitCamera:
     """Straight down on the shadow's far corner, past the small square."""
-    return Camera((-0.13, 0.9, -0.20), 0.0, np.radians(88.0), 0.6)
+    return OrbitCamera((-0.13, 0.9, -0.20), 0.0, np.radians(88.0), 0.6)
 
 
 def steps(picture: np.ndarray) -> float:
@@ -65,11 +65,11 @@ def steps(picture: np.ndarray) -> float:
     return float(np.abs(at - np.polyval(np.polyfit(rows, at, 1), rows)).max())
 
 
-def frame_of(scene: Scene, camera: Camera, offscreen: Offscreen) -> Frame:
+def frame_of(scene: Scene, camera: OrbitCamera, offscreen: Offscreen) -> Frame:
     offscreen.render(scene, camera, NOON, SIZE)
     actors = list(scene.actors)
     matrix = camera.projection(1.0) @ camera.view()
-    parts = boxes(actors, offscreen.renderer.store.palettes)
+    parts = piece_boxes(actors, offscreen.renderer.store.palettes)
     meshes = [a.figure.mesh for a in actors]
     return Frame(scene, actors, [0], camera, SIZE, NOON, matrix, scene.bounds(), meshes, parts, [])
 
@@ -87,11 +87,11 @@ def test_near_by_an_edge_has_no_saw_teeth(offscreen, monkeypatch):
 def test_the_map_near_by_is_of_what_is_seen_alone(offscreen):
     axes = np.stack(np.eye(3)[[0, 2, 1]] * [[1], [1], [-1]])
     close, far = (frame_of(shelf(), c, offscreen) for c in (near(), replace(near(), distance=8.0)))
-    pixels, low, high = shadows.seen_window(close, axes)
-    assert pixels > 10 * shadows.seen_window(far, axes)[0] > 0
+    pixels, low, high = shadows.find_seen_window(close, axes)
+    assert pixels > 10 * shadows.find_seen_window(far, axes)[0] > 0
     assert (high - low < 0.6).all() and (low < [-0.13, -0.20]).all() and (high > [-0.13, -0.20]).all()
     away = frame_of(shelf(), replace(near(), target=(9.0, 0.9, 9.0)), offscreen)
-    assert shadows.seen_window(away, axes)[0] == 0, "nothing of it is in the picture"
+    assert shadows.find_seen_window(away, axes)[0] == 0, "nothing of it is in the picture"
 
 
 @pytest.mark.parametrize("distance", [0.6, 1.5, 2.2, 5.0])
@@ -111,7 +111,7 @@ def test_a_window_keeps_its_size_while_a_body_sways_a_little(offscreen):
     sizes = set()
     for x in np.linspace(0, 0.004, 5):
         frame = frame_of(shelf(), replace(near(), target=(-0.13 + x, 0.9, -0.2)), offscreen)
-        _, low, high = shadows.seen_window(frame, axes)
+        _, low, high = shadows.find_seen_window(frame, axes)
         sizes.add(tuple((high - low).round(9)))
     assert len(sizes) == 1
 
@@ -121,8 +121,8 @@ def test_the_ground_is_as_dark_whether_or_not_the_body_has_a_map_of_its_own(
 ):
     """Its own shadow comes from a smaller picture then."""
     figure = SkinnedFigure(mannequin)
-    scene = Scene((Actor(figure, *figure.skeleton.globals(figure.skeleton.rest)),))
-    camera = Camera((0.3, 0.2, -0.3), 0.4, 0.5, 2.0)
+    scene = Scene((SceneActor(figure, *figure.skeleton.globals(figure.skeleton.rest)),))
+    camera = OrbitCamera((0.3, 0.2, -0.3), 0.4, 0.5, 2.0)
     pictures = []
     for limit in (1e9, 1e-9):  # never, always
         monkeypatch.setattr(shadows, "NEAR", limit)
@@ -135,23 +135,26 @@ def test_the_ground_is_as_dark_whether_or_not_the_body_has_a_map_of_its_own(
 def test_who_stands_behind_the_eye_or_round_it_is_no_trouble(offscreen, mannequin):
     figure = SkinnedFigure(mannequin)
     rotations, positions = figure.skeleton.globals(figure.skeleton.rest)
-    ahead, behind = Actor(figure, rotations, positions), Actor(figure, rotations, positions + [0, 0, 3.0])
+    ahead, behind = (
+        SceneActor(figure, rotations, positions),
+        SceneActor(figure, rotations, positions + [0, 0, 3.0]),
+    )
     for z in (0.0, 0.2, 1.0, 3.0):
-        camera = Camera((0.0, 1.4, z), 0.0, 0.0, 0.3)
+        camera = OrbitCamera((0.0, 1.4, z), 0.0, 0.0, 0.3)
         picture = offscreen.render(Scene((ahead, behind)), camera, NOON, SIZE)
         assert picture.shape == (*SIZE, 4)
-    away = frame_of(Scene((behind,)), Camera((0.0, 1.4, 0.0), 0.0, 0.0, 0.5), offscreen)
-    assert shadows.seen_window(away, np.stack(np.eye(3)))[0] == 0
+    away = frame_of(Scene((behind,)), OrbitCamera((0.0, 1.4, 0.0), 0.0, 0.0, 0.5), offscreen)
+    assert shadows.find_seen_window(away, np.stack(np.eye(3)))[0] == 0
 
 
 def test_in_small_pictures_a_body_does_not_shade_itself_in_stripes(
-    mannequin: Character, monkeypatch: pytest.MonkeyPatch
+    mannequin: CharacterMesh, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A texel of the small map covers more of a slope than what a surface is kept away by at least."""
     figure = SkinnedFigure(mannequin)
     posed = mannequin.skeleton.globals(mannequin.skeleton.rest)
-    scene = Scene((Actor(figure, *(values[None] for values in posed)),))
-    camera = Camera().frame(scene.bounds(), 1.0)
+    scene = Scene((SceneActor(figure, *(values[None] for values in posed)),))
+    camera = OrbitCamera().frame(scene.bounds(), 1.0)
 
     def unevenness(offscreen: Offscreen) -> float:
         lit = offscreen.render(scene, camera)[..., :3].astype(float)

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from preview.figure import SkinnedFigure
-from preview.mesh import VERTEX, Batch, Mesh, Morphs, ball, lathe
-from preview.simplify import simplified
+from preview.mesh import VERTEX, Morphs, SkinnedMesh, TriangleBatch, ball, lathe
+from preview.simplify import simplify
 
 
-def mesh_of(positions, triangles, batches=None, uvs=None, bones=None, morphs=None) -> Mesh:
+def mesh_of(positions, triangles, batches=None, uvs=None, bones=None, morphs=None) -> SkinnedMesh:
     vertices = np.zeros(len(positions), VERTEX)
     vertices["position"] = positions
     vertices["weights"][:, 0] = 1
@@ -19,7 +19,7 @@ def mesh_of(positions, triangles, batches=None, uvs=None, bones=None, morphs=Non
     if bones is not None:
         vertices["bones"][:, 0] = bones
     triangles = np.asarray(triangles, np.uint32)
-    return Mesh(vertices, triangles, batches or (Batch(0, len(triangles)),), 2, morphs)
+    return SkinnedMesh(vertices, triangles, batches or (TriangleBatch(0, len(triangles)),), 2, morphs)
 
 
 def grid(size: int) -> tuple[np.ndarray, np.ndarray]:
@@ -31,20 +31,20 @@ def grid(size: int) -> tuple[np.ndarray, np.ndarray]:
     return np.stack([x.ravel(), np.zeros(size * size), z.ravel()], 1), triangles
 
 
-def area(mesh: Mesh) -> float:
+def area(mesh: SkinnedMesh) -> float:
     corner = mesh.vertices["position"].astype(float)[mesh.triangles]
     across = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
     return float(np.linalg.norm(across, axis=1).sum() / 2)
 
 
 def test_a_mesh_without_triangles_stays_one():
-    empty = Mesh(np.zeros(0, VERTEX), np.zeros((0, 3), np.uint32), (), 1)
-    assert [len(fewer.of(empty).triangles) for fewer in simplified(empty, [0.1, 0.2])] == [0, 0]
+    empty = SkinnedMesh(np.zeros(0, VERTEX), np.zeros((0, 3), np.uint32), (), 1)
+    assert [len(fewer.of(empty).triangles) for fewer in simplify(empty, [0.1, 0.2])] == [0, 0]
 
 
 def test_of_a_flat_square_little_more_than_its_corners_is_left_and_it_covers_the_same():
     mesh = mesh_of(*grid(20))
-    less = next(simplified(mesh, [1e-3])).of(mesh)
+    less = next(simplify(mesh, [1e-3])).of(mesh)
     assert len(less.triangles) < 0.06 * len(mesh.triangles)
     assert area(less) == pytest.approx(1.0, rel=1e-6)
     corner = less.vertices["position"][less.triangles]
@@ -55,7 +55,7 @@ def test_of_a_flat_square_little_more_than_its_corners_is_left_and_it_covers_the
 def test_a_ball_stays_round_within_the_error_and_closed():
     positions, _, triangles = ball(0.5, 48, 32)
     mesh = mesh_of(positions, triangles)
-    fine, rough = (fewer.of(mesh) for fewer in simplified(mesh, [0.002, 0.02]))
+    fine, rough = (fewer.of(mesh) for fewer in simplify(mesh, [0.002, 0.02]))
     assert len(rough.triangles) < len(fine.triangles) < len(mesh.triangles)
     for less, error in ((fine, 0.002), (rough, 0.02)):
         middle = np.linalg.norm(less.vertices["position"][less.triangles].mean(1), axis=1)
@@ -71,7 +71,7 @@ def test_a_tube_keeps_rings_where_it_bends():
     mesh = mesh_of(positions, triangles)
     mesh.vertices["bones"][:, 1] = 1
     mesh.vertices["weights"][:, :2] = np.stack([1 - bend, bend], 1)
-    less = next(simplified(mesh, [0.002])).of(mesh)
+    less = next(simplify(mesh, [0.002])).of(mesh)
     y = less.vertices["position"][:, 1]
     assert len(less.triangles) < 0.5 * len(mesh.triangles)
     assert ((y > 0.44) & (y < 0.56)).sum() >= 12, "a bare tube has none there"
@@ -83,9 +83,12 @@ def test_seams_of_the_texture_and_batches_keep_their_course():
     # The two halves share places along the middle, not vertices: each has its own texture.
     other = triangles[~left] + len(positions)
     uvs = np.concatenate([positions[:, [0, 2]], positions[:, [0, 2]] + 3])
-    batches = (Batch(0, int(left.sum()), b"one"), Batch(int(left.sum()), int((~left).sum()), b"two"))
+    batches = (
+        TriangleBatch(0, int(left.sum()), b"one"),
+        TriangleBatch(int(left.sum()), int((~left).sum()), b"two"),
+    )
     mesh = mesh_of(np.tile(positions, (2, 1)), np.concatenate([triangles[left], other]), batches, uvs)
-    less = next(simplified(mesh, [0.05])).of(mesh)
+    less = next(simplify(mesh, [0.05])).of(mesh)
     assert [b.image for b in less.batches] == [b"one", b"two"]
     assert less.batches[1].first == less.batches[0].count
     assert less.batches[0].count + less.batches[1].count == len(less.triangles) < len(mesh.triangles) / 2
@@ -102,7 +105,7 @@ def test_vertices_are_the_meshs_own_with_their_morph_targets():
     offsets[:, ::3] = 0
     moved = np.flatnonzero(offsets.any((0, 2)))
     mesh = mesh_of(positions, triangles, morphs=Morphs(moved, offsets[:, moved]))
-    fewer = next(simplified(mesh, [0.01]))
+    fewer = next(simplify(mesh, [0.01]))
     less = fewer.of(mesh)
     assert np.array_equal(less.vertices, mesh.vertices[fewer.used])
     rest = less.vertices["position"]
@@ -112,14 +115,14 @@ def test_vertices_are_the_meshs_own_with_their_morph_targets():
 
 def test_it_ends_once_it_is_cancelled():
     mesh = mesh_of(*grid(20))
-    assert list(simplified(mesh, [1e-3, 1e-2], lambda: True)) == []
+    assert list(simplify(mesh, [1e-3, 1e-2], lambda: True)) == []
 
 
 def test_the_sample_character_is_less_with_each_level_and_as_wide_and_tall(mannequin):
     mesh = SkinnedFigure(mannequin).mesh
     counts = [len(mesh.triangles)]
     extent = np.stack([mesh.vertices["position"].min(0), mesh.vertices["position"].max(0)])
-    for fewer in simplified(mesh, [0.003, 0.007, 0.014]):
+    for fewer in simplify(mesh, [0.003, 0.007, 0.014]):
         less = fewer.of(mesh)
         counts.append(len(less.triangles))
         place = less.vertices["position"]
@@ -137,11 +140,11 @@ def test_whatever_a_mesh_is_like_what_is_left_is_a_mesh(seed):
     )
     triangles = random.integers(0, count, (int(random.integers(1, 200)), 3))
     half = len(triangles) // 2
-    batches = (Batch(0, half, b"one"), Batch(half, len(triangles) - half, None, True))
+    batches = (TriangleBatch(0, half, b"one"), TriangleBatch(half, len(triangles) - half, None, True))
     uvs = random.choice([0.0, 0.5, np.nan, 3.0], (count, 2))
     mesh = mesh_of(positions, triangles, batches, uvs, random.integers(0, 2, count))
     before = len(triangles)
-    for fewer in simplified(mesh, [1e-3, 0.1, 10.0]):
+    for fewer in simplify(mesh, [1e-3, 0.1, 10.0]):
         less = fewer.of(mesh)
         assert len(less.triangles) <= before
         assert not len(less.triangles) or less.triangles.max() < len(less.vertices)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from metagraph.motion import rotation
-from metagraph.motion.character_mesh import Character, Material, Surface
+from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, Surface
 from metagraph.motion.clip import Clip
 from preview.figure import SkinnedFigure, StickFigure
 from preview.thumbnail import ThumbnailStyle, clip_thumbnail, telling_frame, thumbnail, thumbnails
@@ -58,7 +58,7 @@ def test_the_figure_is_seen_from_the_front_wherever_it_stands_and_faces(offscree
     figure = StickFigure(SKELETON)
     rotations, positions = SKELETON.globals(SKELETON.rest)
     turn = rotation.from_axis_angle(np.array([0.0, 1, 0]), np.array(2.0))
-    there = rotation.rotate(turn, positions) + [7.0, 0, -3.0]
+    there = rotation.rotate_vectors(turn, positions) + [7.0, 0, -3.0]
     first = thumbnail(offscreen, figure, rotations, positions, ThumbnailStyle(40)).astype(int)
     second = thumbnail(offscreen, figure, rotation.multiply(turn, rotations), there, ThumbnailStyle(40))
     assert np.abs(first - second).mean() < 0.5
@@ -86,7 +86,7 @@ def test_a_head_that_is_wider_than_shoulders_is_whole(offscreen):
     _, rest = SKELETON.globals(SKELETON.rest)
     ring = np.linspace(0, 2 * np.pi, count, endpoint=False)
     points = rest[head] + np.stack([0.7 * np.cos(ring), 0.1 + 0.2 * np.sin(ring), 0 * ring], 1)
-    wide = Character(
+    wide = CharacterMesh(
         "wide",
         SKELETON,
         points,
@@ -95,7 +95,7 @@ def test_a_head_that_is_wider_than_shoulders_is_whole(offscreen):
         np.tile([head, 0, 0, 0], (count, 1)),
         np.tile([1.0, 0, 0, 0], (count, 1)),
         np.array([[0, n, n + 1] for n in range(1, count - 1)]),
-        (Material("m"),),
+        (MeshMaterial("m"),),
         (Surface(0, count - 2, 0),),
     )
     (picture,) = thumbnails(offscreen, SkinnedFigure(wide), clip([0.0, 0.4], "Head"), np.array([0]), 96)

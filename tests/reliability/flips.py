@@ -21,7 +21,7 @@ from metagraph.formats.locking import new_owner
 from metagraph.formats.project.data import to_data
 from metagraph.formats.project.journal import Journal
 from metagraph.formats.recovery import Left, read_journal
-from metagraph.formats.store import SUFFIX, content_digest, encoded, save_project
+from metagraph.formats.store import SUFFIX, content_digest, encode_project, save_project
 from metagraph.graph import edits
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.conversation.model import Conversation, Segment, Side, Word
@@ -35,7 +35,9 @@ Edit = Callable[[Project], Project]
 def first() -> Project:
     clips = [(f"{n}.glb", 0, "ab" * 32, clip(f"{n}")) for n in range(3)]
     project = edits.add_stance(edits.add_clips(Project("show"), clips), "arms", "rest", ["c1"])
-    return edits.place(project, ["c2", "c3"], "arms", "gesture", next(iter(project.graphs["arms"].stances)))
+    return edits.place_clips(
+        project, ["c2", "c3"], "arms", "gesture", next(iter(project.graphs["arms"].stances))
+    )
 
 
 def renames(count: int) -> list[Edit]:
@@ -46,7 +48,7 @@ def mixed() -> list[Edit]:
     return [
         lambda p: edits.add_clips(p, [("more.glb", 0, "cd" * 32, clip("more"))]),
         lambda p: edits.add_stance(p, "head", "level", ["c1"]),
-        lambda p: edits.place(p, ["c2"], "arms", "fidget", next(iter(p.graphs["arms"].stances))),
+        lambda p: edits.place_clips(p, ["c2"], "arms", "fidget", next(iter(p.graphs["arms"].stances))),
         lambda p: edits.remove_actions(p, [next(iter(p.graphs["arms"].actions))]),
         lambda p: edits.set_weight(p, "arms", "head", 0.5),
         lambda p: edits.set_settings(p, seed=9),
@@ -105,7 +107,7 @@ def journals(folder: Path) -> Iterable[tuple[str, Path, Path | None, int]]:
             if kind in ("marked", "written") and n == 2 and saved is not None:
                 mark = journal.mark()
                 assert mark is not None
-                journal.settle(mark, content_digest(encoded(states[n + 1], saved)))
+                journal.settle(mark, content_digest(encode_project(states[n + 1], saved)))
                 if kind == "written":
                     save_project(states[n + 1], saved)
         journal.close()

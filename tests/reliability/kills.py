@@ -26,15 +26,15 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
 from app.project.document import Document, state_folder  # noqa: E402
-from app.project.leftovers import forget, look_beside, read_untitled, untitled_journals  # noqa: E402
+from app.project.leftovers import list_untitled_journals, look_beside, read_untitled, remove_journal  # noqa: E402
 from app.project.opening import load_recovered, open_whole  # noqa: E402
-from app.project.unsaved import not_steps  # noqa: E402
-from metagraph.engines.export import export  # noqa: E402
+from app.project.unsaved import count_lost_steps  # noqa: E402
+from metagraph.engines.export import export_project  # noqa: E402
 from metagraph.engines.reading import read_export  # noqa: E402
 from metagraph.formats.atomic import sweep  # noqa: E402
 from metagraph.formats.bvh.file import write_bvh  # noqa: E402
 from metagraph.formats.imports import import_files  # noqa: E402
-from metagraph.formats.recovery import Left, left_journals, read_journal  # noqa: E402
+from metagraph.formats.recovery import Left, find_left_journals, read_journal  # noqa: E402
 from metagraph.formats.store import SUFFIX, open_project, read_project, save_project  # noqa: E402
 from metagraph.graph import edits  # noqa: E402
 from metagraph.graph.model import Project  # noqa: E402
@@ -56,7 +56,7 @@ def begin(folder: Path) -> None:
     loop, *others = sorted(project.clips, key=lambda i: "loop" not in project.clips[i].name)
     project = edits.add_stance(project, "arms", "rest", [loop])
     stance = next(iter(project.graphs["arms"].stances))
-    project = edits.place(project, others, "arms", "gesture", stance)
+    project = edits.place_clips(project, others, "arms", "gesture", stance)
     save_project(project, folder / f"show{SUFFIX}")
 
 
@@ -82,7 +82,7 @@ class Sitting:
             found = look_beside(self.path, self.document.owner)
             lock = found.lock
         else:
-            found, lock = read_untitled(untitled_journals()), None
+            found, lock = read_untitled(list_untitled_journals()), None
         chosen = max(found.left, key=number_of, default=None)
         say("act", "recover" if chosen is not None else "open")
         if chosen is not None:
@@ -90,10 +90,10 @@ class Sitting:
             more: dict[str, Any] = {"steps": steps, "lock": lock}
             if self.path is not None:
                 more |= {"common": read_project(self.path), "digest": chosen.digest}
-            self.document.load(opened.project, self.path, not_steps(chosen, steps), **more)
+            self.document.load(opened.project, self.path, count_lost_steps(chosen, steps), **more)
             if self.document.secured():
                 for left in found.left:
-                    forget(left.path)
+                    remove_journal(left.path)
         elif self.path is not None:
             whole = open_whole(self.path)
             self.document.load(whole.project, self.path, digest=whole.digest, lock=lock)
@@ -121,7 +121,7 @@ class Sitting:
 
     def export(self) -> None:
         if self.path is not None:
-            export(self.document.project, self.folder / "export", mesh=False)
+            export_project(self.document.project, self.folder / "export", mesh=False)
             say("exported")
 
     def bring(self) -> None:
@@ -225,9 +225,9 @@ def look(folder: Path, named: bool, told: Told, before: int, count: Count) -> in
     if named:
         path = folder / f"show{SUFFIX}"
         on_disk = open_project(path).project.settings.seed
-        left = [read_journal(journal, path) for journal in left_journals(path)]
+        left = [read_journal(journal, path) for journal in find_left_journals(path)]
     else:
-        left = [read_journal(journal, None) for journal in untitled_journals()]
+        left = [read_journal(journal, None) for journal in list_untitled_journals()]
     numbers = [number_of(x) for x in left if x is not None]
     latest = max([on_disk, *numbers, 0])
     wanted = max(told.at, before if told.act not in ("start", "open") else 0)

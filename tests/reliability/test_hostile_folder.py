@@ -41,7 +41,7 @@ from metagraph.live.server import Options
 done = {}
 for module in ("app.stage.picture_process", "metagraph.formats.fbx.child", "metagraph.generation.training",
                "preview.drawing_child", "metagraph.live.relay_child"):
-    done[module] = programs.run(programs.python(module), 100)
+    done[module] = programs.run_program(programs.python_command(module), 100)
 relay = Relay(Options(port=0, osc=None))
 relay.start()
 assert relay._in.get(timeout=60)  # that it is ready

@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
 from metagraph.formats.atomic import sweep  # noqa: E402
-from metagraph.formats.recovery import left_journals, read_journal  # noqa: E402
+from metagraph.formats.recovery import find_left_journals, read_journal  # noqa: E402
 from metagraph.formats.store import SUFFIX, read_project  # noqa: E402
 from tests.processes import started  # noqa: E402
 from tests.projects import few_of_the_sample  # noqa: E402
@@ -31,13 +31,13 @@ from pathlib import Path
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 from app import faults
-from app.main import open_window, prepare
+from app.main import open_window, prepare_application
 from app.project.recovering import RecoverDialog
-from app.shell.fault_dialog import folder
+from app.shell.fault_dialog import fault_folder
 from metagraph.graph import edits
 
-app = prepare()
-faults.install(folder())
+app = prepare_application()
+faults.install(fault_folder())
 faults.listeners.append(lambda told: print("fault", told, flush=True))
 chance, ready = random.Random(int(sys.argv[2])), []
 
@@ -108,7 +108,7 @@ def main() -> int:
                 window.wait(10)
             at = [int(line[1]) for line in told if line and line[0] == "at"]
             goes_on = ["recovers"] in told
-            left = [read_journal(journal, path) for journal in left_journals(path)]
+            left = [read_journal(journal, path) for journal in find_left_journals(path)]
             seeds = [x.project.settings.seed for x in left if x is not None]
             latest = max([read_project(path).settings.seed, *seeds])
             faults = [" ".join(line) for line in told if line and line[0] == "fault"]

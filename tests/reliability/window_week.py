@@ -30,7 +30,7 @@ from PySide6.QtCore import QCoreApplication, QEvent  # noqa: E402
 from PySide6.QtWidgets import QApplication  # noqa: E402
 
 from app import faults  # noqa: E402
-from app.main import make_window, prepare  # noqa: E402
+from app.main import make_window, prepare_application  # noqa: E402
 from app.project.files import SAMPLE  # noqa: E402
 from app.shell.workspaces import WORKSPACES  # noqa: E402
 from metagraph.graph import edits, requests  # noqa: E402
@@ -126,7 +126,7 @@ def turn(times: int) -> None:
 def main(days: int, hours: float) -> int:
     """Work for that long; return 1 where something grew."""
     chance = random.Random(1)
-    app = prepare()
+    app = prepare_application()
     told: list[object] = []
     faults.listeners.append(told.append)
     rows: list[dict[str, float]] = []

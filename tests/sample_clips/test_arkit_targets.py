@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from metagraph.engines.export import export
+from metagraph.engines.export import export_project
 from metagraph.formats.gltf.reader import read_character
 from metagraph.graph.edits import add_clips, add_stance
 from metagraph.graph.face.arkit import ARKIT
@@ -53,7 +53,7 @@ def exported(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
     still = Clip("still", joints, 30.0, joints.rest_rotations[None], joints.rest_translations[None, :1])
     clips = add_clips(Project(name="face"), [("still.glb", 0, "", still)])
     project = add_stance(clips, "arms", "rest", list(clips.clips))
-    return read_character(export(project, folder, character=FOLDER / request.param).glb)
+    return read_character(export_project(project, folder, character=FOLDER / request.param).glb)
 
 
 def test_an_export_has_all_52_under_arkits_names(exported: Any) -> None:

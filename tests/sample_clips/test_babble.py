@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from metagraph.formats.project.data import struct_data
-from metagraph.speech.lines import read_voice
+from metagraph.speech.lines import read_line_voice
 from metagraph.speech.phones import pieces_of
 from metagraph.speech.sound import read_sound
 from metagraph.speech.textgrid import read_textgrid
@@ -35,7 +35,7 @@ def test_files_are_as_they_are_made(name: str, phones: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_its_syllables_are_heard_where_its_vowels_are(name: str) -> None:
-    voice = read_voice(FOLDER / f"{name}.flac", FOLDER / f"{name}.TextGrid")
+    voice = read_line_voice(FOLDER / f"{name}.flac", FOLDER / f"{name}.TextGrid")
     grid = read_textgrid(FOLDER / f"{name}.TextGrid")
     assert voice.duration == pytest.approx(grid.end, abs=0.02)
     vowels = [p for p in pieces_of(grid) if p.viseme in ("aa", "E", "I", "O", "U", "RR")]

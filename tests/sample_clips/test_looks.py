@@ -10,7 +10,7 @@ import pytest
 
 from metagraph.formats.gltf.reader import read_character
 from metagraph.graph.face.names import VISEMES, find_morphs
-from metagraph.motion.character_mesh import no_character
+from metagraph.motion.character_mesh import explain_no_character
 from sample_clips.make import face_targets
 from sample_clips.make.build import built
 from sample_clips.make.looks import ADA, BEN, LOOKS, MANNEQUIN, MATERIALS, NEUTRAL, Build
@@ -41,7 +41,7 @@ def moved(character: Any, name: str, near: tuple[float, float, float], reach: fl
 def test_each_is_on_the_one_skeleton_whole_and_light_enough(look: Any) -> None:
     made = read_character(FOLDER / look.file)
     assert made.skeleton == mannequin_skeleton()
-    assert no_character(made) is None
+    assert explain_no_character(made) is None
     assert np.isfinite(made.positions).all() and np.allclose(made.weights.sum(1), 1, atol=0.01)
     assert len(made.triangles) < 26_000
     assert (FOLDER / look.file).stat().st_size < 1_400_000

@@ -88,7 +88,9 @@ def test_the_closing_angles_bring_the_lids_edges_together():
         ("Lower", mannequin.LOWER_LID_OPEN, mannequin.LOWER_LID_CLOSED),
     ):
         at = np.array([0, np.sin(np.radians(edge)), np.cos(np.radians(edge))])
-        closed = rotation.rotate(rotation.from_axis_angle(np.array([1.0, 0, 0]), np.radians(turn)), at)
+        closed = rotation.rotate_vectors(
+            rotation.from_axis_angle(np.array([1.0, 0, 0]), np.radians(turn)), at
+        )
         assert np.degrees(np.arcsin(closed[1])) == pytest.approx(-13.5, abs=1.0), name
 
 

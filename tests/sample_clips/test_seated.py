@@ -16,7 +16,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.playback.plan import MetaRequest
 from metagraph.playback.planner import make_plan
-from metagraph.playback.posing.contacts import depths
+from metagraph.playback.posing.contacts import contact_depths
 from sample_clips.make.catalogue import RECIPES, SEATED, catalogue
 from sample_clips.make.mannequin_rig import REACH, REST, SKELETON, at
 from sample_clips.make.measure import Measures, measure
@@ -114,11 +114,13 @@ def test_hands_on_the_lap_are_found_there_and_stay_through_every_way_of_sitting(
     asks = [MetaRequest("f", "body", "transition", 8.0, stance=stance("body", "sitting forward"))]
     plan = make_plan(project(), 30.0, asks, seed=2, idle=False)
     pose = pose_at(plan, project(), times)
-    assert np.percentile(depths(rig, pose).max(-1), 95) < 0.005
+    assert np.percentile(contact_depths(rig, pose).max(-1), 95) < 0.005
     turned, places = SKELETON.globals(pose)
     for side in ("Left", "Right"):
         hand, thigh = at(side + "Hand"), at(side + "UpperLeg")
-        held = rotation.rotate(rotation.conjugate(turned[:, thigh]), places[:, hand] - places[:, thigh])
+        held = rotation.rotate_vectors(
+            rotation.conjugate(turned[:, thigh]), places[:, hand] - places[:, thigh]
+        )
         assert np.ptp(held, axis=0).max() < 0.004
 
 

@@ -43,7 +43,7 @@ def test_a_short_word_stands_long_enough_to_be_seen():
 def test_words_come_from_what_a_synthesiser_told_or_a_textgrid(tmp_path):
     told = LineTiming((SpokenWord("so", 0.1), SpokenWord("it", 0.4, 0.6)))
     speech = Speech("r1", 2.0, 4.0, timing=told)
-    assert [(w.text, w.start, w.end) for w in c.told_words(speech, {})] == [
+    assert [(w.text, w.start, w.end) for w in c.list_timed_words(speech, {})] == [
         ("so", 2.1, 2.4),
         ("it", 2.4, 2.6),
     ]
@@ -53,10 +53,10 @@ def test_words_come_from_what_a_synthesiser_told_or_a_textgrid(tmp_path):
         '"IntervalTier"\n"words"\n0\n1\n3\n'
         '0\n0.2\n""\n0.2\n0.6\n"so"\n0.6\n1\n"what"\n'
     )
-    some = {"7": c.line_words(Line(phones="x.TextGrid"), tmp_path)}
-    said = c.told_words(Speech("r2", 5.0, 5.7, line="7"), some)
+    some = {"7": c.describe_line(Line(phones="x.TextGrid"), tmp_path)}
+    said = c.list_timed_words(Speech("r2", 5.0, 5.7, line="7"), some)
     assert [(w.text, w.start, w.end) for w in said] == [("so", 5.2, 5.6), ("what", 5.6, 5.7)]
-    assert c.line_words(Line(phones="none.TextGrid"), tmp_path) == c.line_words(Line(), tmp_path) == ()
+    assert c.describe_line(Line(phones="none.TextGrid"), tmp_path) == c.describe_line(Line(), tmp_path) == ()
 
 
 def test_a_text_without_times_is_shared_out_over_what_it_takes():

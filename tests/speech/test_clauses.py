@@ -12,13 +12,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.graph.conversation.model import HESITATIONS, RESPONSES, Segment, Side, Word
-from metagraph.graph.vocabulary import Vocabulary, tokens
-from metagraph.speech.clauses import in_order, segments
+from metagraph.graph.vocabulary import Vocabulary, split_tokens
+from metagraph.speech.clauses import order_words, segments
 from metagraph.speech.pitch import Pitch, pitch
-from metagraph.speech.sound import HeardSound, hear
+from metagraph.speech.sound import HeardSound, analyse_sound
 from tests.speech import talk
 
-HEARD = hear(0.001 * np.random.default_rng(0).standard_normal(16000 * 30), 16000)
+HEARD = analyse_sound(0.001 * np.random.default_rng(0).standard_normal(16000 * 30), 16000)
 VOICELESS = Pitch(HEARD.times, np.full(len(HEARD.times), np.nan))
 
 
@@ -39,14 +39,14 @@ def kinds(text: str, **lists: tuple[str, ...]) -> list[tuple[str, str]]:
 
 
 def test_words_are_compared_without_case_punctuation_and_hyphens() -> None:
-    assert tokens("Uh-huh.") == tokens("uh huh") == ("uh", "huh") and tokens("%HESITATION ") == (
-        "%hesitation",
-    )
-    assert tokens("I’m") == ("i'm",) and tokens("--") == () and tokens("'Yes!'") == ("yes",)
+    assert split_tokens("Uh-huh.") == split_tokens("uh huh") == ("uh", "huh") and split_tokens(
+        "%HESITATION "
+    ) == ("%hesitation",)
+    assert split_tokens("I’m") == ("i'm",) and split_tokens("--") == () and split_tokens("'Yes!'") == ("yes",)
 
 
 def test_the_longest_phrase_counts() -> None:
-    said = [tokens(w) for w in ("uh", "huh", "you", "know", "what")]
+    said = [split_tokens(w) for w in ("uh", "huh", "you", "know", "what")]
     assert Vocabulary(("uh", "uh-huh")).at(said, 0) == 2 and Vocabulary(("you know",)).at(said, 2) == 2
     assert Vocabulary(("you know that",)).at(said, 2) == 0 and Vocabulary(()).at(said, 0) == 0
 
@@ -125,7 +125,11 @@ def test_words_out_of_order_and_past_the_end_are_settled() -> None:
         Word(text="c", start=9, end=12),
         Word(text="d", start=11, end=12),
     ]
-    assert [(w.text, w.start, w.end) for w in in_order(given, 10)] == [("a", 1, 2), ("b", 2, 3), ("c", 9, 10)]
+    assert [(w.text, w.start, w.end) for w in order_words(given, 10)] == [
+        ("a", 1, 2),
+        ("b", 2, 3),
+        ("c", 9, 10),
+    ]
 
 
 def test_a_voiceless_clause_has_its_peak_where_it_is_loudest() -> None:
@@ -134,7 +138,7 @@ def test_a_voiceless_clause_has_its_peak_where_it_is_loudest() -> None:
     (found,) = segments(
         [Word(text="hush", start=1, end=2)],
         Pitch(VOICELESS.times[:401], VOICELESS.hertz[:401]),
-        hear(samples, 16000),
+        analyse_sound(samples, 16000),
     )
     assert found.peak == pytest.approx(1.55, abs=0.06)
 
@@ -160,7 +164,7 @@ def test_segments_never_overlap_whatever_the_words(rows: list[tuple[str, float, 
 
 
 def heard_of(spoken: talk.Talk) -> list[tuple[HeardSound, Pitch]]:
-    return [(hear(s, spoken.rate), pitch(s, spoken.rate)) for s in spoken.samples]
+    return [(analyse_sound(s, spoken.rate), pitch(s, spoken.rate)) for s in spoken.samples]
 
 
 def of_side(spoken: talk.Talk, side: int, worded: bool) -> tuple[Segment, ...]:

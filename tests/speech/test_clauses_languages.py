@@ -11,10 +11,10 @@ import pytest
 from metagraph.formats.conversations.files import Read, read_conversation
 from metagraph.formats.conversations.languages import Speaking
 from metagraph.graph.conversation.model import Segment, Word
-from metagraph.speech.clauses import by_sound, segments
-from metagraph.speech.language_packs import Language, languages
+from metagraph.speech.clauses import segment_by_sound, segments
+from metagraph.speech.language_packs import LanguagePack, list_language_packs
 from metagraph.speech.pitch import Pitch
-from metagraph.speech.sound import HeardSound, hear
+from metagraph.speech.sound import HeardSound, analyse_sound
 from tests.speech import talk
 from tests.speech.dialogues import MIXED, OTHERS, TALKS, Score, Written, spoken, written
 
@@ -31,7 +31,7 @@ VOICES = {
 
 
 def silence(seconds: float) -> tuple[Pitch, HeardSound]:
-    heard = hear(0.001 * np.random.default_rng(0).standard_normal(round(16000 * seconds)), 16000)
+    heard = analyse_sound(0.001 * np.random.default_rng(0).standard_normal(round(16000 * seconds)), 16000)
     return Pitch(heard.times, np.full(len(heard.times), np.nan)), heard
 
 
@@ -44,11 +44,11 @@ def kinds(text: str, code: str) -> list[tuple[str, str]]:
             continue
         out.append(Word(text=piece, start=round(at, 3), end=round(at + 0.25, 3)))
         at += 0.25
-    found = segments(out, *silence(at + 1), language=languages()[code])
+    found = segments(out, *silence(at + 1), language=list_language_packs()[code])
     return [(s.kind, s.text) for s in found]
 
 
-def scored(text: str, language: Language, form: str = "NFC", letters: bool = False) -> Score:
+def scored(text: str, language: LanguagePack, form: str = "NFC", letters: bool = False) -> Score:
     of, score = written(text, form, letters), Score()
     noise = silence(of.length + 1)
     for side in (0, 1):
@@ -59,14 +59,14 @@ def scored(text: str, language: Language, form: str = "NFC", letters: bool = Fal
 @pytest.mark.parametrize("code", TALKS)
 @pytest.mark.parametrize("form", ["NFC", "NFD"])
 def test_responses_and_hesitations_are_found_and_nothing_else(code: str, form: str) -> None:
-    got = scored(TALKS[code], languages()[code], form)
+    got = scored(TALKS[code], list_language_packs()[code], form)
     assert (got.found_responses, got.found_hesitations) == (got.responses, got.hesitations)
     assert (got.false_responses, got.false_hesitations) == (0, 0)
 
 
 @pytest.mark.parametrize("code", ["ja", "zh"])
 def test_letters_one_by_one_are_read_as_words_are(code: str) -> None:
-    got = scored(TALKS[code], languages()[code], letters=True)
+    got = scored(TALKS[code], list_language_packs()[code], letters=True)
     assert (got.found_responses, got.found_hesitations) == (got.responses, got.hesitations)
     assert (got.false_responses, got.false_hesitations) == (0, 0)
 
@@ -74,7 +74,7 @@ def test_letters_one_by_one_are_read_as_words_are(code: str) -> None:
 @pytest.mark.parametrize("name", MIXED)
 def test_who_borrows_english_answers_is_understood(name: str) -> None:
     code, text = MIXED[name]
-    got = scored(text, languages()[code])
+    got = scored(text, list_language_packs()[code])
     assert got.found_responses >= got.responses - 1 and got.found_hesitations == got.hesitations
     assert (got.false_responses, got.false_hesitations) == (0, 0)
 
@@ -131,7 +131,7 @@ def test_words_with_a_meaning_hesitate_only_where_speech_stops_or_when_drawn_out
 
 def test_without_a_language_words_of_one_channel_are_parted_by_pauses() -> None:
     of = written(OTHERS["Swedish"])
-    found = by_sound(of.words[0], *silence(of.length + 1), None)
+    found = segment_by_sound(of.words[0], *silence(of.length + 1), None)
     assert found and all(s.kind == "clause" for s in found)
     assert " ".join(s.text for s in found) == " ".join(w.text for w in of.words[0])
 
@@ -162,7 +162,7 @@ def test_a_spoken_conversation_is_read_in_its_language(code: str, tmp_path: Path
         assert all(a.end <= b.start for a, b in zip(one.segments, one.segments[1:], strict=False))
     assert (score.found_responses, score.found_hesitations) == (score.responses, score.hesitations)
     assert (score.false_responses, score.false_hesitations) == (0, 0)
-    assert got.conversation.responses == languages()[code].responses
+    assert got.conversation.responses == list_language_packs()[code].responses
     clauses = [s for side in got.conversation.sides for s in side.segments if s.kind == "clause"]
     assert 0.6 <= float(np.mean([s.end - s.start for s in clauses])) <= 2.5
     told = [n for n in got.notes if "Both speak" in n]

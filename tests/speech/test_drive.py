@@ -10,11 +10,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.graph.conversation.model import SPOKEN, Conversation, Rates, Segment, Side, Spoken, heard_by
+from metagraph.graph.conversation.model import (
+    SPOKEN,
+    Conversation,
+    Rates,
+    Segment,
+    Side,
+    Spoken,
+    segments_heard_by,
+)
 from metagraph.graph.model import Project
 from metagraph.graph.requests import AnyRequest, Behave, Change, Fidget, Gesture, Nod, Play
-from metagraph.playback.planning.running_plan import perform
-from metagraph.speech.drive import TOLERANCE, asks_of, drawn_of, drive, strokes
+from metagraph.playback.planning.running_plan import plan_performance
+from metagraph.speech.drive import TOLERANCE, draw_segments, drive, drive_side, strokes
 
 
 def said(
@@ -51,7 +59,7 @@ def tags_of(asks: Iterable[AnyRequest], project: Project) -> list[tuple[str, ...
 
 
 def test_silence_asks_for_nothing_but_to_look_at_the_partner_and_to_fidget(sample: Project) -> None:
-    asks = asks_of(said(), 0, sample)
+    asks = drive_side(said(), 0, sample)
     assert not ids(asks, Gesture) and not ids(asks, Nod)
     assert [a.mode for a in asks if isinstance(a, Behave)] == ["idle"]
 
@@ -60,17 +68,17 @@ def test_at_a_rate_of_one_every_clause_asks_for_a_gesture_whose_stroke_is_at_its
     sample: Project,
 ) -> None:
     some = clauses(5, 2.4)
-    asks = gestures(asks_of(said(*some, clause=1.0), 0, sample))
+    asks = gestures(drive_side(said(*some, clause=1.0), 0, sample))
     assert [a.stroke for a in asks] == [s.peak for s in some]
 
 
 def test_at_a_rate_of_nought_none_does(sample: Project) -> None:
-    assert not gestures(asks_of(said(*clauses(9), clause=0.0), 0, sample))
+    assert not gestures(drive_side(said(*clauses(9), clause=0.0), 0, sample))
 
 
 def test_over_many_clauses_as_many_are_drawn_as_the_rate_says() -> None:
     talk = said(*clauses(2000), length=4000, clause=0.62)
-    assert len(drawn_of(talk, 0)) / 2000 == pytest.approx(0.62, abs=0.03)
+    assert len(draw_segments(talk, 0)) / 2000 == pytest.approx(0.62, abs=0.03)
 
 
 def test_responses_of_ones_own_and_hesitations_of_the_partner_ask_for_nods_but_ones_own_hesitations_do_not(
@@ -78,25 +86,25 @@ def test_responses_of_ones_own_and_hesitations_of_the_partner_ask_for_nods_but_o
 ) -> None:
     own = (Segment("response", 2, 2.5, None, "yeah"), Segment("hesitation", 10, 10.4, None, "uh"))
     partner = (Segment("hesitation", 5, 5.4, None, "er"), Segment("response", 20, 20.4, None, "okay"))
-    asks = asks_of(said(*own, partner=partner, response=1.0, hesitation=1.0), 0, sample)
+    asks = drive_side(said(*own, partner=partner, response=1.0, hesitation=1.0), 0, sample)
     assert sorted(a.at for a in asks if isinstance(a, Nod)) == [2, 5]
 
 
 def test_the_partner_who_hesitates_while_one_speaks_oneself_is_not_nodded_at(sample: Project) -> None:
     talk = said(clause(4, 7), partner=(Segment("hesitation", 5, 5.4),), hesitation=1.0)
-    assert [s.kind for s in heard_by(talk, 0)] == ["clause"]
-    assert not ids(asks_of(talk, 0, sample), Nod)
+    assert [s.kind for s in segments_heard_by(talk, 0)] == ["clause"]
+    assert not ids(drive_side(talk, 0, sample), Nod)
 
 
 def test_what_is_drawn_for_one_segment_does_not_depend_on_the_others() -> None:
     some = clauses(30)
-    whole, fewer = (drawn_of(said(*s, clause=0.5), 0) for s in (some, (*some[:7], *some[8:])))
+    whole, fewer = (draw_segments(said(*s, clause=0.5), 0) for s in (some, (*some[:7], *some[8:])))
     assert whole - {"clause words 7"} == fewer
 
 
 def test_a_side_talks_listens_and_idles_in_turn(sample: Project) -> None:
     talk = said(clause(1, 3), clause(3.3, 5), partner=(clause(6, 8),))
-    modes = [(a.at, a.mode) for a in asks_of(talk, 0, sample) if isinstance(a, Behave)]
+    modes = [(a.at, a.mode) for a in drive_side(talk, 0, sample) if isinstance(a, Behave)]
     assert modes == [(0.0, "idle"), (1.0, "talking"), (5.0, "listening")]
 
 
@@ -135,13 +143,15 @@ def test_strokes_are_nearer_to_the_peaks_of_their_own_speech_than_to_those_of_sh
 
 def test_the_asks_that_are_kept_performed_again_give_the_same_plan(sample: Project) -> None:
     performance, plan = drive(said(*clauses(12)), 0, sample)
-    again = perform(sample, performance.asks, performance.length, performance.seed, idle=performance.idle)
+    again = plan_performance(
+        sample, performance.asks, performance.length, performance.seed, idle=performance.idle
+    )
     assert again.layers == plan.layers
 
 
 def test_a_graph_without_gestures_nods_or_fidgets_is_asked_for_none() -> None:
     talk = said(*clauses(4), Segment("response", 50, 50.5), clause=1.0, response=1.0)
-    asks = asks_of(talk, 0, Project())
+    asks = drive_side(talk, 0, Project())
     assert not ids(asks, Gesture) | ids(asks, Nod) | ids(asks, Fidget)
 
 
@@ -168,7 +178,7 @@ def test_words_that_gestures_are_tagged_with_get_such_gestures_and_other_words_p
 ) -> None:
     words = ("I told you so", "it was that big", "the dog sat down", "and it went on")
     some = tuple(clause(1 + 3 * n, 2 + 3 * n, text) for n, text in enumerate(words))
-    tags = tags_of(asks_of(said(*some, clause=1.0), 0, sample), sample)
+    tags = tags_of(drive_side(said(*some, clause=1.0), 0, sample), sample)
     assert "you" in tags[0] and "big" in tags[1]
     assert all({"beat", "explain", "open"} & set(t) for t in tags[2:])
 
@@ -178,13 +188,13 @@ def test_gestures_without_tags_are_asked_for_without(sample: Project) -> None:
 
     graph = sample.graphs["arms"]
     bare = sample.with_graph(graph.with_actions({i: replace(a, tags=()) for i, a in graph.actions.items()}))
-    assert {*tags_of(asks_of(said(*clauses(5, 6.0), clause=1.0), 0, bare), bare)} == {()}
+    assert {*tags_of(drive_side(said(*clauses(5, 6.0), clause=1.0), 0, bare), bare)} == {()}
 
 
 def test_the_body_shifts_its_weight_only_where_a_turn_begins(sample: Project) -> None:
     some = tuple(clause(1 + 4 * n, 3 + 4 * n, f"words {n}") for n in range(30))
-    asks = [a for a in asks_of(said(*some, length=130), 0, sample) if isinstance(a, Change)]
+    asks = [a for a in drive_side(said(*some, length=130), 0, sample) if isinstance(a, Change)]
     starts = {round(s.start - 0.3, 3) for s in some}
     assert {a.layer for a in asks} == {"body"} and {a.at for a in asks} <= starts
     assert 6 <= len(asks) <= 18
-    assert not [a for a in asks_of(said(*some, length=130), 0, Project()) if isinstance(a, Change)]
+    assert not [a for a in drive_side(said(*some, length=130), 0, Project()) if isinstance(a, Change)]

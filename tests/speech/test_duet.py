@@ -8,12 +8,12 @@ import msgspec
 import numpy as np
 import pytest
 
-from metagraph.graph.conversation.model import Conversation, Rates, Segment, Side, Word, heard_by
+from metagraph.graph.conversation.model import Conversation, Rates, Segment, Side, Word, segments_heard_by
 from metagraph.graph.model import Project
 from metagraph.playback.plan import Plan
 from metagraph.speech.drive import drive, partner_points
-from metagraph.speech.duet import duet, stands, voices
-from metagraph.speech.mirroring import Mover, mirrored
+from metagraph.speech.duet import duet, place_sides, voices
+from metagraph.speech.mirroring import Mover, list_mirrored_stances
 from metagraph.speech.peak_blinks import peak_blinks
 from tests.speech.group import group, said
 
@@ -106,7 +106,7 @@ def test_the_two_stand_so_far_apart_and_face_each_other(distance: float) -> None
     turned = np.array([[0.0, 0.0, 0.0, 1.0]])
     ahead = np.array([[0.0, 1.0, 0.5]])
     places = []
-    for n, stand in enumerate(stands(talk(distance=distance))):
+    for n, stand in enumerate(place_sides(talk(distance=distance))):
         _, feet = stand.placed(turned, np.zeros((1, 3)))
         _, nose = stand.placed(turned, ahead)
         places.append(feet[0])
@@ -116,7 +116,7 @@ def test_the_two_stand_so_far_apart_and_face_each_other(distance: float) -> None
 
 def test_what_is_placed_turns_with_its_joints() -> None:
     """A joint's own axes, and what hangs on it, are turned alike."""
-    stand = stands(talk(distance=2.0))[0]
+    stand = place_sides(talk(distance=2.0))[0]
     rotations, positions = stand.placed(np.tile([0.0, 0.0, 0.0, 1.0], (3, 2, 1)), np.ones((3, 2, 3)))
     assert rotations.shape == (3, 2, 4) and positions.shape == (3, 2, 3)
     assert positions[0, 0] == pytest.approx([0.0, 1.0, -1.0])
@@ -157,7 +157,7 @@ def three(**changes: object) -> Conversation:
 
 @pytest.mark.parametrize("count", [3, 4, 8])
 def test_several_stand_in_a_circle_as_far_from_their_neighbours_as_two_would(count: int) -> None:
-    found = stands(group(count))
+    found = place_sides(group(count))
     places = np.array([(s.x, s.z) for s in found])
     near = np.linalg.norm(places - np.roll(places, 1, 0), axis=1)
     assert near == pytest.approx(1.3) and places.mean(0) == pytest.approx([0, 0], abs=1e-9)
@@ -168,18 +168,18 @@ def test_several_stand_in_a_circle_as_far_from_their_neighbours_as_two_would(cou
 
 
 def test_a_point_is_where_it_is_in_anybodys_space() -> None:
-    here, there = stands(group(5))[1:3]
+    here, there = place_sides(group(5))[1:3]
     point = (0.3, 1.5, -0.7)
     assert here.world(here.own(there.world(point))) == pytest.approx(there.world(point), abs=1e-5)
 
 
 def test_who_has_a_place_stands_there_and_faces_the_others_and_the_viewer_amid_them() -> None:
     row = [msgspec.structs.replace(s, place=(float(n - 1), 0.0)) for n, s in enumerate(three().sides)]
-    found = stands(three(sides=tuple(row)))
+    found = place_sides(three(sides=tuple(row)))
     assert [(s.x, s.z) for s in found] == [(-1, 0), (0, 0), (1, 0)]
     assert [s.turn for s in found] == pytest.approx([np.pi / 2, 0, -np.pi / 2])
-    one = stands(three(sides=(*three().sides[:2], row[2])))
-    assert (one[0].x, one[0].z) == pytest.approx((stands(three())[0].x, stands(three())[0].z))
+    one = place_sides(three(sides=(*three().sides[:2], row[2])))
+    assert (one[0].x, one[0].z) == pytest.approx((place_sides(three())[0].x, place_sides(three())[0].z))
 
 
 def test_two_with_places_are_looked_at_there(sample: Project) -> None:
@@ -209,7 +209,7 @@ def test_each_of_three_answers_the_hesitations_of_all_others_once(sample: Projec
     sides = list(three().sides)
     sides[1] = msgspec.structs.replace(sides[1], segments=(um,))
     sides[2] = msgspec.structs.replace(sides[2], segments=(msgspec.structs.replace(um, start=3.2, end=3.8),))
-    heard = heard_by(three(sides=tuple(sides)), 0)
+    heard = segments_heard_by(three(sides=tuple(sides)), 0)
     assert [(s.kind, s.start, s.end) for s in heard] == [
         ("clause", 1, 2),
         ("hesitation", 3.0, 3.4),
@@ -227,6 +227,6 @@ def test_a_listener_mirrors_who_speaks_and_nobody_else(sample: Project) -> None:
     talk = Conversation(name="t", length=100.0, sides=sides)
     moving = drive(talk, 0, sample)[1]
     still, own = Plan(1, 100.0), Mover(2, sample, Plan(1, 100.0))
-    with_speaker = list(mirrored(talk, own, [Mover(0, sample, moving), Mover(1, sample, still)]))
-    with_other = list(mirrored(talk, own, [Mover(0, sample, still), Mover(1, sample, moving)]))
+    with_speaker = list(list_mirrored_stances(talk, own, [Mover(0, sample, moving), Mover(1, sample, still)]))
+    with_other = list(list_mirrored_stances(talk, own, [Mover(0, sample, still), Mover(1, sample, moving)]))
     assert with_speaker and not with_other

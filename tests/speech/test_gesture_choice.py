@@ -12,11 +12,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.graph.model import Action, Project
-from metagraph.playback.planning.running_plan import perform
+from metagraph.playback.planning.running_plan import plan_performance
 from metagraph.speech import gesture_choice
-from metagraph.speech.delivered import delivered
+from metagraph.speech.delivered import count_delivered
 from metagraph.speech.drive import TOLERANCE, drive, strokes
-from metagraph.speech.gesture_choice import ChosenGesture, Clause, choose
+from metagraph.speech.gesture_choice import ChosenGesture, GestureClause, choose_gestures
 from tests.speech.test_drive import clause, said
 
 
@@ -25,29 +25,29 @@ def plain(project: Project) -> list[Action]:
     return [a for a in graph.of(graph.start or "", "gesture") if "beat" in a.tags or "explain" in a.tags]
 
 
-def spoken(project: Project, peaks: list[float], wanted: list[bool] | None = None) -> list[Clause]:
+def spoken(project: Project, peaks: list[float], wanted: list[bool] | None = None) -> list[GestureClause]:
     actions = plain(project)
-    return [Clause(f"c{n}", p, wanted is None or wanted[n], actions) for n, p in enumerate(peaks)]
+    return [GestureClause(f"c{n}", p, wanted is None or wanted[n], actions) for n, p in enumerate(peaks)]
 
 
 def test_nothing_said_and_nothing_to_choose_from_give_nothing(sample: Project) -> None:
-    assert choose(sample, [], 1) == []
-    assert choose(sample, [Clause("c", 2.0, True, [])], 1) == []
+    assert choose_gestures(sample, [], 1) == []
+    assert choose_gestures(sample, [GestureClause("c", 2.0, True, [])], 1) == []
 
 
 def test_a_clause_that_begins_too_early_or_ends_too_late_for_any_gesture_gets_none(sample: Project) -> None:
-    assert choose(sample, spoken(sample, [0.05]), 1) == []
-    assert choose(sample, spoken(sample, [9.0]), 1, length=9.5) == []
-    assert len(choose(sample, spoken(sample, [0.05, 5.0, 11.5]), 1, length=12.0)) == 1
+    assert choose_gestures(sample, spoken(sample, [0.05]), 1) == []
+    assert choose_gestures(sample, spoken(sample, [9.0]), 1, length=9.5) == []
+    assert len(choose_gestures(sample, spoken(sample, [0.05, 5.0, 11.5]), 1, length=12.0)) == 1
 
 
 def test_clauses_that_none_was_drawn_for_get_none_by_themselves(sample: Project) -> None:
-    found = choose(sample, spoken(sample, [3.0, 9.0, 15.0], [False, True, False]), 1)
+    found = choose_gestures(sample, spoken(sample, [3.0, 9.0, 15.0], [False, True, False]), 1)
     assert [one.clause for one in found] == [1]
 
 
 def test_two_clauses_too_near_for_two_gestures_share_one(sample: Project) -> None:
-    (one,) = choose(sample, spoken(sample, [3.0, 3.7]), 1)
+    (one,) = choose_gestures(sample, spoken(sample, [3.0, 3.7]), 1)
     assert (one.clause, one.last) == (0, 1)
 
 
@@ -57,7 +57,7 @@ def test_none_plays_while_another_does_and_each_clause_is_in_one_at_most(
     sample: Project, said: list[tuple[float, bool]], seed: int
 ) -> None:
     peaks = np.cumsum([gap for gap, _ in said]).tolist()
-    found = choose(sample, spoken(sample, peaks, [w for _, w in said]), seed)
+    found = choose_gestures(sample, spoken(sample, peaks, [w for _, w in said]), seed)
     for a, b in pairwise(found):
         latest = peaks[b.clause] - gesture_choice._lengths(sample, b.action).least
         assert a.last < b.clause and a.end <= latest + 1e-9
@@ -72,7 +72,9 @@ def test_the_choice_is_worth_as_much_as_the_best_of_all(
     """Every combination is tried, of three gestures a clause; none makes up for another."""
     peaks = np.cumsum([gap for gap, _ in some]).tolist()
     actions = plain(sample)[:3]
-    clauses = [Clause(f"c{n}", p, w, actions) for n, (p, (_, w)) in enumerate(zip(peaks, some, strict=True))]
+    clauses = [
+        GestureClause(f"c{n}", p, w, actions) for n, (p, (_, w)) in enumerate(zip(peaks, some, strict=True))
+    ]
     known = {a.id: gesture_choice._lengths(sample, a) for a in actions}
     choices: list[list[tuple[ChosenGesture, float] | None]] = [
         [
@@ -100,7 +102,7 @@ def test_the_choice_is_worth_as_much_as_the_best_of_all(
         (o.clause, o.action.id, o.hold): v for row in choices for x in row if x is not None for o, v in [x]
     }
     with mock.patch.object(gesture_choice, "UNASKED", gesture_choice.UNASKED[:1]):
-        chosen = choose(sample, clauses, seed)
+        chosen = choose_gestures(sample, clauses, seed)
     found = [(o, values[o.clause, o.action.id, o.hold]) for o in chosen]
     assert worth(found) == pytest.approx(max(best, 0.0), abs=1e-9)
 
@@ -116,14 +118,16 @@ def test_as_many_clauses_are_performed_as_are_asked_for_within_five_points(sampl
             some = tuple(clause(a, round(a + 0.4, 3), f"w{n}") for n, a in enumerate(starts))
             talk = msgspec.structs.replace(said(*some, length=starts[-1] + 4, clause=rate), seed=seed)
             performance, plan = drive(talk, 0, sample)
-            told = delivered(talk, 0, sample, plan)[0]
+            told = count_delivered(talk, 0, sample, plan)[0]
             asked.append(told.asked)
             drawn.append(told.drawn / told.count)
             performed.append(told.performed / told.count)
             peaks = np.array([s.peak for s in some])
             at = np.array(list(strokes(sample, plan).values()))
             assert np.abs(at[:, None] - peaks).min(1).max() <= TOLERANCE
-            again = perform(sample, performance.asks, performance.length, performance.seed, idle=False)
+            again = plan_performance(
+                sample, performance.asks, performance.length, performance.seed, idle=False
+            )
             assert again.layers == plan.layers
         assert np.mean(performed) == pytest.approx(rate, abs=0.05), (rate, np.mean(drawn))
 
@@ -132,6 +136,6 @@ def test_gestures_asked_for_one_by_one_come_to_less(sample: Project) -> None:
     starts = np.cumsum(np.tile([0.5, 0.9, 1.2, 3.0], 8)).round(3).tolist()
     some = tuple(clause(a, round(a + 0.4, 3), f"w{n}") for n, a in enumerate(starts))
     talk = said(*some, length=starts[-1] + 4, clause=0.75)
-    each = [delivered(talk, 0, sample, drive(talk, 0, sample, together=t)[1])[0] for t in (False, True)]
+    each = [count_delivered(talk, 0, sample, drive(talk, 0, sample, together=t)[1])[0] for t in (False, True)]
     assert each[0].drawn == each[1].drawn and each[0].performed < 0.85 * each[1].performed
     assert each[0].strokes <= each[1].strokes

@@ -15,7 +15,7 @@ from metagraph.graph.conversation.model import EVERYBODY, Conversation
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.speech.duet import duet
-from metagraph.speech.gaze_shares import GazeShare, gaze_shares, together
+from metagraph.speech.gaze_shares import GazeShare, gaze_shares, join_shares
 from metagraph.speech.group_gaze import AT_ADDRESSEE, AT_SPEAKER, LEAST, looks_of
 from tests.posing import pose_at
 from tests.speech.group import group, made_up, said
@@ -89,7 +89,7 @@ def shares(sample: Project) -> dict[str, GazeShare]:
         talk = made_up(3, seed, 120.0)
         made = duet(talk, "v1", (sample,) * 3, (None,) * 3)
         found += [share for part in made.parts for share in part.looks]
-    return {str(share.doing): share for share in together(found)}
+    return {str(share.doing): share for share in join_shares(found)}
 
 
 def test_of_looks_at_faces_as_many_as_were_observed_are_at_the_speaker_and_the_one_addressed(
@@ -133,13 +133,13 @@ def test_eyes_are_on_the_eyes_of_whom_they_look_at(sample: Project) -> None:
     assert sample.skeleton is not None
     eye = list(sample.skeleton.names).index("LeftEye")
     rest = sample.skeleton.globals(base_pose(sample))[0][eye]
-    ahead = rotation.rotate(rotation.conjugate(rest), np.array([0.0, 0.0, 1.0]))
+    ahead = rotation.rotate_vectors(rotation.conjugate(rest), np.array([0.0, 0.0, 1.0]))
     times = np.arange(1.0, 39.0, 0.2)
     placed = [p.stand.placed(*sample.skeleton.globals(pose_at(p.plan, sample, times))) for p in made.parts]
     off = []
     for n, (turned, at) in enumerate(placed):
         for k, time in enumerate(times):
             to = placed[seen(talk, n, time - 0.4)][1][k, eye] - at[k, eye]
-            way = rotation.rotate(turned[k, eye], ahead)
+            way = rotation.rotate_vectors(turned[k, eye], ahead)
             off.append(np.degrees(np.arccos(np.clip(way @ to / np.linalg.norm(to), -1, 1))))
     assert np.median(off) < 5.0

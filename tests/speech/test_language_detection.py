@@ -8,25 +8,25 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.speech.language_detection import Spoken, language_spoken
-from metagraph.speech.language_packs import languages
+from metagraph.speech.language_detection import SpokenLanguage, detect_language
+from metagraph.speech.language_packs import list_language_packs
 from tests.speech.dialogues import MIXED, OTHERS, TALKS, written
 
-PACKS = tuple(languages().values())
+PACKS = tuple(list_language_packs().values())
 
 
-def detected(text: str) -> Spoken:
-    return language_spoken(text.split(), PACKS)
+def detected(text: str) -> SpokenLanguage:
+    return detect_language(text.split(), PACKS)
 
 
-def code(found: Spoken) -> str:
+def code(found: SpokenLanguage) -> str:
     return found.language.code if found.language is not None else found.how
 
 
 @pytest.mark.parametrize("text", ["", "...", "12 34 5", "[laughter]", "%", "--", "♪"])
 def test_nothing_said_is_undecided(text: str) -> None:
     assert code(detected(text)) == "undecided"
-    assert code(language_spoken(["the"], ())) == "undecided"
+    assert code(detect_language(["the"], ())) == "undecided"
 
 
 @pytest.mark.parametrize(
@@ -50,32 +50,32 @@ def test_too_few_words_are_undecided(text: str) -> None:
 @pytest.mark.parametrize("form", ["NFC", "NFD"])
 def test_a_conversation_tells_its_language(language: str, form: str) -> None:
     for words in written(TALKS[language], form).words:
-        assert code(language_spoken([w.text for w in words], PACKS)) == language
+        assert code(detect_language([w.text for w in words], PACKS)) == language
 
 
 @pytest.mark.parametrize("language", ["ja", "zh"])
 def test_it_does_not_matter_how_writing_without_blanks_is_parted(language: str) -> None:
     for words in written(TALKS[language], letters=True).words:
-        assert code(language_spoken([w.text for w in words], PACKS)) == language
-        assert code(language_spoken(["".join(w.text for w in words)], PACKS)) == language
+        assert code(detect_language([w.text for w in words], PACKS)) == language
+        assert code(detect_language(["".join(w.text for w in words)], PACKS)) == language
 
 
 @pytest.mark.parametrize("language", ["fr", "es", "pt", "it"])
 def test_accents_may_be_left_out(language: str) -> None:
     apart = unicodedata.normalize("NFD", TALKS[language])
     bare = "".join(c for c in apart if not unicodedata.combining(c))
-    assert code(language_spoken([w.text for w in written(bare).words[0]], PACKS)) == language
+    assert code(detect_language([w.text for w in written(bare).words[0]], PACKS)) == language
 
 
 @pytest.mark.parametrize("name", MIXED)
 def test_words_of_another_language_are_borne(name: str) -> None:
     language, text = MIXED[name]
-    assert code(language_spoken([w.text for w in written(text).words[0]], PACKS)) == language
+    assert code(detect_language([w.text for w in written(text).words[0]], PACKS)) == language
 
 
 @pytest.mark.parametrize("name", OTHERS)
 def test_a_language_without_a_pack_is_unknown(name: str) -> None:
-    assert code(language_spoken([w.text for w in written(OTHERS[name]).words[0]], PACKS)) == "unknown"
+    assert code(detect_language([w.text for w in written(OTHERS[name]).words[0]], PACKS)) == "unknown"
 
 
 @pytest.mark.parametrize(
@@ -116,6 +116,6 @@ def test_names_do_not_tell() -> None:
 @settings(max_examples=100, deadline=None)
 @given(st.lists(st.text(max_size=8), max_size=40))
 def test_any_words_have_an_answer(words: list[str]) -> None:
-    found = language_spoken(words, PACKS)
+    found = detect_language(words, PACKS)
     assert (found.language is not None) == (found.how == "sure")
     assert found.known >= 0 and found.words >= 0

@@ -14,29 +14,29 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.graph.conversation.model import HESITATIONS, RESPONSES, Word
-from metagraph.graph.vocabulary import kinds_of_words, tokens
+from metagraph.graph.vocabulary import kinds_of_words, split_tokens
 from metagraph.speech.clauses import segments
 from metagraph.speech.language_packs import (
     FOLDER,
-    Language,
+    LanguagePack,
     PackError,
     PackFile,
-    english,
+    english_pack,
     language_of,
-    languages,
-    listed,
+    list_language_packs,
+    list_pack_words,
 )
 from metagraph.speech.pitch import Pitch
-from metagraph.speech.sound import hear
+from metagraph.speech.sound import analyse_sound
 
-PACKS = list(languages().values())
-HEARD = hear(0.001 * np.random.default_rng(0).standard_normal(16000 * 6), 16000)
+PACKS = list(list_language_packs().values())
+HEARD = analyse_sound(0.001 * np.random.default_rng(0).standard_normal(16000 * 6), 16000)
 VOICELESS = Pitch(HEARD.times, np.full(len(HEARD.times), np.nan))
 
 
-def pack(**fields: object) -> Language:
+def pack(**fields: object) -> LanguagePack:
     data = {"code": "xx", "name": "Test", "responses": "jup", **fields}
-    return language_of(msgspec.convert(data, PackFile), languages())
+    return language_of(msgspec.convert(data, PackFile), list_language_packs())
 
 
 @pytest.mark.parametrize(
@@ -66,13 +66,16 @@ def test_a_code_is_one_of_a_language(code: str) -> None:
 
 
 def test_lists_are_texts_with_commas_or_lists_of_them() -> None:
-    assert listed("ja,  genau ,,ja") == listed(["ja", "genau, ja"]) == ("ja", "genau") and listed(()) == ()
-    assert listed("はい、うん") == ("はい", "うん")
+    assert (
+        list_pack_words("ja,  genau ,,ja") == list_pack_words(["ja", "genau, ja"]) == ("ja", "genau")
+        and list_pack_words(()) == ()
+    )
+    assert list_pack_words("はい、うん") == ("はい", "うん")
     assert pack(responses=["jup, joop", "yo"]).responses == ("jup", "joop", "yo")
 
 
 def test_the_packs_are_ten_and_say_what_they_rest_on() -> None:
-    assert list(languages()) == ["en", "de", "es", "fr", "hi", "it", "ja", "nl", "pt", "zh"]
+    assert list(list_language_packs()) == ["en", "de", "es", "fr", "hi", "it", "ja", "nl", "pt", "zh"]
     for path in FOLDER.glob("*.json"):
         data = json.loads(path.read_text(encoding="utf-8"))
         assert data["code"] == path.stem
@@ -82,26 +85,26 @@ def test_the_packs_are_ten_and_say_what_they_rest_on() -> None:
 
 
 def test_english_is_what_projects_mean_that_say_nothing() -> None:
-    assert (english().responses, english().hesitations) == (RESPONSES, HESITATIONS)
-    assert not english().elided and not english().closing
+    assert (english_pack().responses, english_pack().hesitations) == (RESPONSES, HESITATIONS)
+    assert not english_pack().elided and not english_pack().closing
 
 
 def test_no_answer_or_sound_of_hesitation_is_a_small_word() -> None:
     """A hesitation that is a small word, German "er", would part every sentence it is in."""
     for one in PACKS:
         for phrase in one.hesitations:
-            if len(said := tokens(phrase)) == 1 and said[0] in one.small:
+            if len(said := split_tokens(phrase)) == 1 and said[0] in one.small:
                 assert one.lexical.is_plainly(said), (one.code, phrase)
 
 
 def test_words_that_lose_their_vowel_are_words() -> None:
-    fr, en = languages()["fr"], english()
+    fr, en = list_language_packs()["fr"], english_pack()
     assert fr.parted(("l'eau",)) == ("l", "eau") and fr.parted(("qu'l'eau",)) == ("qu", "l", "eau")
     assert fr.parted(("aujourd'hui",)) == ("aujourd'hui",) and en.parted(("i'm",)) == ("i'm",)
 
 
 def test_words_of_a_writing_without_blanks_count_by_their_letters() -> None:
-    ja, en = languages()["ja"], english()
+    ja, en = list_language_packs()["ja"], english_pack()
     assert ja.is_small("ですけど") and not ja.is_small("学校") and ja.is_small("は")
     assert ja.size(("学校",)) == pytest.approx(2 / 2.2) and ja.size(("ok",)) == 1 and ja.size(()) == 1
     assert en.size(("anything",)) == 1
@@ -121,7 +124,7 @@ WORDS = [(one.code, kind, phrase) for one in PACKS for kind in ("response", "hes
 def test_a_packs_words_are_always_found(
     word: tuple[str, str, str], form: str, case: object, end: str
 ) -> None:
-    one, (_, kind, phrase) = languages()[word[0]], word
+    one, (_, kind, phrase) = list_language_packs()[word[0]], word
     text = unicodedata.normalize(form, case(phrase)) + end  # type: ignore[operator]
     parts = text.split()
     said = [
@@ -129,6 +132,6 @@ def test_a_packs_words_are_always_found(
     ]  # alone between pauses
     found = segments(said, VOICELESS, HEARD, language=one)
     answers, _, _, _ = kinds_of_words(one.responses, one.hesitations)
-    expected = "response" if answers.made_of([tokens(p) for p in parts]) else "hesitation"
+    expected = "response" if answers.made_of([split_tokens(p) for p in parts]) else "hesitation"
     assert [s.kind for s in found] == [expected], (one.code, text, found)
-    assert kind == expected or answers.made_of([tokens(phrase)])
+    assert kind == expected or answers.made_of([split_tokens(phrase)])

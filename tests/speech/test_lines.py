@@ -16,7 +16,7 @@ from metagraph.graph.model import Project
 from metagraph.graph.requests import Line
 from metagraph.playback.life.schedule import Schedule, schedule
 from metagraph.playback.life.track import Speech, track_of
-from metagraph.speech.lines import load_voices, read_line, read_voice, voice_from_phones
+from metagraph.speech.lines import load_voices, read_line, read_line_voice, voice_from_phones
 
 GRID = """File type = "ooTextFile"
 Object class = "TextGrid"
@@ -45,7 +45,7 @@ def project(**lines: Line) -> Project:
 
 
 def test_phones_shape_the_mouth_and_sound_the_syllables(folder: Path) -> None:
-    voice = read_voice(folder / "good.wav", folder / "good.TextGrid")
+    voice = read_line_voice(folder / "good.wav", folder / "good.TextGrid")
     assert voice.duration == 1.0 and 0.4 < voice.peaks[0] < 0.8
     assert (
         voice.weights[np.searchsorted(voice.times, 0.6)].argmax() == 10
@@ -54,7 +54,7 @@ def test_phones_shape_the_mouth_and_sound_the_syllables(folder: Path) -> None:
 
 
 def test_phones_that_go_on_after_the_sound_are_cut(folder: Path) -> None:
-    voice = read_voice(folder / "good.wav", folder / "long.TextGrid")
+    voice = read_line_voice(folder / "good.wav", folder / "long.TextGrid")
     assert voice.times[-1] == voice.duration == 1.0
 
 
@@ -102,7 +102,7 @@ def test_the_first_peak_of_a_samples_line_brings_a_blink() -> None:
 
 
 def blinks_at_the_first_peak(sound: Path) -> None:
-    voice = read_voice(sound)
+    voice = read_line_voice(sound)
     found = schedule(
         Project().life,
         track_of([Speech("s", 10.0, 10.0 + voice.duration, "m")]),

@@ -12,7 +12,7 @@ from metagraph.graph.model import Project
 from metagraph.playback.plan import Plan
 from metagraph.speech.drive import drive
 from metagraph.speech.duet import duet
-from metagraph.speech.mirroring import Mover, mirrored, stance_shapes
+from metagraph.speech.mirroring import Mover, list_mirrored_stances, stance_shapes
 
 
 def talk(mirror: float = 1.0, seed: int = 1) -> Conversation:
@@ -25,19 +25,19 @@ def talk(mirror: float = 1.0, seed: int = 1) -> Conversation:
 def found(project: Project, conversation: Conversation, side: int = 1) -> list[tuple[float, str]]:
     movers = [Mover(n, project, drive(conversation, n, project)[1]) for n in range(len(conversation.sides))]
     own = movers.pop(side)
-    return [(a.at or 0.0, a.stance) for a in mirrored(conversation, own, movers)]
+    return [(a.at or 0.0, a.stance) for a in list_mirrored_stances(conversation, own, movers)]
 
 
 def test_nothing_is_mirrored_at_a_rate_of_nought_or_where_nobody_changes(sample: Project) -> None:
     assert not found(sample, talk(0.0))
     still = Plan(1, 100.0)
-    assert not list(mirrored(talk(), Mover(1, sample, still), [Mover(0, sample, still)]))
+    assert not list(list_mirrored_stances(talk(), Mover(1, sample, still), [Mover(0, sample, still)]))
 
 
 def test_a_project_without_a_skeleton_or_with_one_stance_mirrors_nothing(sample: Project) -> None:
     assert stance_shapes(Project()) == {}
     bare = Mover(1, Project(), Plan(1, 9.0))
-    assert not list(mirrored(talk(), bare, [Mover(0, sample, Plan(1, 9.0))]))
+    assert not list(list_mirrored_stances(talk(), bare, [Mover(0, sample, Plan(1, 9.0))]))
 
 
 def test_the_stance_on_the_other_foot_is_taken_up_as_in_a_mirror(sample: Project) -> None:

@@ -8,14 +8,16 @@ from hypothesis import strategies as st
 
 from metagraph.graph.face.names import VISEMES
 from metagraph.speech.phones import is_arpabet, pieces_of, visemes_of
-from metagraph.speech.textgrid import Interval, TextGrid, Tier
+from metagraph.speech.textgrid import GridInterval, GridTier, TextGrid
 
 
-def tier(name: str, *labels: str, points: bool = False) -> Tier:
-    return Tier(name, tuple(Interval(0.1 * n, 0.1 * (n + 1), text) for n, text in enumerate(labels)), points)
+def tier(name: str, *labels: str, points: bool = False) -> GridTier:
+    return GridTier(
+        name, tuple(GridInterval(0.1 * n, 0.1 * (n + 1), text) for n, text in enumerate(labels)), points
+    )
 
 
-def shapes(*tiers: Tier) -> list[str]:
+def shapes(*tiers: GridTier) -> list[str]:
     return [p.viseme for p in pieces_of(TextGrid(0, 10, tiers))]
 
 
@@ -53,7 +55,7 @@ def test_a_vowel_without_stress_is_hardly_made() -> None:
 
 
 def test_a_diphthong_is_two_shapes_the_first_longer() -> None:
-    first, second = pieces_of(TextGrid(0, 1, (Tier("phones", (Interval(0.0, 0.2, "AY1"),)),)))
+    first, second = pieces_of(TextGrid(0, 1, (GridTier("phones", (GridInterval(0.0, 0.2, "AY1"),)),)))
     assert (first.viseme, second.viseme) == ("aa", "I") and first.end == second.start == pytest.approx(0.12)
 
 

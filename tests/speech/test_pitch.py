@@ -24,10 +24,10 @@ def test_a_steady_voice_has_its_own_pitch_at_any_rate(hertz: float, rate: int) -
 
 
 def test_times_are_those_of_loudness() -> None:
-    from metagraph.speech.sound import hear
+    from metagraph.speech.sound import analyse_sound
 
     samples = voice(np.full(12345, 150.0))
-    assert np.array_equal(pitch(samples, 16000).times, hear(np.asarray(samples), 16000).times)
+    assert np.array_equal(pitch(samples, 16000).times, analyse_sound(np.asarray(samples), 16000).times)
 
 
 @pytest.mark.parametrize(

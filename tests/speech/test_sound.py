@@ -16,9 +16,9 @@ from hypothesis import strategies as st
 from metagraph.errors import FileError
 from metagraph.graph.face.names import VISEMES
 from metagraph.graph.face.rig import OPENING
-from metagraph.speech.lines import read_voice
+from metagraph.speech.lines import read_line_voice
 from metagraph.speech.phones import pieces_of
-from metagraph.speech.sound import hear, read_recording, read_sound, shapes_heard, syllables
+from metagraph.speech.sound import analyse_sound, guess_mouth_shapes, read_recording, read_sound, syllables
 from metagraph.speech.textgrid import read_textgrid
 
 Array = np.ndarray[Any, Any]
@@ -51,7 +51,7 @@ def babble(
 
 @pytest.mark.parametrize("count", [0, 1, 2, 7])
 def test_syllables_are_counted(count: int) -> None:
-    peaks, strengths = syllables(hear(babble(np.ones(count)), RATE))
+    peaks, strengths = syllables(analyse_sound(babble(np.ones(count)), RATE))
     assert len(peaks) == len(strengths) == count
     if count:
         assert np.allclose(peaks, 0.28 + 0.24 * np.arange(count), atol=0.025)
@@ -62,7 +62,7 @@ def test_a_dip_that_can_be_heard_parts_syllables_and_a_tremor_does_not(depth: fl
     t = np.arange(2 * RATE) / RATE
     tone = (1 - depth * np.cos(2 * np.pi * 4 * t)) * np.sin(2 * np.pi * 500 * t) * (t > 0.001)
     samples = np.concatenate([np.zeros(RATE // 4), 0.2 * tone, np.zeros(RATE // 4)])
-    assert abs(len(syllables(hear(samples, RATE))[0]) - count) <= 1
+    assert abs(len(syllables(analyse_sound(samples, RATE))[0]) - count) <= 1
 
 
 @pytest.mark.parametrize("gain", [1e-3, 0.05, 1.0, 3.0])
@@ -70,16 +70,16 @@ def test_a_dip_that_can_be_heard_parts_syllables_and_a_tremor_does_not(depth: fl
 def test_level_and_noise_do_not_matter(gain: float, noise: float) -> None:
     clean = babble(np.array([1, 0.6, 0.8, 1, 0.5]))
     loud = gain * (clean + noise * np.random.default_rng(0).normal(size=len(clean)))
-    assert len(syllables(hear(loud, RATE))[0]) == 5
+    assert len(syllables(analyse_sound(loud, RATE))[0]) == 5
 
 
 @pytest.mark.parametrize("rate", [8000, 16000, 44100, 48000])
 def test_any_rate_of_samples_will_do(rate: int) -> None:
-    assert len(syllables(hear(babble(np.ones(4), rate=rate), rate))[0]) == 4
+    assert len(syllables(analyse_sound(babble(np.ones(4), rate=rate), rate))[0]) == 4
 
 
 def test_the_loudest_syllable_is_the_strongest() -> None:
-    peaks, strengths = syllables(hear(babble(np.array([0.4, 0.5, 1.0, 0.4])), RATE))
+    peaks, strengths = syllables(analyse_sound(babble(np.array([0.4, 0.5, 1.0, 0.4])), RATE))
     assert strengths.argmax() == 2 and len(peaks) == 4 and (strengths > 0).all() and strengths.max() <= 1
 
 
@@ -93,18 +93,18 @@ def test_the_loudest_syllable_is_the_strongest() -> None:
     ],
 )
 def test_silence_says_nothing(samples: Array) -> None:
-    heard = hear(samples, RATE)
-    assert len(syllables(heard)[0]) == 0 and shapes_heard(heard) == []
+    heard = analyse_sound(samples, RATE)
+    assert len(syllables(heard)[0]) == 0 and guess_mouth_shapes(heard) == []
 
 
 def test_steady_noise_is_no_speech() -> None:
-    assert len(syllables(hear(0.1 * np.random.default_rng(0).normal(size=2 * RATE), RATE))[0]) <= 2
+    assert len(syllables(analyse_sound(0.1 * np.random.default_rng(0).normal(size=2 * RATE), RATE))[0]) <= 2
 
 
 def shown(samples: Array) -> dict[str, float]:
     """Seconds of each shape."""
     out: dict[str, float] = {}
-    for piece in shapes_heard(hear(samples, RATE)):
+    for piece in guess_mouth_shapes(analyse_sound(samples, RATE)):
         out[piece.viseme] = out.get(piece.viseme, 0.0) + piece.end - piece.start
     return out
 
@@ -126,8 +126,8 @@ def test_hiss_is_a_sibilant() -> None:
 
 def test_a_short_gap_is_a_stop_and_a_long_one_silence() -> None:
     short, long = (
-        shapes_heard(hear(babble(np.ones(4), gap=0.04), RATE)),
-        shapes_heard(hear(babble(np.ones(2), gap=0.6), RATE)),
+        guess_mouth_shapes(analyse_sound(babble(np.ones(4), gap=0.04), RATE)),
+        guess_mouth_shapes(analyse_sound(babble(np.ones(2), gap=0.6), RATE)),
     )
     assert {"PP", "DD"} & {p.viseme for p in short}
     gap = [p for p in long if 0.5 < p.start < 0.8]
@@ -149,7 +149,7 @@ def test_syllables_of_the_samples_lines_lie_in_their_vowels(name: str) -> None:
 
 
 def syllables_in_vowels(sound: Path, grid: Path) -> None:
-    peaks, _ = syllables(hear(*read_sound(sound)))
+    peaks, _ = syllables(analyse_sound(*read_sound(sound)))
     vowels = [p for p in pieces_of(read_textgrid(grid)) if p.viseme in ("aa", "E", "I", "O", "U", "RR")]
     inside = [any(v.start - 0.03 <= t <= v.end + 0.03 for v in vowels) for t in peaks]
     assert len(peaks) >= 3 and np.mean(inside) >= 0.75
@@ -170,14 +170,14 @@ def test_the_mouth_guessed_from_the_samples_lines_opens_when_their_phones_say_so
 
 def mouth_opens(sound: Path, grid: Path) -> None:
     opening = np.array([OPENING.get(v, 0.0) for v in VISEMES])
-    known, guessed = read_voice(sound, grid), read_voice(sound)
+    known, guessed = read_line_voice(sound, grid), read_line_voice(sound)
     # Lips that meet amid a loud syllable ("bobby") are in the phones, and not heard.
     assert np.corrcoef(known.weights @ opening, guessed.weights @ opening)[0, 1] > 0.3
     assert len(known.peaks) == len(guessed.peaks) and known.duration == guessed.duration
 
 
 def test_depth_and_channels_of_a_recording_do_not_matter(shared_data: Path) -> None:
-    found = [read_voice(p) for p in sorted((shared_data / "praatio-speech").glob("bobby*.wav"))]
+    found = [read_line_voice(p) for p in sorted((shared_data / "praatio-speech").glob("bobby*.wav"))]
     assert len(found) == 6 and len({len(v.peaks) for v in found}) == 1
     for voice in found[1:]:
         assert np.allclose(voice.peaks, found[0].peaks, atol=0.02)
@@ -190,21 +190,21 @@ def test_depth_and_channels_of_a_recording_do_not_matter(shared_data: Path) -> N
 def test_all_common_formats_are_read(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"line{suffix}"
     soundfile.write(str(path), np.stack([babble(np.ones(3))] * 2, 1), RATE)
-    voice = read_voice(path)
+    voice = read_line_voice(path)
     assert len(voice.peaks) == 3 and voice.duration == pytest.approx(len(babble(np.ones(3))) / RATE, abs=0.1)
 
 
 def test_a_file_is_read_by_what_it_is_not_what_it_is_called(tmp_path: Path) -> None:
     soundfile.write(str(tmp_path / "real.mp3"), babble(np.ones(3)), RATE)
     (tmp_path / "line.wav").write_bytes((tmp_path / "real.mp3").read_bytes())
-    assert len(read_voice(tmp_path / "line.wav").peaks) == 3
+    assert len(read_line_voice(tmp_path / "line.wav").peaks) == 3
 
 
 def test_numbers_that_are_none_are_silence(tmp_path: Path) -> None:
     samples = babble(np.ones(3))
     samples[:100], samples[200] = np.nan, np.inf
     soundfile.write(str(tmp_path / "line.wav"), samples, RATE, subtype="FLOAT")
-    assert len(read_voice(tmp_path / "line.wav").peaks) == 3
+    assert len(read_line_voice(tmp_path / "line.wav").peaks) == 3
 
 
 @pytest.mark.parametrize(
@@ -223,7 +223,7 @@ def test_a_file_that_is_no_sound_is_refused_with_a_remedy(
     if content is not None:
         path.write_bytes(content)
     with pytest.raises(FileError, match=r"line\.wav") as told:
-        read_voice(path)
+        read_line_voice(path)
     assert words in str(told.value)
 
 
@@ -237,7 +237,7 @@ def test_a_sound_without_samples_and_one_too_coarse_are_refused(tmp_path: Path) 
 
 def test_a_sound_of_one_sample_is_survived(tmp_path: Path) -> None:
     soundfile.write(str(tmp_path / "tick.wav"), np.ones(1) * 0.5, RATE)
-    assert read_voice(tmp_path / "tick.wav").duration < 0.001
+    assert read_line_voice(tmp_path / "tick.wav").duration < 0.001
 
 
 @settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -252,7 +252,7 @@ def test_a_damaged_sound_is_read_or_refused(tmp_path: Path, data: st.DataObject)
     del whole[data.draw(st.integers(20, len(whole))) :]
     path.write_bytes(bytes(whole))
     try:
-        voice = read_voice(path)
+        voice = read_line_voice(path)
     except FileError as error:
         assert path.name in str(error)
     else:

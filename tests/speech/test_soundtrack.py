@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 
 from metagraph.graph import requests as a
 from metagraph.graph.model import Project
-from metagraph.playback.planning.running_plan import perform
+from metagraph.playback.planning.running_plan import plan_performance
 from metagraph.speech.lines import load_voices
-from metagraph.speech.soundtrack import RATE, line_sounds, mixed, placed, resampled
+from metagraph.speech.soundtrack import RATE, line_sounds, mix_track, place_lines, resample_sound
 
 
 def tone(seconds: float, rate: int = 16000, hertz: float = 300.0) -> np.ndarray:
@@ -50,7 +50,7 @@ def test_sounds_come_at_one_rate_and_a_broken_one_is_told_and_spoils_nothing(spo
     ("rate", "wanted"), [(16000, 44100), (48000, 44100), (8000, 44100), (44100, 44100), (44100, 16000)]
 )
 def test_another_rate_keeps_the_tone_and_its_strength(rate: int, wanted: int) -> None:
-    out = resampled(tone(0.5, rate), rate, wanted)
+    out = resample_sound(tone(0.5, rate), rate, wanted)
     assert len(out) == round(0.5 * wanted)
     middle = slice(wanted // 20, -wanted // 20)
     assert np.abs(out - tone(0.5, wanted))[middle].max() < 0.02
@@ -58,14 +58,14 @@ def test_another_rate_keeps_the_tone_and_its_strength(rate: int, wanted: int) ->
 
 def test_lines_sound_where_they_are_said_and_one_that_is_cut_fades(spoken: Any) -> None:
     project, folder = spoken
-    plan = perform(
+    plan = plan_performance(
         project, [a.Say(line="2", at=1.0), a.Say(line="1", at=2.0), a.Say(text="mute", at=5.0)], 10
     )
     sounds, _ = line_sounds(project.lines, folder)
-    parts = placed(plan, sounds)
+    parts = place_lines(plan, sounds)
     assert [(round(at, 3), round(len(s) / RATE, 2)) for at, s in parts] == [(1.0, 1.0), (2.0, 1.0)]
     assert abs(parts[0][1][-1]) < 0.02 and np.abs(parts[0][1][: RATE // 2]).max() > 0.4
-    track = mixed(parts, 0, 10 * RATE)
+    track = mix_track(parts, 0, 10 * RATE)
     loud = np.flatnonzero(np.abs(track) > 0.2) / RATE
     assert loud.min() == pytest.approx(1.0, abs=0.01) and loud.max() == pytest.approx(3.0, abs=0.02)
     assert not track[: RATE - 100].any() and not track[round(3.1 * RATE) :].any()
@@ -81,10 +81,10 @@ def test_any_piece_of_the_track_is_that_piece_of_the_whole(
     parts: list[tuple[float, float]], start: int, count: int
 ) -> None:
     sounds = [(at, np.full(round(length * 1000), 0.2, np.float32)) for at, length in parts]
-    whole = mixed(sounds, 0, 5000, 1000)
-    assert (mixed(sounds, start, count, 1000) == whole[start : start + count]).all()
+    whole = mix_track(sounds, 0, 5000, 1000)
+    assert (mix_track(sounds, start, count, 1000) == whole[start : start + count]).all()
 
 
 def test_too_much_at_once_is_clipped_not_wrapped() -> None:
     loud = [(0.0, np.full(10, 0.8, np.float32))] * 3
-    assert mixed(loud, 0, 10).max() == 1.0
+    assert mix_track(loud, 0, 10).max() == 1.0

@@ -14,16 +14,16 @@ from metagraph.errors import FileError
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import Say, request_from
 from metagraph.playback.plan import Plan
-from metagraph.playback.planning.extend_performance import answers, hear
+from metagraph.playback.planning.extend_performance import answer_asks, hear_asks
 from metagraph.speech.text_gestures import (
     TextStream,
     gesture_requests,
-    gesture_words,
     gesture_words_for,
-    known_languages,
-    proposed,
+    list_lexicon_languages,
+    propose_gestures,
     read_gesture_words,
-    words_of,
+    timed_words,
+    words_for_gesture,
 )
 from metagraph.speech.word_gestures import APART, GestureRule, GestureWords, ProposedGesture
 
@@ -45,7 +45,7 @@ def tags_of(project: Project) -> dict[Layer, set[str]]:
 
 
 EVERY: dict[Layer, set[str]] = {
-    "arms": {tag for rule in gesture_words().rules for tag in rule.tags} | {"beat", "question"},
+    "arms": {tag for rule in words_for_gesture().rules for tag in rule.tags} | {"beat", "question"},
     "head": {"positive"},
 }
 
@@ -55,7 +55,7 @@ def found(
 ) -> list[tuple[str, str]]:
     return [
         (one.do if one.do != "gesture" else one.tags[0], one.word)
-        for one in proposed(words_of(text), tags, lexicon)
+        for one in propose_gestures(timed_words(text), tags, lexicon)
     ]
 
 
@@ -91,11 +91,11 @@ def test_a_character_without_a_tag_does_the_next_best_or_nothing() -> None:
 
 def test_times_are_those_that_are_told_else_as_long_as_lips_take() -> None:
     told = [("Well", 0.1, 0.4), ("hello", 2.0, 2.6)]
-    (one,) = proposed(words_of("Well, hello there", told), EVERY)
+    (one,) = propose_gestures(timed_words("Well, hello there", told), EVERY)
     assert one.word == "hello" and one.at == pytest.approx(2.2)
-    guessed = words_of("Well, hello there")
+    guessed = timed_words("Well, hello there")
     assert [w.text for w in guessed] == ["Well", "hello", "there"] and guessed[0].mark == ","
-    slow = words_of("Well, hello there", seconds=10.0)
+    slow = timed_words("Well, hello there", seconds=10.0)
     assert slow[-1].end == pytest.approx(10.0, abs=0.5) and slow[1].start > 2 * guessed[1].start
     assert all(a.end <= b.start < b.end for a, b in pairwise(guessed))
 
@@ -104,9 +104,9 @@ def test_times_are_those_that_are_told_else_as_long_as_lips_take() -> None:
 def test_whatever_the_text_none_is_in_anothers_way_and_nothing_depends_on_when_it_is_asked(
     text: str, seed: int
 ) -> None:
-    words = words_of(text)
-    made = proposed(words, EVERY, seed=seed)
-    assert made == proposed(words, EVERY, seed=seed)
+    words = timed_words(text)
+    made = propose_gestures(words, EVERY, seed=seed)
+    assert made == propose_gestures(words, EVERY, seed=seed)
     for layer in LAYERS:
         times = [one.at for one in made if one.layer == layer]
         assert all(b - a >= APART[layer] for a, b in pairwise(times))
@@ -143,9 +143,9 @@ def test_most_of_what_words_propose_is_performed_on_its_word(sample: Project) ->
     for number, text in enumerate(TEXTS):
         stream = TextStream(tags_of(sample), seed=number)
         asks = [request_from(x) for x in stream.take(text, 0.0, over=True)]
-        plan = hear(sample, Plan(number, 0.0), 0.0, asks, stream.free + 4, idle=False)
+        plan = hear_asks(sample, Plan(number, 0.0), 0.0, asks, stream.free + 4, idle=False)
         gestures = [ask.id for ask in asks if not isinstance(ask, Say)]
-        became = answers(plan, gestures)
+        became = answer_asks(plan, gestures)
         wanted += len(gestures)
         played += sum(became[ident].state in ("planned", "late") for ident in gestures)
     assert wanted >= 14 and played >= 0.85 * wanted, (played, wanted)
@@ -166,11 +166,11 @@ def test_a_lexicon_of_ones_own_is_read_and_a_broken_one_is_told(tmp_path: Path) 
 
 
 def test_every_words_phrase_of_the_lexicon_is_as_words_are_read() -> None:
-    for rule in gesture_words().rules:
+    for rule in words_for_gesture().rules:
         assert rule.tags and rule.strength > 0
         for phrase in rule.words:
-            assert [w.plain for w in words_of(phrase)] == phrase.split(), phrase
-    assert isinstance(proposed(words_of("hello"), EVERY)[0], ProposedGesture)
+            assert [w.plain for w in timed_words(phrase)] == phrase.split(), phrase
+    assert isinstance(propose_gestures(timed_words("hello"), EVERY)[0], ProposedGesture)
 
 
 SPOKEN = {
@@ -201,19 +201,19 @@ def test_other_languages_have_lexicons_of_their_own_found_by_the_words(language:
 
 
 def test_every_lexicon_says_the_same_things_in_its_language() -> None:
-    english = [rule.tags for rule in gesture_words("en").rules]
-    for language in known_languages():
-        lexicon = gesture_words(language)
+    english = [rule.tags for rule in words_for_gesture("en").rules]
+    for language in list_lexicon_languages():
+        lexicon = words_for_gesture(language)
         assert lexicon.language == language
         assert [rule.tags for rule in lexicon.rules] == english
         every = [phrase for rule in lexicon.rules for phrase in rule.words]
         assert len(every) == len(set(every)), "a phrase proposes one thing"
         for phrase in every:  # each is found as it is written
-            assert " ".join(w.plain for w in words_of(phrase)) == phrase
+            assert " ".join(w.plain for w in timed_words(phrase)) == phrase
 
 
 def test_a_language_without_a_lexicon_and_none_that_is_told_have_the_english_one() -> None:
-    assert gesture_words("xx") == gesture_words_for("") == gesture_words("en")
+    assert words_for_gesture("xx") == gesture_words_for("") == words_for_gesture("en")
 
 
 def test_a_stream_goes_on_in_the_language_it_has_been_in() -> None:

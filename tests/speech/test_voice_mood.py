@@ -10,7 +10,7 @@ import pytest
 
 from metagraph.graph import requests as a
 from metagraph.graph.model import Project
-from metagraph.speech.voice_mood import MOST, VoiceFeatures, arousals, features, with_voice_moods
+from metagraph.speech.voice_mood import MOST, VoiceFeatures, arousals, measure_voice, with_voice_moods
 from tests.wavs import wav
 
 RATE = 16000
@@ -29,7 +29,7 @@ def said(gain: float, a_second: float, wide: float) -> np.ndarray:
 
 def test_silence_and_moments_tell_nothing() -> None:
     for samples in (np.zeros(RATE, np.float32), np.ones(100, np.float32), np.zeros(0, np.float32)):
-        found = features(samples, RATE)
+        found = measure_voice(samples, RATE)
         assert np.isnan([found.loudness, found.rate, found.range]).all()
     nan = float("nan")
     assert arousals([VoiceFeatures(nan, nan, nan)] * 4) == [0.0] * 4 and arousals([]) == []
@@ -49,7 +49,7 @@ def test_louder_faster_and_wider_than_usual_is_more_aroused_and_never_extreme() 
 
 
 def test_what_is_heard_is_how_it_was_said() -> None:
-    calm, loud = features(said(0.05, 3, 3), RATE), features(said(0.4, 5, 10), RATE)
+    calm, loud = measure_voice(said(0.05, 3, 3), RATE), measure_voice(said(0.4, 5, 10), RATE)
     assert loud.loudness > calm.loudness + 10 and loud.rate > calm.rate + 1 and loud.range > calm.range + 3
     assert calm.rate == pytest.approx(3, abs=0.4) and calm.range == pytest.approx(3, abs=1.0)
 

@@ -11,16 +11,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.suggest.alike import LEAST, Alike, Example, example_from
+from metagraph.suggest.alike import LEAST, Alike, LabelledExample, example_from
 
 NONE = np.zeros(0)
 
 
-def labelled(words: str, kind: str, *measures: float) -> Example:
-    return Example(tuple(words.split()), np.array(measures), {"kind": kind})
+def labelled(words: str, kind: str, *measures: float) -> LabelledExample:
+    return LabelledExample(tuple(words.split()), np.array(measures), {"kind": kind})
 
 
-def of_words(count: int = 6) -> list[Example]:
+def of_words(count: int = 6) -> list[LabelledExample]:
     return [labelled(f"shrug {n}", "gesture") for n in range(count)] + [
         labelled(f"idle {n}", "stance") for n in range(count)
     ]
@@ -92,7 +92,7 @@ examples_ = st.lists(
 @given(examples_, st.lists(st.text("abc", max_size=3), max_size=3), st.floats(-1e6, 1e6))
 @settings(max_examples=60, deadline=None)
 def test_whatever_is_labelled_a_guess_is_one_of_its_labels_and_surely_between_0_and_1(
-    examples: list[Example], words: list[str], x: float
+    examples: list[LabelledExample], words: list[str], x: float
 ) -> None:
     for belief in Alike(examples).guess(words, np.array([x, x])).values():
         assert belief.value in {e.labels["kind"] for e in examples}
@@ -101,7 +101,7 @@ def test_whatever_is_labelled_a_guess_is_one_of_its_labels_and_surely_between_0_
 
 @given(examples_)
 @settings(max_examples=30, deadline=None)
-def test_examples_come_back_from_their_data(examples: list[Example]) -> None:
+def test_examples_come_back_from_their_data(examples: list[LabelledExample]) -> None:
     for example in examples:
         back = example_from(json.loads(json.dumps(example.to_data(), allow_nan=False)))
         assert back.words == example.words and back.labels == example.labels

@@ -13,8 +13,8 @@ from metagraph.formats.gltf.reader import read_character
 from metagraph.formats.store import open_project
 from metagraph.graph.model import Action, Project
 from metagraph.motion.contact_spans import ContactSpan
-from metagraph.playback.posing.contacts import parts_of
-from metagraph.suggest.find_contacts import find_contacts, measured, with_contacts
+from metagraph.playback.posing.contacts import find_body_parts
+from metagraph.suggest.find_contacts import find_contacts, with_contacts, with_measured_body
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_clips"
 
@@ -97,9 +97,9 @@ def test_a_clip_that_is_missing_or_one_of_another_skeleton_has_none() -> None:
 
 def test_a_body_measured_on_its_mesh_is_about_what_its_skeleton_says() -> None:
     character = read_character(SAMPLES / "mannequin.glb")
-    by_mesh = measured(sample(), character).touch.parts
-    assert measured(sample(), None).touch.parts == ()
-    by_bones = parts_of(measured(sample(), None))
+    by_mesh = with_measured_body(sample(), character).touch.parts
+    assert with_measured_body(sample(), None).touch.parts == ()
+    by_bones = find_body_parts(with_measured_body(sample(), None))
     assert [(p.joint, p.to) for p in by_mesh] == [(p.joint, p.to) for p in by_bones]
     for a, b in zip(by_mesh, by_bones, strict=True):
         assert 0.6 < a.radius / b.radius < 1.5, a.joint

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.suggest.estimate import Belief
-from metagraph.suggest.flags import LOOK, chance_wrong, doubt, gain, needs_a_look
+from metagraph.suggest.flags import LOOK, chance_wrong, doubt, gain, needs_look
 from metagraph.suggest.proposal import Proposal
 
 SURE = Proposal(
@@ -24,8 +24,8 @@ SURE = Proposal(
 
 
 def test_what_is_sure_throughout_needs_no_look_and_what_was_not_placed_does() -> None:
-    assert not needs_a_look(SURE) and chance_wrong(SURE) < 0.1
-    assert needs_a_look(SURE, {"c": "nothing says where it ends"})
+    assert not needs_look(SURE) and chance_wrong(SURE) < 0.1
+    assert needs_look(SURE, {"c": "nothing says where it ends"})
 
 
 @given(st.floats(0.02, 0.98), st.floats(0.02, 0.98))

@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 from metagraph.graph.model import Project
 from metagraph.suggest.accept import accept
 from metagraph.suggest.estimate import Belief
-from metagraph.suggest.left_aside import left_aside, reasons, taken_up
+from metagraph.suggest.left_aside import explain_skipping, reasons, take_up_skipped
 from metagraph.suggest.motion_guess import guess
 from metagraph.suggest.propose import propose
 from metagraph.suggest.review import Review
-from metagraph.suggest.stances.known import discovered
+from metagraph.suggest.stances.known import discover_stances
 from metagraph.suggest.words.names import NameGuess
 from tests.label_zoo.catalogue import named
 from tests.label_zoo.sets import MadeSet
@@ -31,37 +31,37 @@ def exercises() -> MadeSet:
 
 
 def test_a_clip_nobody_knows_anything_of_may_be_anything() -> None:
-    assert left_aside(NameGuess(), None, None) == ""
+    assert explain_skipping(NameGuess(), None, None) == ""
 
 
 def test_a_name_alone_leaves_aside_what_it_says_is_none_of_the_kinds() -> None:
-    assert left_aside(SAYS_WALK, None, None) == "name says 'walk'"
+    assert explain_skipping(SAYS_WALK, None, None) == "name says 'walk'"
 
 
 def test_a_name_that_says_a_kind_is_believed_before_all_else(exercises: MadeSet) -> None:
     kind = NameGuess(kind=Belief("gesture", 0.9, ""))
     for entry in exercises.project.clips.values():
         t = of(entry.motion)  # type: ignore[arg-type]
-        assert left_aside(kind, t, guess(t, {})) == ""
-        assert left_aside(replace(SAYS_WALK, kind=kind.kind), t, guess(t, {})) == ""
+        assert explain_skipping(kind, t, guess(t, {})) == ""
+        assert explain_skipping(replace(SAYS_WALK, kind=kind.kind), t, guess(t, {})) == ""
 
 
 def test_a_single_frame_is_left_aside_unless_other_clips_begin_there(toy: Any) -> None:
     pose = of(toy.clip("pose", 1.0, 0.8).trimmed(0, 1))
-    alone = left_aside(NameGuess(), pose, guess(pose, {}))
+    alone = explain_skipping(NameGuess(), pose, guess(pose, {}))
     assert alone.startswith("is a single frame")
     others = {f"up {n}": of(toy.clip(f"up {n}", 1.5, 0.8, swing=0.3 + 0.1 * n)) for n in range(4)}
-    shapes = discovered({**others, "pose": pose})
-    assert left_aside(NameGuess(), pose, guess(pose, shapes), shapes=shapes) == ""
+    shapes = discover_stances({**others, "pose": pose})
+    assert explain_skipping(NameGuess(), pose, guess(pose, shapes), shapes=shapes) == ""
     far = of(toy.clip("far", 1.0, 2.4).trimmed(0, 1))
-    assert "a pose in which no other clip begins" in left_aside(
+    assert "a pose in which no other clip begins" in explain_skipping(
         NameGuess(), far, guess(far, shapes), shapes=shapes
     )
 
 
 def test_without_the_motion_a_short_clip_is_what_its_name_says(toy: Any) -> None:
     pose = of(toy.clip("pose").trimmed(0, 1))
-    assert left_aside(NameGuess(), pose, None) == ""
+    assert explain_skipping(NameGuess(), pose, None) == ""
 
 
 @pytest.mark.parametrize("count", [1, 5])
@@ -73,7 +73,7 @@ def test_what_is_no_figure_is_judged_without_an_error(count: int) -> None:
     skeleton = chain(count)
     clip = Clip("x", skeleton, 30, np.tile([0, 0, 0, 1.0], (40, count, 1)), np.zeros((40, 1, 3)))
     t = of(clip)
-    assert "nan" not in left_aside(NameGuess(), t, guess(t, {}))
+    assert "nan" not in explain_skipping(NameGuess(), t, guess(t, {}))
 
 
 def test_exercises_are_left_aside_with_a_reason_and_what_a_talker_does_is_not(exercises: MadeSet) -> None:
@@ -90,7 +90,7 @@ def test_each_clip_that_is_left_aside_can_be_taken_up(exercises: MadeSet) -> Non
     found = propose(exercises.project)
     assert set(found.spare) == set(found.aside)
     for n, clip in enumerate(found.aside):
-        after = taken_up(found, clip)
+        after = take_up_skipped(found, clip)
         assert clip in after.proposals and clip not in after.aside and clip not in after.spare
         p = after.proposals[clip]
         assert p.stance is not None and after.places[p.stance.value].layer == p.layer.value
@@ -98,7 +98,7 @@ def test_each_clip_that_is_left_aside_can_be_taken_up(exercises: MadeSet) -> Non
         if n < 3:
             assert clip in accept(exercises.project, after).placed
     with pytest.raises(KeyError):
-        taken_up(found, next(iter(found.proposals)))
+        take_up_skipped(found, next(iter(found.proposals)))
 
 
 def test_one_taken_up_later_belongs_to_the_stances_that_were_made_meanwhile(exercises: MadeSet) -> None:
@@ -106,7 +106,7 @@ def test_one_taken_up_later_belongs_to_the_stances_that_were_made_meanwhile(exer
     clip = next(iter(review.found.aside))
     project = accept(exercises.project, review.found).project
     review = review.settled(project)
-    after = taken_up(review.found, clip)
+    after = take_up_skipped(review.found, clip)
     p = after.proposals[clip]
     assert p.stance is not None and project.stance(p.stance.value) is not None
     review = Review(after).tell(clip, "kind", "fidget")
@@ -118,7 +118,7 @@ def test_one_taken_up_later_belongs_to_the_stances_that_were_made_meanwhile(exer
 def test_a_stance_that_is_gone_is_made_again(exercises: MadeSet) -> None:
     found = propose(exercises.project)
     clip = next(iter(found.aside))
-    after = taken_up(replace(found, places={}), clip)
+    after = take_up_skipped(replace(found, places={}), clip)
     p = after.proposals[clip]
     assert p.stance is not None and not after.places[p.stance.value].there
 
@@ -130,7 +130,7 @@ def test_a_name_that_nothing_else_is_known_of_can_be_taken_up(toy: Any) -> None:
     found = propose(project, sources=("name",))
     clip = next(iter(project.clips))
     assert list(found.aside) == [clip] and not found.proposals
-    p = taken_up(found, clip).proposals[clip]
+    p = take_up_skipped(found, clip).proposals[clip]
     assert p.stance is not None and p.confidence < 0.5
 
 

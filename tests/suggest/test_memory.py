@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 from metagraph.suggest import memory
-from metagraph.suggest.alike import Example
+from metagraph.suggest.alike import LabelledExample
 from metagraph.suggest.memory import Memory, MemoryFormatError
 from metagraph.suggest.words.names import PatternsError, read_names
 
 NAMES = ["idle_arms_shrug", "idle_arms_wobble", "idle_arms"]
 
 
-def example(word: str = "shrug", kind: str = "gesture") -> Example:
-    return Example((word,), np.array([0.5, np.nan]), {"kind": kind})
+def example(word: str = "shrug", kind: str = "gesture") -> LabelledExample:
+    return LabelledExample((word,), np.array([0.5, np.nan]), {"kind": kind})
 
 
 def test_an_empty_memory_knows_nothing_and_is_written_short() -> None:

@@ -15,11 +15,11 @@ from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
-from metagraph.suggest.clip_measures import walks
+from metagraph.suggest.clip_measures import is_walk
 from metagraph.suggest.motion_guess import guess
 from metagraph.suggest.propose import accept, propose
-from metagraph.suggest.stances.known import known
-from metagraph.suggest.traits import traits_known, traits_of
+from metagraph.suggest.stances.known import list_known_stances
+from metagraph.suggest.traits import list_known_traits, traits_of
 
 RATE = 30.0
 
@@ -46,7 +46,7 @@ def test_a_cycle_of_steps_is_a_stance_of_the_body(toy: Any) -> None:
     swing = 0.6 * cycle(1.0)
     steps = turned(toy.skeleton, {"LeftUpperLeg": ((1, 0, 0), swing), "RightUpperLeg": ((1, 0, 0), -swing)})
     t = traits_of([steps])["x"]
-    assert t.stride > 0.05 and walks(t)
+    assert t.stride > 0.05 and is_walk(t)
     g = guess(t, {})
     assert (g.kind.value, g.layer.value, g.loop.value) == (
         "stance",
@@ -57,9 +57,9 @@ def test_a_cycle_of_steps_is_a_stance_of_the_body(toy: Any) -> None:
 
 def test_a_step_and_a_kick_are_no_walk(toy: Any) -> None:
     once = 0.6 * np.sin(np.pi * np.linspace(0, 1, 31)) ** 2
-    assert not walks(traits_of([turned(toy.skeleton, {"LeftUpperLeg": ((1, 0, 0), once)})])["x"])
+    assert not is_walk(traits_of([turned(toy.skeleton, {"LeftUpperLeg": ((1, 0, 0), once)})])["x"])
     half = 0.6 * np.linspace(0, 1, 31)
-    assert not walks(
+    assert not is_walk(
         traits_of(
             [turned(toy.skeleton, {"LeftUpperLeg": ((1, 0, 0), half), "RightUpperLeg": ((1, 0, 0), -half)})]
         )["x"]
@@ -126,19 +126,19 @@ def test_a_gesture_that_ends_a_little_elsewhere_but_in_no_stance_is_no_transitio
     clip = sample.clips[action.clip].motion
     assert clip is not None
     rotations = clip.rotations.astype(float).copy()
-    arm = anatomy.roles(sample)["left_upper_arm"]
+    arm = anatomy.project_roles(sample)["left_upper_arm"]
     ramp = np.radians(degrees) * np.linspace(0, 1, clip.frames)
     rotations[:, arm] = rotation.multiply(
         rotations[:, arm], rotation.from_axis_angle(np.array([1.0, 0, 0]), ramp)
     )
     cut = Clip(clip.name, clip.skeleton, clip.fps, rotations, clip.translations, clip.translated)
-    g = guess(traits_of([cut])[cut.name], known(sample, traits_of(sample)))
+    g = guess(traits_of([cut])[cut.name], list_known_stances(sample, traits_of(sample)))
     assert g.kind.value == "gesture" and g.end_stance is None
 
 
 def test_the_layer_that_others_know_is_where_it_is_looked_for(sample: Project) -> None:
     found = traits_of(sample)
-    stances = known(sample, found)
+    stances = list_known_stances(sample, found)
     action = next(a for a in sample.actions() if a.kind == "gesture" and a.layer == "arms")
     g = guess(found[action.clip], stances, "body")
     assert g.layer.value == "body" and g.stance is not None and g.stance.value.layer == "body"
@@ -150,6 +150,6 @@ def test_what_was_looked_at_before_is_known_at_once(sample: Project) -> None:
         for i, c in sample.clips.items()
         if c.motion is not None
     }
-    assert traits_known(replace(sample, clips=fresh)) == {}
+    assert list_known_traits(replace(sample, clips=fresh)) == {}
     traits_of(sample)
-    assert set(traits_known(sample)) == set(sample.clips)
+    assert set(list_known_traits(sample)) == set(sample.clips)

@@ -12,7 +12,7 @@ import pytest
 from metagraph.formats.imports import import_files
 from metagraph.formats.store import open_project
 from metagraph.graph import edits
-from metagraph.graph.check import check
+from metagraph.graph.check import check_project
 from metagraph.graph.model import LAYERS, Action, Project
 from metagraph.suggest.propose import Proposals, accept, propose
 from tests.projects import clip as still_clip
@@ -63,7 +63,7 @@ def test_with_names_and_motion_the_practice_project_labels_itself(practice: Proj
             assert end == sample.stance(action.end_stance).name  # type: ignore[union-attr]
     taken = accept(practice, found)
     assert not taken.left and len(taken.placed) == len(practice.clips)
-    assert not [p for p in check(taken.project) if p.severity == "error"]
+    assert not [p for p in check_project(taken.project) if p.severity == "error"]
     assert sum(1 for _ in taken.project.actions()) == len(practice.clips)
 
 
@@ -133,7 +133,7 @@ def test_a_gesture_without_a_loop_in_its_stance_is_placed_and_the_stance_held_in
     found = propose(practice, gestures, sources=("name",))
     taken = accept(practice, found)
     assert set(taken.placed) == set(gestures) and not taken.left
-    assert [p for p in check(taken.project) if p.severity == "error"] == []
+    assert [p for p in check_project(taken.project) if p.severity == "error"] == []
     for stance, rest in taken.held.items():
         (loop,) = taken.project.graphs["arms"].of(stance, "stance")
         assert (

@@ -11,9 +11,9 @@ from metagraph.graph import edits
 from metagraph.graph.model import Project
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.flags import gain
-from metagraph.suggest.proposal import Place, Proposal, Proposals
+from metagraph.suggest.proposal import Proposal, Proposals, StancePlace
 from metagraph.suggest.propose import propose
-from metagraph.suggest.review import PAUSE, SAID, USUAL, Pace, Review
+from metagraph.suggest.review import PAUSE, SAID, USUAL, Review, ReviewPace
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -177,7 +177,7 @@ def test_what_is_something_else_has_other_times(practice: Project, found: Propos
 
 def test_what_is_not_known_is_looked_at_first() -> None:
     p = Proposal("c", sure("gesture"), sure("arms"), None, None, sure("both"))
-    review = Review(Proposals({"c": p}, {"s": Place("s", "arms", "rest", True)}))
+    review = Review(Proposals({"c": p}, {"s": StancePlace("s", "arms", "rest", True)}))
     assert review.doubtful("c") == "stance" and review.choices("c", "stance") == [("rest", "rest")]
 
 
@@ -188,7 +188,7 @@ def test_a_refused_placing_tells_why() -> None:
 
 
 def test_the_time_left_is_taken_from_the_last_decisions_without_the_pauses() -> None:
-    pace = Pace()
+    pace = ReviewPace()
     assert pace.left(10) == 10 * USUAL and not pace.known
     for seconds in (1.0, 2.0, PAUSE + 1, 3.0):
         pace.decided(seconds)

@@ -17,7 +17,13 @@ from metagraph.suggest.accept import accept
 from metagraph.suggest.clip_measures import with_tremble
 from metagraph.suggest.propose import propose
 from metagraph.suggest.traits import Traits, traits_of
-from metagraph.suggest.whole_body import CARRIER, SCALE, carried, recorded_whole, whole_of
+from metagraph.suggest.whole_body import (
+    CARRIER,
+    SCALE,
+    are_whole_body_recordings,
+    is_whole_body_carried,
+    with_whole_body,
+)
 from tests.label_zoo.catalogue import named
 from tests.suggest.test_traits import chain, of
 
@@ -34,8 +40,10 @@ LAYERED = ("japanese joints", "few joints", "no turns at rest, no fingers", "a h
 
 def test_without_clips_or_with_one_nothing_was_recorded_whole(toy: Any) -> None:
     one = {"x": of(toy.clip("x"))}
-    assert not recorded_whole({}) and not recorded_whole({}, {"x": "sit"})
-    assert not recorded_whole(one) and not recorded_whole(one, {"x": "sit", "gone": "stand"})
+    assert not are_whole_body_recordings({}) and not are_whole_body_recordings({}, {"x": "sit"})
+    assert not are_whole_body_recordings(one) and not are_whole_body_recordings(
+        one, {"x": "sit", "gone": "stand"}
+    )
 
 
 @pytest.mark.parametrize("frames", [1, 40])
@@ -44,9 +52,11 @@ def test_a_skeleton_that_is_no_figure_was_not_recorded_whole(frames: int) -> Non
 
     turns = np.tile([0, 0, 0, 1.0], (frames, 4, 1))
     clips = {f"x{n}": of(Clip("x", chain(4), 30, turns, np.zeros((frames, 1, 3)))) for n in range(5)}
-    assert not recorded_whole(clips) and not recorded_whole(clips, dict.fromkeys(clips, "sit"))
+    assert not are_whole_body_recordings(clips) and not are_whole_body_recordings(
+        clips, dict.fromkeys(clips, "sit")
+    )
     for t in clips.values():
-        whole = whole_of(t).layers[CARRIER]
+        whole = with_whole_body(t).layers[CARRIER]
         assert np.isfinite(whole.first).all() and np.isfinite([whole.extent, whole.loop_error]).all()
 
 
@@ -72,7 +82,7 @@ def test_the_order_of_clips_does_not_matter(random: Any) -> None:
     for name, whole in (("opaque takes", True), ("few joints", False)):
         found = list(_known(name).items())
         random.shuffle(found)
-        assert recorded_whole(dict(found)) == whole
+        assert are_whole_body_recordings(dict(found)) == whole
 
 
 _TRAITS: dict[str, dict[str, Traits]] = {}
@@ -87,22 +97,24 @@ def _known(name: str) -> dict[str, Traits]:
 def test_names_alone_tell_it_where_one_stance_stands_before_what_several_layers_do(
     talker: dict[str, Traits],
 ) -> None:
-    from metagraph.suggest.clip_measures import layer_of, nothing
+    from metagraph.suggest.clip_measures import layer_of, no_measures
 
-    moving = [c for c, t in talker.items() if not nothing(t) and t.face == 0]
+    moving = [c for c, t in talker.items() if not no_measures(t) and t.face == 0]
     layer = {c: layer_of(talker[c]).value for c in moving}
     assert len(set(layer.values())) > 1
     by_layer = {c: {"arms": "wave", "head": "nod", "body": "shift"}[layer[c]] for c in moving}
     mixed = {c: ("stand", "sit")[n % 2] for n, c in enumerate(moving)}
     some = {c: talker[c] for c in moving}
-    assert recorded_whole(some, mixed)
-    assert recorded_whole(some, by_layer) == recorded_whole(some)  # words for layers say nothing new
-    assert recorded_whole(some, dict.fromkeys(moving, "stand")) == recorded_whole(some)
+    assert are_whole_body_recordings(some, mixed)
+    assert are_whole_body_recordings(some, by_layer) == are_whole_body_recordings(
+        some
+    )  # words for layers say nothing new
+    assert are_whole_body_recordings(some, dict.fromkeys(moving, "stand")) == are_whole_body_recordings(some)
 
 
 def test_the_whole_is_every_layer_in_the_carriers_measure(talker: dict[str, Traits]) -> None:
     for t in talker.values():
-        whole = whole_of(t).layers[CARRIER]
+        whole = with_whole_body(t).layers[CARRIER]
         assert whole.names == tuple(n for layer in LAYERS for n in t.layers[layer].names)
         at = 0
         for layer in LAYERS:
@@ -111,7 +123,7 @@ def test_the_whole_is_every_layer_in_the_carriers_measure(talker: dict[str, Trai
             assert part == pytest.approx(own.first * SCALE[layer])
             at += len(own.names)
         assert whole.extent == pytest.approx(max(t.layers[x].extent * SCALE[x] for x in LAYERS))
-        assert {x: whole_of(t).layers[x] is t.layers[x] for x in LAYERS if x != CARRIER} == {
+        assert {x: with_whole_body(t).layers[x] is t.layers[x] for x in LAYERS if x != CARRIER} == {
             x: True for x in LAYERS if x != CARRIER
         }
 
@@ -122,16 +134,16 @@ def test_traits_without_any_layer_stay_as_they_are(talker: dict[str, Traits]) ->
     t = next(iter(talker.values()))
     none = replace(t.layers["arms"], names=(), first=np.zeros((0, 3)))
     bare = replace(t, layers=dict.fromkeys(LAYERS, none))
-    assert whole_of(bare) is bare
+    assert with_whole_body(bare) is bare
 
 
 def test_a_project_carries_the_whole_body_once_such_takes_are_accepted() -> None:
     made = named("standing talker").project
-    assert not carried(Project()) and not carried(made)
+    assert not is_whole_body_carried(Project()) and not is_whole_body_carried(made)
     found = propose(made)
-    assert not carried(accept(made, found, clips=()).project)
+    assert not is_whole_body_carried(accept(made, found, clips=()).project)
     project = accept(made, found).project
-    assert carried(project) and not carried(
+    assert is_whole_body_carried(project) and not is_whole_body_carried(
         accept(named("few joints").project, propose(named("few joints").project)).project
     )
     assert {layer for layer in LAYERS if project.graphs[layer].stances} == {CARRIER}
@@ -161,5 +173,5 @@ def test_clips_of_single_layers_that_tremble_all_over_are_not(name: str) -> None
         motion = Clip(clip.name, clip.skeleton, clip.fps, turned, clip.translations, clip.translated)
         shaken[key] = replace(entry, motion=motion)
     found = traits_of(replace(project, clips=shaken))
-    assert not recorded_whole(found)
-    assert not recorded_whole(with_tremble(found))
+    assert not are_whole_body_recordings(found)
+    assert not are_whole_body_recordings(with_tremble(found))

@@ -9,15 +9,15 @@ from pathlib import Path
 
 import numpy as np
 
-from metagraph.formats.clips import read_clips
+from metagraph.formats.clips import read_clip_file
 from metagraph.graph.conversation.model import Segment, Word
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
-from metagraph.synthesis.constraints import changes, heard
+from metagraph.synthesis.constraints import find_change_states, find_heard_at
 from metagraph.synthesis.extending.path import DriverGraph, driver_graph
-from metagraph.synthesis.graph import build
-from metagraph.synthesis.states import key_states, states_of
+from metagraph.synthesis.graph import build_graph
+from metagraph.synthesis.states import key_states, read_states
 
 VOICE = 8000  # samples a second
 WORDS = ("we", "went", "round", "along", "there", "big", "nothing", "river")
@@ -53,7 +53,7 @@ def talking(
     """A take in which the right arm is fastest at the stress of each clause, and answers and hesitations go
     with a nod. sizes: how large the swing of each segment is, 1 where nothing is said.
     """
-    base = read_clips(CLIPS / "hands_at_sides__stance.glb")[0]
+    base = read_clip_file(CLIPS / "hands_at_sides__stance.glb")[0]
     chance = np.random.default_rng(seed)
     t = np.arange(round(seconds * fps)) / fps
     roles = find_roles(base.skeleton)
@@ -94,9 +94,9 @@ def talkers(
 def talkers_graph() -> DriverGraph:
     """The motion graph of `talkers`, made ready to drive; made once a process."""
     takes, said = talkers()
-    states = states_of(takes)
-    graph = build(states, keys=key_states(states, changes=changes(states, said)))
-    return driver_graph(graph, heard(states, said))
+    states = read_states(takes)
+    graph = build_graph(states, keys=key_states(states, changes=find_change_states(states, said)))
+    return driver_graph(graph, find_heard_at(states, said))
 
 
 def aloud(

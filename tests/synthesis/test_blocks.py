@@ -18,7 +18,7 @@ from numpy.testing import assert_array_equal
 
 from metagraph.synthesis import blocks, kernels
 from metagraph.synthesis.blocks import BlockMakers
-from metagraph.synthesis.graph import MotionGraph, Threshold, build
+from metagraph.synthesis.graph import MotionGraph, Threshold, build_graph
 from metagraph.synthesis.states import States, SynthesisError, key_states, with_velocity
 
 LIMIT = Threshold(3, 0.95, np.zeros(0), None, 0.6, 0.6)
@@ -63,10 +63,10 @@ def test_a_build_that_is_ended_takes_up_where_it_was(tmp_path: Path, monkeypatch
     monkeypatch.setattr(blocks, "BLOCK", 128)
     states = made()
     keys = key_states(states)
-    whole = build(states, LIMIT, keys, most=60)
+    whole = build_graph(states, LIMIT, keys, most=60)
     seen: list[int] = []
     with pytest.raises(SynthesisError, match="cancelled"):
-        build(
+        build_graph(
             states,
             LIMIT,
             keys,
@@ -79,7 +79,7 @@ def test_a_build_that_is_ended_takes_up_where_it_was(tmp_path: Path, monkeypatch
     assert 3 <= len(kept) < len(keys) // 128
     told: list[tuple[int, int]] = []
     same(
-        build(
+        build_graph(
             states,
             LIMIT,
             keys,
@@ -92,14 +92,14 @@ def test_a_build_that_is_ended_takes_up_where_it_was(tmp_path: Path, monkeypatch
     assert told[0][0] >= 3 * 128 and told[-1] == (len(keys), len(keys))
     after = files(tmp_path)
     assert all(after[name] == at for name, at in kept.items()), "what was there is not made again"
-    same(build(states, LIMIT, keys, most=60, makers=BlockMakers(folder=tmp_path)), whole)
+    same(build_graph(states, LIMIT, keys, most=60, makers=BlockMakers(folder=tmp_path)), whole)
     assert files(tmp_path) == after
 
 
 def _slowly(folder: Path) -> None:
     blocks.BLOCK = 128
     states = made()
-    build(
+    build_graph(
         states,
         LIMIT,
         key_states(states),
@@ -125,8 +125,8 @@ def test_a_process_that_is_killed_leaves_whole_blocks(
     keys = key_states(states)
     assert 2 <= len(kept) < len(keys) // 128
     same(
-        build(states, LIMIT, keys, most=60, makers=BlockMakers(folder=tmp_path)),
-        build(states, LIMIT, keys, most=60),
+        build_graph(states, LIMIT, keys, most=60, makers=BlockMakers(folder=tmp_path)),
+        build_graph(states, LIMIT, keys, most=60),
     )
     assert all(files(tmp_path)[name] == at for name, at in kept.items())
 
@@ -134,7 +134,7 @@ def test_a_process_that_is_killed_leaves_whole_blocks(
 def test_blocks_of_other_inputs_are_not_taken(tmp_path: Path) -> None:
     states = made(1500)
     keys = key_states(states)
-    build(states, LIMIT, keys, makers=BlockMakers(folder=tmp_path))
+    build_graph(states, LIMIT, keys, makers=BlockMakers(folder=tmp_path))
     other = made(1500, seed=2)
     changed = (
         (other, LIMIT, key_states(other), None),
@@ -145,8 +145,8 @@ def test_blocks_of_other_inputs_are_not_taken(tmp_path: Path) -> None:
     )
     for some, limit, which, most in changed:
         same(
-            build(some, limit, which, most, makers=BlockMakers(folder=tmp_path)),
-            build(some, limit, which, most),
+            build_graph(some, limit, which, most, makers=BlockMakers(folder=tmp_path)),
+            build_graph(some, limit, which, most),
         )
     assert len(list(tmp_path.iterdir())) == 6, "each in a folder of its own"
 
@@ -154,18 +154,18 @@ def test_blocks_of_other_inputs_are_not_taken(tmp_path: Path) -> None:
 def test_a_spoiled_block_is_made_again(tmp_path: Path) -> None:
     states = made(3000)
     keys = key_states(states)
-    whole = build(states, LIMIT, keys, makers=BlockMakers(folder=tmp_path))
+    whole = build_graph(states, LIMIT, keys, makers=BlockMakers(folder=tmp_path))
     some = sorted(tmp_path.rglob("*.npz"))
     some[0].write_bytes(some[0].read_bytes()[:100])
     some[-1].write_bytes(b"")
-    same(build(states, LIMIT, keys, makers=BlockMakers(folder=tmp_path)), whole)
+    same(build_graph(states, LIMIT, keys, makers=BlockMakers(folder=tmp_path)), whole)
 
 
 def test_one_thread_and_many_make_the_same() -> None:
     states = made(3000)
     same(
-        build(states, LIMIT, makers=BlockMakers(threads=1)),
-        build(states, LIMIT, makers=BlockMakers(threads=4)),
+        build_graph(states, LIMIT, makers=BlockMakers(threads=1)),
+        build_graph(states, LIMIT, makers=BlockMakers(threads=4)),
     )
 
 
@@ -190,7 +190,7 @@ def test_blocks_whose_middles_are_far_are_not_looked_at() -> None:
     row, every = work.rows[700], np.empty_like(work.blocks)
     every[:] = row.T[None, :, :, None]  # whatever is looked at is found
     count, found = every.shape[0] * kernels.LANES, np.empty(1, np.int64)
-    kernels.near(
+    kernels.find_near(
         row[None],
         every,
         work.middles,
@@ -211,7 +211,7 @@ def test_what_fails_in_a_block_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(blocks, "block", broken)
     with pytest.raises(MemoryError, match="no room"):
-        build(made(1500), LIMIT)
+        build_graph(made(1500), LIMIT)
 
 
 @pytest.mark.filterwarnings("ignore")  # of Dask, about its own parts
@@ -219,7 +219,7 @@ def test_a_cluster_makes_the_same_edges(tmp_path: Path) -> None:
     distributed = pytest.importorskip("distributed", reason="needs the extra 'cluster' (Dask)")
     states = made(3000)
     keys = key_states(states)
-    whole = build(states, LIMIT, keys, most=40)
+    whole = build_graph(states, LIMIT, keys, most=40)
     told: list[tuple[int, int]] = []
     with (
         distributed.LocalCluster(
@@ -234,7 +234,7 @@ def test_a_cluster_makes_the_same_edges(tmp_path: Path) -> None:
         distributed.Client(cluster) as client,
     ):
         same(
-            build(
+            build_graph(
                 states,
                 LIMIT,
                 keys,
@@ -246,11 +246,13 @@ def test_a_cluster_makes_the_same_edges(tmp_path: Path) -> None:
         )
         assert told[-1] == (len(keys), len(keys))
         same(
-            build(states, LIMIT, keys, most=40, makers=BlockMakers(folder=tmp_path / "kept", cluster=client)),
+            build_graph(
+                states, LIMIT, keys, most=40, makers=BlockMakers(folder=tmp_path / "kept", cluster=client)
+            ),
             whole,
         )
         with pytest.raises(SynthesisError, match="cancelled"):
-            build(states, LIMIT, keys, makers=BlockMakers(cluster=client), cancelled=lambda: True)
+            build_graph(states, LIMIT, keys, makers=BlockMakers(cluster=client), cancelled=lambda: True)
     kept = files(tmp_path / "kept")
-    same(build(states, LIMIT, keys, most=40, makers=BlockMakers(folder=tmp_path / "kept")), whole)
+    same(build_graph(states, LIMIT, keys, most=40, makers=BlockMakers(folder=tmp_path / "kept")), whole)
     assert files(tmp_path / "kept") == kept, "a cluster's blocks are this machine's"

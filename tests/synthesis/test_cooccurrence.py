@@ -11,12 +11,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.formats.clips import read_clips
+from metagraph.formats.clips import read_clip_file
 from metagraph.graph.conversation.model import Segment
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
-from metagraph.synthesis.cooccurrence import _matches, activation, movement, speeds, table, wilson, windows
+from metagraph.synthesis.cooccurrence import (
+    _matches,
+    activation,
+    count_cooccurrence,
+    movement,
+    movement_windows,
+    speeds,
+    wilson,
+)
 
 CLIPS = Path(__file__).resolve().parents[2] / "sample_clips" / "clips"
 FPS = 30.0
@@ -24,7 +32,7 @@ FPS = 30.0
 
 @pytest.fixture(scope="module")
 def base() -> Clip:
-    return read_clips(CLIPS / "hands_at_sides__stance.glb")[0]
+    return read_clip_file(CLIPS / "hands_at_sides__stance.glb")[0]
 
 
 def moving(
@@ -71,7 +79,7 @@ def test_a_movement_is_from_the_first_to_the_last_frame_over_the_windows_thresho
 
 def test_windows_are_twice_as_long_and_trimmed_at_neighbours() -> None:
     segments = [Segment("clause", 1.0, 2.0), Segment("clause", 2.4, 3.4), Segment("clause", 8.0, 9.0)]
-    assert windows(segments, 9.2) == [
+    assert movement_windows(segments, 9.2) == [
         (pytest.approx(0.5), pytest.approx(2.2)),
         (pytest.approx(2.2), pytest.approx(3.9)),
         (pytest.approx(7.5), pytest.approx(9.2)),
@@ -84,15 +92,15 @@ def test_a_window_holds_its_segment_where_none_overlap(spans: list[tuple[float, 
     for gap, length in spans:
         segments.append(Segment("clause", at + gap, at + gap + length))
         at += gap + length
-    for s, (low, high) in zip(segments, windows(segments, at + 1), strict=True):
+    for s, (low, high) in zip(segments, movement_windows(segments, at + 1), strict=True):
         assert low <= s.start + 1e-9 and high >= s.end - 1e-9
 
 
 def test_windows_are_trimmed_at_neighbours_of_any_kind() -> None:
     clause, response = Segment("clause", 1.0, 2.0), Segment("response", 2.2, 2.6)
-    assert windows([clause], 9.0) == [(0.5, 2.5)]
-    assert windows([clause], 9.0, [clause, response]) == [(0.5, pytest.approx(2.1))]
-    assert windows([response], 9.0, [clause, response]) == [(pytest.approx(2.1), pytest.approx(2.8))]
+    assert movement_windows([clause], 9.0) == [(0.5, 2.5)]
+    assert movement_windows([clause], 9.0, [clause, response]) == [(0.5, pytest.approx(2.1))]
+    assert movement_windows([response], 9.0, [clause, response]) == [(pytest.approx(2.1), pytest.approx(2.8))]
 
 
 def test_a_movement_that_spans_two_clauses_counts_once(base: Clip) -> None:
@@ -141,7 +149,7 @@ def test_a_planted_coupling_is_found_and_chance_is_not(base: Clip) -> None:
         base, 120, [(s.start, s.end) for s, w in zip(clauses, with_hand, strict=True) if w],
         [(r.start, r.end + 0.3) for r, w in zip(responses, nodded, strict=True) if w],
     )  # fmt: skip
-    rows = {r.hypothesis: r for r in table([take], [[*clauses, *responses]], chances=40)}
+    rows = {r.hypothesis: r for r in count_cooccurrence([take], [[*clauses, *responses]], chances=40)}
     right, left, nod = (
         rows[n] for n in ("clause with the right hand", "clause with the left hand", "response with a nod")
     )
@@ -155,7 +163,7 @@ def test_a_planted_coupling_is_found_and_chance_is_not(base: Clip) -> None:
 
 def test_takes_and_speech_must_be_as_many(base: Clip) -> None:
     with pytest.raises(ValueError, match="1 takes, but speech for 0"):
-        table([base], [])
+        count_cooccurrence([base], [])
 
 
 def test_the_interval_of_a_share_is_wilsons() -> None:

@@ -8,12 +8,12 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from metagraph.generation.poses import rig_of
+from metagraph.generation.poses import find_rig
 from metagraph.graph.conversation.model import Segment
 from metagraph.motion import rotation
-from metagraph.synthesis.cut import candidates, moments, pace, smoothed, uncut
+from metagraph.synthesis.cut import candidates, moments, pace, smooth_speed, uncut
 from metagraph.synthesis.graph import threshold
-from metagraph.synthesis.states import SynthesisError, states_of, terms_of
+from metagraph.synthesis.states import SynthesisError, read_states, terms_of
 from tests.synthesis.talking import talking
 
 SAID = [Segment("clause", s, s + 1.0, s + 0.4) for s in (2.0, 6.0, 10.0, 14.5)]
@@ -30,7 +30,7 @@ def test_each_stroke_becomes_a_clip_that_begins_and_ends_at_rest() -> None:
 
 
 def test_from_every_end_there_is_a_transition_to_every_beginning() -> None:
-    states = states_of([TAKE])
+    states = read_states([TAKE])
     for limit in (0.1, 0.2):
         found = candidates(TAKE, limit)
         terms = terms_of(states, np.array([round(t * 30) for c in found for t in c[:2]]))
@@ -51,12 +51,12 @@ def test_lengths_are_kept_and_odd_ones_refused() -> None:
 
 
 def test_without_a_limit_that_of_the_take_is_taken() -> None:
-    states = states_of([TAKE])
+    states = read_states([TAKE])
     assert candidates(TAKE) == candidates(TAKE, threshold(states).limit) == candidates(TAKE, states=states)
 
 
 def test_moments_of_rest_are_slow_and_apart() -> None:
-    states = states_of([TAKE])
+    states = read_states([TAKE])
     found = moments(states)
     speed = np.linalg.norm(states.velocities, axis=-1).max(-1)
     assert (np.diff(found) >= 8).all() and speed[found].max() < 0.3 * speed.max()
@@ -65,7 +65,7 @@ def test_moments_of_rest_are_slow_and_apart() -> None:
 def trembling(by: float):
     """The take, each joint of the upper body shaken by so many radians in each frame."""
     chance, shaken = np.random.default_rng(1), np.array(TAKE.rotations, float)
-    for joint in rig_of(TAKE.skeleton).joints:
+    for joint in find_rig(TAKE.skeleton).joints:
         turns = chance.normal(0, by, (TAKE.frames, 3))
         shaken[:, joint] = rotation.multiply(shaken[:, joint], rotation.exp(turns))
     return replace(TAKE, rotations=shaken.astype(np.float32))
@@ -79,7 +79,7 @@ def test_where_resting_trembles_a_little_each_stroke_becomes_a_clip_all_the_same
 
 def test_what_happens_in_a_clip_is_more_than_resting() -> None:
     take = trembling(0.003)
-    speeds = smoothed(states_of([take]))
+    speeds = smooth_speed(read_states([take]))
     moves = pace(speeds).moves
     assert 0.2 < moves < speeds.max()
     for a, b, _ in candidates(take):

@@ -12,13 +12,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.synthesis.graph import MotionGraph, Threshold, build, largest, threshold
+from metagraph.synthesis.graph import MotionGraph, Threshold, build_graph, largest, threshold
 from metagraph.synthesis.states import (
     States,
     SynthesisError,
     costs_apart,
     key_states,
-    pairs_apart,
+    list_pairs_apart,
     with_velocity,
 )
 
@@ -77,7 +77,7 @@ def test_a_cost_is_the_sum_of_distances_of_places_and_velocities() -> None:
 
 
 def test_pairs_stay_within_their_take() -> None:
-    near, later = pairs_apart(made(30, takes=3), 4)
+    near, later = list_pairs_apart(made(30, takes=3), 4)
     assert len(near) == 3 * (10 - 4) and all(a // 10 == b // 10 for a, b in zip(near, later, strict=True))
 
 
@@ -88,7 +88,7 @@ def test_the_edges_are_those_that_counting_one_by_one_finds(
 ) -> None:
     states = made(max(frames, 3 * takes), joints, takes, seed)
     keys = key_states(states, 0.4)
-    graph = build(states, of_limit(limit), keys, connected=False)
+    graph = build_graph(states, of_limit(limit), keys, connected=False)
     first = set(states.starts[:-1].tolist())
     wanted = {
         (int(i), int(j)): c
@@ -109,8 +109,8 @@ def test_joints_without_weight_do_not_count() -> None:
         states, places=states.places[:, :3], velocities=states.velocities[:, :3], weights=states.weights[:3]
     )
     keys = key_states(states)
-    assert edges(build(light, of_limit(0.4), keys, connected=False)) == edges(
-        build(few, of_limit(0.4), keys, connected=False)
+    assert edges(build_graph(light, of_limit(0.4), keys, connected=False)) == edges(
+        build_graph(few, of_limit(0.4), keys, connected=False)
     )
 
 
@@ -176,15 +176,15 @@ def test_what_is_kept_is_the_largest_set_in_which_every_state_reaches_every_othe
 ) -> None:
     states = made(60, 3, 3, seed)
     keys = key_states(states, 0.5)
-    whole = build(states, of_limit(limit), keys, connected=False)
+    whole = build_graph(states, of_limit(limit), keys, connected=False)
     out = [reaches(whole, s) for s in range(60)]
     sets = {frozenset(t for t in out[s] if s in out[t]) for s in range(60)}
     largest = max(len(s) for s in sets)
     if largest < 2:
         with pytest.raises(SynthesisError, match="the level"):
-            build(states, of_limit(limit), keys)
+            build_graph(states, of_limit(limit), keys)
         return
-    kept = build(states, of_limit(limit), keys)
+    kept = build_graph(states, of_limit(limit), keys)
     assert frozenset(np.flatnonzero(kept.kept).tolist()) in {s for s in sets if len(s) == largest}
     assert all(kept.kept[s] and kept.kept[t] for s, t in edges(kept))
 
@@ -192,7 +192,7 @@ def test_what_is_kept_is_the_largest_set_in_which_every_state_reaches_every_othe
 @pytest.mark.parametrize("limit", [0.6, 2.0])  # of the first, less than half is kept
 def test_what_is_cut_from_a_graph_leaves_the_graph_as_it_was_but_where_it_is_spent(limit: float) -> None:
     states = made(900, 4, 6)
-    whole = build(states, of_limit(limit), key_states(states, 0.3), connected=False)
+    whole = build_graph(states, of_limit(limit), key_states(states, 0.3), connected=False)
     before = edges(whole)
     kept = largest(whole)
     assert edges(whole) == before and len(kept.targets) < len(whole.targets)
@@ -203,8 +203,8 @@ def test_what_is_cut_from_a_graph_leaves_the_graph_as_it_was_but_where_it_is_spe
 def test_only_the_cheapest_of_each_state_are_kept_when_memory_is_short() -> None:
     states = made(200)
     keys = key_states(states, 0.5)
-    whole = edges(build(states, of_limit(0.8), keys, connected=False))
-    few = edges(build(states, of_limit(0.8), keys, most=4, connected=False))
+    whole = edges(build_graph(states, of_limit(0.8), keys, connected=False))
+    few = edges(build_graph(states, of_limit(0.8), keys, most=4, connected=False))
     for state in {s for s, _ in whole}:
         mine = sorted(c for (s, _), c in whole.items() if s == state)[:4]
         assert sorted(c for (s, _), c in few.items() if s == state) == pytest.approx(mine)
@@ -213,10 +213,10 @@ def test_only_the_cheapest_of_each_state_are_kept_when_memory_is_short() -> None
 def test_it_can_be_cancelled_and_tells_how_far_it_is() -> None:
     states = made(200)
     seen: list[tuple[int, int]] = []
-    build(states, of_limit(0.8), progress=lambda n, total: seen.append((n, total)))
+    build_graph(states, of_limit(0.8), progress=lambda n, total: seen.append((n, total)))
     assert seen[-1][0] == seen[-1][1]
     with pytest.raises(SynthesisError, match="cancelled"):
-        build(states, of_limit(0.8), cancelled=lambda: True)
+        build_graph(states, of_limit(0.8), cancelled=lambda: True)
 
 
 def test_components_are_those_an_independent_library_finds() -> None:
@@ -226,7 +226,7 @@ def test_components_are_those_an_independent_library_finds() -> None:
 
     states = made(900, 4, 6)
     keys = key_states(states, 0.3)
-    whole = build(states, of_limit(0.5), keys, connected=False)
+    whole = build_graph(states, of_limit(0.5), keys, connected=False)
     sources = np.repeat(np.arange(900), np.diff(whole.starts))
     follows = np.flatnonzero(~states.last)
     rows, columns = np.concatenate([sources, follows]), np.concatenate([whole.targets, follows + 1])
@@ -234,4 +234,4 @@ def test_components_are_those_an_independent_library_finds() -> None:
         csr_matrix((np.ones(len(rows)), (rows, columns)), shape=(900, 900)), True, "strong"
     )
     largest = np.bincount(labels).argmax()
-    assert (build(states, of_limit(0.5), keys).kept == (labels == largest)).all()
+    assert (build_graph(states, of_limit(0.5), keys).kept == (labels == largest)).all()

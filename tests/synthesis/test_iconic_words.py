@@ -6,22 +6,22 @@ import numpy as np
 import pytest
 
 from metagraph.graph.conversation.model import Word
-from metagraph.synthesis.constraints import HeardStates, wanted
+from metagraph.synthesis.constraints import HeardStates, list_wanted
 from metagraph.synthesis.iconic_words import (
     AROUND,
     WordWish,
-    only_words,
-    spans,
+    describe_words,
+    find_phrase_spans,
+    find_words_shown,
+    only_states_of_words,
     unsaid,
     word_cost,
     word_places,
     word_wish,
-    words_shown,
-    words_told,
 )
 from metagraph.synthesis.prosody_costs import SpokenTake
-from metagraph.synthesis.search.frame_costs import together
-from metagraph.synthesis.search.relaxing import Constraints, answer
+from metagraph.synthesis.search.frame_costs import join_costs
+from metagraph.synthesis.search.relaxing import Constraints, answer_speech
 from metagraph.synthesis.search.ruled_search import FREE, find_path
 from metagraph.synthesis.soft_constraints import SoftConstraints
 from metagraph.synthesis.states import SynthesisError
@@ -43,13 +43,13 @@ def test_wishes_are_written_as_people_write_lists() -> None:
 
 def test_words_are_found_however_they_are_written() -> None:
     said = words(("Very", 0.0, 0.2), ("BIG,", 0.2, 0.5), ("big-ish", 0.6, 1.0), ("bigger", 1, 2)).words
-    assert spans(said, ["big"]) == [(0.2, 0.5, "BIG,")]
-    assert spans(said, ["big", "very big"]) == [(0.0, 0.5, "Very BIG,")]
-    assert spans(words(("とても", 0, 1), ("大き", 1, 1.5), ("い", 1.5, 2)).words, ["大きい"]) == [
+    assert find_phrase_spans(said, ["big"]) == [(0.2, 0.5, "BIG,")]
+    assert find_phrase_spans(said, ["big", "very big"]) == [(0.0, 0.5, "Very BIG,")]
+    assert find_phrase_spans(words(("とても", 0, 1), ("大き", 1, 1.5), ("い", 1.5, 2)).words, ["大きい"]) == [
         (1.0, 2.0, "大き い")
     ]
-    assert spans(words(("größer", 0, 1), ("बड़ा", 1, 2)).words, ["GRÖSSER", "बड़ा"]) != []
-    assert spans((), ["big"]) == [] and spans(said, []) == []
+    assert find_phrase_spans(words(("größer", 0, 1), ("बड़ा", 1, 2)).words, ["GRÖSSER", "बड़ा"]) != []
+    assert find_phrase_spans((), ["big"]) == [] and find_phrase_spans(said, []) == []
 
 
 def test_motion_comes_from_around_the_word_in_the_take() -> None:
@@ -58,19 +58,19 @@ def test_motion_comes_from_around_the_word_in_the_take() -> None:
     new = words(("a", 0.0, 0.3), ("big", 0.6, 1.0))
     places = word_places([word_wish("big=huge")], graph.states, takes, new, 0.0, 2.0)
     assert [(p.text, p.known, p.frames) for p in places] == [("big", True, (18 - AROUND, 30 + AROUND))]
-    charged = together([word_cost(places, 60, 2.0, 1.0)])
+    charged = join_costs([word_cost(places, 60, 2.0, 1.0)])
     anything = HeardStates(np.ones(300, np.uint8), np.zeros(300, bool))
     for search in ("exact", "greedy"):
         path = find_path(
             graph,
             anything,
-            wanted([], 2.0),
+            list_wanted([], 2.0),
             search,  # type: ignore[arg-type]
             FREE,
             charged=charged,
         )
         assert charged is not None and charged.paid(path.states) == {"words": 0.0}
-        (shown,) = words_shown(places, graph.states, path.states)
+        (shown,) = find_words_shown(places, graph.states, path.states)
         assert shown.met and shown.take == 1 and shown.there == pytest.approx(2.2, abs=0.15)
     elsewhere = np.arange(60)
     assert charged is not None and charged.paid(elsewhere)["words"] == pytest.approx(2.0)
@@ -83,16 +83,16 @@ def test_words_beyond_the_window_and_words_no_take_says_want_nothing() -> None:
     wishes = [word_wish("big"), word_wish("round")]
     places = word_places(wishes, graph.states, [words(("round", 1.0, 1.3))], new, 0.0, 2.0)
     assert [(p.text, p.known) for p in places] == [("big", False), ("round", True)]
-    assert set(only_words(places)) == set(range(30 - AROUND, 39 + AROUND))
-    told = words_told(words_shown(places, graph.states, np.arange(60)))
+    assert set(only_states_of_words(places)) == set(range(30 - AROUND, 39 + AROUND))
+    told = describe_words(find_words_shown(places, graph.states, np.arange(60)))
     assert told.startswith("1 of 2 words ") and "'big'" in told
-    assert word_cost(places[:1], 60, 2.0, 1.0) is None and words_told(()) == ""
+    assert word_cost(places[:1], 60, 2.0, 1.0) is None and describe_words(()) == ""
     begins = word_places([word_wish("big")], graph.states, [new], new, 0.3, 1.0)
     assert [p.frames for p in begins] == [(0, 3 + AROUND)]
     assert unsaid([*wishes, word_wish("ball, cube")], new, 0.0, 2.0) == ("ball",)
     assert unsaid(wishes, new, 4.0, 2.0) == ("round",)
-    assert words_told((), ("ball",)) == "not said now: 'ball'"
-    assert words_told((), [str(n) for n in range(7)]).endswith("'4' and 2 more")
+    assert describe_words((), ("ball",)) == "not said now: 'ball'"
+    assert describe_words((), [str(n) for n in range(7)]).endswith("'4' and 2 more")
     close = words(("big", 1.0, 1.2), ("round", 1.3, 1.5), ("round", 1.5, 1.7))
     beside = word_places(wishes, graph.states, [new], close, 0.0, 2.0)
     assert [p.frames for p in beside] == [(30 - AROUND, 38), (38, 45), (45, 51 + AROUND)]
@@ -111,10 +111,10 @@ def test_words_that_must_be_met_are_and_are_given_up_last_but_one() -> None:
 
     def found(new: SpokenTake, hard: bool) -> tuple[bool, tuple[str, ...]]:
         places = word_places([word_wish("big=huge")], graph.states, takes, new, 0.0, 2.0)
-        charged = together([word_cost(places, 60, 2.0, 1.0)])
+        charged = join_costs([word_cost(places, 60, 2.0, 1.0)])
         soft = SoftConstraints(charged, places, hard)
-        made = answer(graph, anything, [], 2.0, Constraints(rules=FREE), soft=soft)
-        (shown,) = words_shown(places, graph.states, made.path.states)
+        made = answer_speech(graph, anything, [], 2.0, Constraints(rules=FREE), soft=soft)
+        (shown,) = find_words_shown(places, graph.states, made.path.states)
         return shown.met, made.given_up
 
     once = words(("big", 0.6, 1.0))
@@ -124,6 +124,6 @@ def test_words_that_must_be_met_are_and_are_given_up_last_but_one() -> None:
     late = words(("big", 1.2, 1.6))
     places = word_places([word_wish("big=small")], small.states, takes, late, 0.0, 4.0)
     soft = SoftConstraints(None, places, True)
-    made = answer(small, anything, [], 4.0, Constraints(use=(), rules=FREE), soft=soft)
+    made = answer_speech(small, anything, [], 4.0, Constraints(use=(), rules=FREE), soft=soft)
     (given_up,) = made.given_up
     assert "words" in given_up and given_up in made.words(), "no take goes on so long after the word"

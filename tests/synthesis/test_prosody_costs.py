@@ -15,7 +15,7 @@ from metagraph.synthesis.prosody_costs import (
     of_states,
     prosody_cost,
     prosody_match,
-    standardised,
+    standardise_prosody,
 )
 from metagraph.synthesis.states import SynthesisError
 from tests.synthesis.test_search import graph_of
@@ -33,22 +33,22 @@ def said(loudness: list[float], kinds: str = "", gain: float = 0.0) -> SpokenTak
 
 
 def test_a_quiet_recording_is_not_a_quiet_voice() -> None:
-    near, far = standardised([said([-20, -23, -26]), said([-20, -23, -26], gain=-30)], "loudness")
+    near, far = standardise_prosody([said([-20, -23, -26]), said([-20, -23, -26], gain=-30)], "loudness")
     assert near == pytest.approx(far) and near[0] > 1 and near[1] == pytest.approx(0)
     both = np.concatenate([near, far])
     assert both.mean() == pytest.approx(0, abs=1e-9) and both.std() == pytest.approx(1)
 
 
 def test_clauses_are_compared_with_clauses_and_responses_with_responses() -> None:
-    (found,) = standardised([said([-20, -22, -24, -40, -42, -44, -10], "cccrrrh")], "loudness")
+    (found,) = standardise_prosody([said([-20, -22, -24, -40, -42, -44, -10], "cccrrrh")], "loudness")
     assert found[:3] == pytest.approx(found[3:6]) and np.isnan(found[6])
 
 
 def test_a_recording_of_few_segments_has_the_mean_of_all() -> None:
-    one, few = standardised([said([-20, -24, -28]), said([-28])], "loudness")
+    one, few = standardise_prosody([said([-20, -24, -28]), said([-28])], "loudness")
     assert few[0] < -0.5 and one[0] == pytest.approx(-one[2])
-    assert standardised([said([-20])], "loudness")[0].tolist() == [0.0]
-    assert np.isnan(standardised([SpokenTake(said([-20]).segments)], "loudness")[0]).all()
+    assert standardise_prosody([said([-20])], "loudness")[0].tolist() == [0.0]
+    assert np.isnan(standardise_prosody([SpokenTake(said([-20]).segments)], "loudness")[0]).all()
 
 
 def test_what_is_off_costs_by_the_second_and_what_is_unknown_as_much_as_chance() -> None:

@@ -11,19 +11,19 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from metagraph.formats.clips import read_clips
+from metagraph.formats.clips import read_clip_file
 from metagraph.graph.conversation.model import Segment
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
 from metagraph.synthesis.assemble import assemble
-from metagraph.synthesis.constraints import HeardStates, WantedSegment, heard, wanted
+from metagraph.synthesis.constraints import HeardStates, WantedSegment, find_heard_at, list_wanted
 from metagraph.synthesis.graph import BLEND
-from metagraph.synthesis.retiming import keeps_to, retimable, retime, timing_cost
+from metagraph.synthesis.retiming import keeps_constraints, retimable, retime, timing_cost
 from metagraph.synthesis.search.path import Path
-from metagraph.synthesis.search.relaxing import Constraints, Searching, answer, misses
+from metagraph.synthesis.search.relaxing import Constraints, Searching, answer_speech, misses
 from metagraph.synthesis.soft_constraints import SoftConstraints, SoftWish
-from metagraph.synthesis.standing_feet import standing
-from metagraph.synthesis.states import SynthesisError, states_of
+from metagraph.synthesis.standing_feet import find_standing
+from metagraph.synthesis.states import SynthesisError, read_states
 from tests.synthesis.talking import speech, talking
 from tests.synthesis.test_search import graph_of
 
@@ -38,7 +38,7 @@ def clause(start: float, peak: float, end: float) -> Segment:
 def made(take: list[Segment], new: list[Segment], seconds: float = 5.0) -> tuple[HeardStates, WantedSegment]:
     """What is heard in a take, and what is wanted of it."""
     graph = graph_of(round(30 * seconds), [0, round(30 * seconds)], {})
-    return heard(graph.states, [take]), wanted(new, seconds)
+    return find_heard_at(graph.states, [take]), list_wanted(new, seconds)
 
 
 def test_what_is_early_and_late_comes_when_it_is_heard() -> None:
@@ -59,7 +59,7 @@ def test_where_all_is_in_time_or_nothing_may_change_nothing_is_retimed() -> None
     spoken, want = made([clause(1.6, 2.1, 3.1)], same)
     assert retime(np.arange(150), NONE, spoken, want, np.zeros(150, bool)) is None
     assert retime(np.arange(150), NONE, spoken, want, np.ones(150, bool), 0.0) is None
-    assert retime(np.arange(150), NONE, spoken, wanted([], 5.0), np.ones(150, bool)) is None
+    assert retime(np.arange(150), NONE, spoken, list_wanted([], 5.0), np.ones(150, bool)) is None
     for most in (-0.1, 0.51):
         with pytest.raises(SynthesisError, match="0 to 50%"):
             retime(np.arange(150), NONE, spoken, want, np.ones(150, bool), most)
@@ -109,38 +109,38 @@ def test_strokes_and_steps_keep_their_speed() -> None:
     walks = Clip("walk", take.skeleton, 30.0, take.rotations, moved, take.translated)
     assert not retimable([walks]).any(), "whose feet go does not stand"
     assert len(retimable([take, talking("slow", said, 7.0, fps=24.0)])) == len(
-        states_of([take, talking("slow", said, 7.0, fps=24.0)])
+        read_states([take, talking("slow", said, 7.0, fps=24.0)])
     )
 
 
 def test_a_path_is_found_where_there_is_none_without() -> None:
     graph = graph_of(150, [0, 150], {})
-    spoken = heard(graph.states, [[clause(1.65, 2.1, 3.05)]])
+    spoken = find_heard_at(graph.states, [[clause(1.65, 2.1, 3.05)]])
     new = [clause(1.5, 2.1, 3.2)]
     soft = SoftConstraints(free=np.ones(150, bool), most=0.15)
     with pytest.raises(SynthesisError):
-        answer(graph, spoken, new, 5.0, searching=Searching(strict=True))
-    without = answer(graph, spoken, new, 5.0)
+        answer_speech(graph, spoken, new, 5.0, searching=Searching(strict=True))
+    without = answer_speech(graph, spoken, new, 5.0)
     assert without.given_up == ("exactness, 0.2 s instead",) and without.misses
     for strict in (True, False):
-        found = answer(graph, spoken, new, 5.0, searching=Searching(strict=strict), soft=soft)
+        found = answer_speech(graph, spoken, new, 5.0, searching=Searching(strict=strict), soft=soft)
         assert found.retiming is not None and found.given_up == () and found.misses == ()
         assert found.kept == Constraints()
         assert misses(spoken, found.path, new, Constraints(), found.retiming) == ()
         assert misses(spoken, found.path, new, Constraints()), "it is the speed that does it"
     with pytest.raises(SynthesisError):  # too far for what speed can do
         slow = SoftConstraints(free=soft.free, most=0.02)
-        answer(graph, spoken, new, 5.0, searching=Searching(strict=True), soft=slow)
+        answer_speech(graph, spoken, new, 5.0, searching=Searching(strict=True), soft=slow)
 
 
 def test_what_a_path_keeps_to_is_not_lost_by_retiming() -> None:
     spoken, want = made([clause(1.5, 2.1, 3.2)], [clause(1.5, 2.1, 3.2)])
     way = np.arange(150)
-    assert keeps_to(way, np.arange(150.0), spoken, want)
+    assert keeps_constraints(way, np.arange(150.0), spoken, want)
     late = np.clip(np.arange(150.0) - 8, 0, 149)
-    assert not keeps_to(way, late, spoken, want)
+    assert not keeps_constraints(way, late, spoken, want)
     silent = graph_of(150, [0, 150], {})
-    assert not keeps_to(way, np.arange(150.0), heard(silent.states, [[]]), want)
+    assert not keeps_constraints(way, np.arange(150.0), find_heard_at(silent.states, [[]]), want)
 
 
 def test_events_in_time_cost_nothing_and_late_ones_their_square() -> None:
@@ -148,20 +148,20 @@ def test_events_in_time_cost_nothing_and_late_ones_their_square() -> None:
     cost = timing_cost(spoken, want, 2.0, 0.1)
     assert cost is not None
     assert cost.paid(np.arange(150)) == pytest.approx(0.2)  # one event, three frames of three late
-    assert timing_cost(spoken, wanted([], 5.0), 2.0) is None
-    assert timing_cost(spoken, wanted([clause(1.5, 2.1, 3.2)], 5.0, 0.0), 2.0) is None
+    assert timing_cost(spoken, list_wanted([], 5.0), 2.0) is None
+    assert timing_cost(spoken, list_wanted([clause(1.5, 2.1, 3.2)], 5.0, 0.0), 2.0) is None
 
 
 def test_retimed_motion_has_its_stroke_at_the_stress_and_its_feet_where_they_stood() -> None:
     said = [clause(1.0, 1.6, 2.4), clause(4.1, 4.6, 5.3)]
     take = talking("take", said, 7.0)
     takes = [take, talking("other", speech(7, 3), 7.0, 3)]
-    states = states_of(takes)
-    spoken = heard(states, [said, speech(7, 3)])
+    states = read_states(takes)
+    spoken = find_heard_at(states, [said, speech(7, 3)])
     way = np.concatenate([np.arange(150), np.arange(210 + 150, 210 + 210)])
     jumps = np.array([150])
     new = [clause(1.1, 1.7, 2.4), clause(4.0, 4.5, 5.3)]
-    found = retime(way, jumps, spoken, wanted(new, 7.0, 0.1), retimable(takes), reach=3)
+    found = retime(way, jumps, spoken, list_wanted(new, 7.0, 0.1), retimable(takes), reach=3)
     assert found is not None and found.off < found.was
     plain, moved = (assemble(states, takes, Path(way, 0.0, jumps), retiming=r) for r in (None, found))
     assert plain.frames == moved.frames == 210 and moved.fps == 30.0
@@ -182,16 +182,18 @@ def test_retimed_motion_has_its_stroke_at_the_stress_and_its_feet_where_they_sto
 
 def test_feet_of_other_studios_takes_stay_where_they_stood_when_they_are_retimed(shared_data: Folder) -> None:
     names = ("bow_active", "bow_angry")
-    takes = [read_clips(shared_data / "bandai-namco-1" / f"dataset-1_{name}_001.bvh")[0] for name in names]
-    states = states_of(takes)
+    takes = [
+        read_clip_file(shared_data / "bandai-namco-1" / f"dataset-1_{name}_001.bvh")[0] for name in names
+    ]
+    states = read_states(takes)
     jump, there = 110, int(states.starts[1])
     way = np.concatenate([np.arange(jump), there + np.arange(10, int(len(states) - there))])
     said: list[list[Segment]] = [[clause(1.9, 2.1, 2.5)], []]  # while the bow is held
-    wants = wanted([clause(1.97, 2.17, 2.57)], len(way) / 30)
-    found = retime(way, np.array([jump]), heard(states, said), wants, retimable(takes), 0.3)
+    wants = list_wanted([clause(1.97, 2.17, 2.57)], len(way) / 30)
+    found = retime(way, np.array([jump]), find_heard_at(states, said), wants, retimable(takes), 0.3)
     assert found is not None and found.off < found.was
     made = assemble(states, takes, Path(way, 0.0, np.array([jump])), retiming=found)
-    roles, standing_there = find_roles(made.skeleton), standing(made.skeleton, made.poses())
+    roles, standing_there = find_roles(made.skeleton), find_standing(made.skeleton, made.poses())
     for side, there_it_stands in standing_there.items():
         place = made.skeleton.globals(made.poses())[1][:, roles[f"{side}_foot"]][:, [0, 2]]
         both = there_it_stands[1:] & there_it_stands[:-1]

@@ -20,13 +20,13 @@ from metagraph.synthesis.constraints import (
     STRESS,
     HeardStates,
     WantedSegment,
-    changes,
-    heard,
-    wanted,
+    find_change_states,
+    find_heard_at,
+    list_wanted,
 )
 from metagraph.synthesis.graph import MotionGraph, Threshold
-from metagraph.synthesis.search.exact_search import ExactSearch, best
-from metagraph.synthesis.search.frame_costs import FrameCost, FrameCosts, together
+from metagraph.synthesis.search.exact_search import ExactSearch, find_best_path
+from metagraph.synthesis.search.frame_costs import FrameCost, FrameCosts, join_costs
 from metagraph.synthesis.search.greedy_search import greedy
 from metagraph.synthesis.search.path import Path
 from metagraph.synthesis.states import States, SynthesisError
@@ -164,13 +164,13 @@ def test_the_best_path_is_the_cheapest_of_all_and_is_found_whenever_there_is_one
     want = WantedSegment(np.array(allowed, np.uint8), window, events, np.array(barred, np.uint8), only)
     run = data.draw(st.integers(1, 5))
     kinds = data.draw(st.sampled_from(["", "a", "ab"]))
-    charged = together([data.draw(costs_of_frames(kind, frames, length)) for kind in kinds])
+    charged = join_costs([data.draw(costs_of_frames(kind, frames, length)) for kind in kinds])
     wanted_cost = cheapest(graph, sound, want, run, charged)
     if wanted_cost is None:
         with pytest.raises(SynthesisError, match="no motion"):
-            best(graph, sound, want, run=run, charged=charged)
+            find_best_path(graph, sound, want, run=run, charged=charged)
         return
-    path = best(graph, sound, want, run=run, charged=charged)
+    path = find_best_path(graph, sound, want, run=run, charged=charged)
     check(graph, sound, want, path, run, charged)
     assert path.cost == pytest.approx(wanted_cost, abs=1e-4)
     try:
@@ -182,7 +182,7 @@ def test_the_best_path_is_the_cheapest_of_all_and_is_found_whenever_there_is_one
 
 
 def test_starts_ends_and_stresses_may_be_a_tenth_of_a_second_off() -> None:
-    want = wanted([Segment("clause", 1.0, 2.0, 1.5)], 3.0)
+    want = list_wanted([Segment("clause", 1.0, 2.0, 1.5)], 3.0)
     assert len(want) == 90
     either = np.flatnonzero(want.allowed == (IDLE | CLAUSE))
     assert either.tolist() == [*range(27, 33), *range(57, 63)]
@@ -192,42 +192,42 @@ def test_starts_ends_and_stresses_may_be_a_tenth_of_a_second_off() -> None:
     assert np.flatnonzero(edges).tolist() == [*range(27, 34), *range(57, 64)]
     assert ((want.barred & STRESS == 0) == stress).all()
     assert ((want.barred & EDGE == 0) == edges).all()
-    loose = wanted([Segment("clause", 1.0, 2.0, 1.5)], 3.0, edges=False)
+    loose = list_wanted([Segment("clause", 1.0, 2.0, 1.5)], 3.0, edges=False)
     assert np.flatnonzero(loose.window >= 0).tolist() == list(range(42, 49)) and not loose.barred.any()
-    exact = wanted([Segment("clause", 1.0, 2.0, 1.5)], 3.0, tolerance=0)
+    exact = list_wanted([Segment("clause", 1.0, 2.0, 1.5)], 3.0, tolerance=0)
     assert (exact.allowed == CLAUSE).sum() == 30 and (exact.window >= 0).sum() == 3
 
 
 def test_a_kind_that_is_left_out_lets_anything_go() -> None:
     segments = [Segment("clause", 0.5, 1.0, 0.7), Segment("response", 1.5, 2.0)]
-    want = wanted(segments, 2.5, use=("idle", "clause"))
+    want = list_wanted(segments, 2.5, use=("idle", "clause"))
     assert (want.allowed[45:60] == ALL).all() and (want.window >= 0).any()
-    other = wanted(segments, 2.5, use=("idle", "response"))
+    other = list_wanted(segments, 2.5, use=("idle", "response"))
     assert set(np.flatnonzero(other.window >= 0).tolist()) == {*range(42, 49), *range(57, 64)}
     assert (other.events[other.window >= 0] == EDGE).all()
-    free = wanted(segments, 2.5, use=())
+    free = list_wanted(segments, 2.5, use=())
     assert (free.allowed == ALL).all() and not free.barred.any() and (free.window < 0).all()
 
 
 def test_what_was_heard_is_told_take_by_take() -> None:
     states = graph_of(60, [0, 30, 60], {}).states
-    sound = heard(states, [[Segment("clause", 0.2, 0.5, 0.3)], [Segment("response", 0.9, 5.0)]])
+    sound = find_heard_at(states, [[Segment("clause", 0.2, 0.5, 0.3)], [Segment("response", 0.9, 5.0)]])
     assert np.flatnonzero(sound.kinds == CLAUSE).tolist() == list(range(6, 15)) and np.flatnonzero(
         sound.peaks
     ).tolist() == [9]
     assert np.flatnonzero(sound.kinds == RESPONSE).tolist() == list(range(57, 60))
-    assert changes(states, [[Segment("clause", 0.2, 0.5, 0.3)], []]) == [6, 9, 15]
+    assert find_change_states(states, [[Segment("clause", 0.2, 0.5, 0.3)], []]) == [6, 9, 15]
     with pytest.raises(SynthesisError, match="2 takes have states, but 1"):
-        heard(states, [[]])
+        find_heard_at(states, [[]])
     with pytest.raises(SynthesisError, match="end after it starts"):
-        heard(states, [[Segment("clause", 1.0, 1.0)], []])
+        find_heard_at(states, [[Segment("clause", 1.0, 1.0)], []])
 
 
 def test_a_search_that_would_not_fit_in_memory_is_refused() -> None:
     graph = graph_of(40, [0, 40], {})
     want = WantedSegment(np.full(20_000_000, ALL, np.uint8), np.full(20_000_000, -1, np.int32))
     with pytest.raises(SynthesisError, match="greedy"):
-        best(graph, HeardStates(np.full(40, ALL, np.uint8), np.zeros(40, bool)), want)
+        find_best_path(graph, HeardStates(np.full(40, ALL, np.uint8), np.zeros(40, bool)), want)
 
 
 def test_the_best_path_is_the_same_whatever_bound_it_is_searched_within() -> None:
@@ -241,7 +241,7 @@ def test_the_best_path_is_the_same_whatever_bound_it_is_searched_within() -> Non
             chance.choice([IDLE, CLAUSE, ALL], 25).astype(np.uint8), np.full(25, -1, np.int32)
         )
         try:
-            path = best(graph, sound, want)
+            path = find_best_path(graph, sound, want)
         except SynthesisError:
             continue
         found += 1
@@ -269,7 +269,7 @@ def test_the_best_path_is_the_same_wherever_the_first_guess_leaves_somebody_out(
             chance.choice([IDLE, CLAUSE, ALL], 25).astype(np.uint8), np.repeat([-1, 0, -1, 1, -1], 5)
         )
         rows = chance.integers(0, 4, (3, 300)).astype(np.float32) / 16
-        costs = together([FrameCost("a", np.arange(25, dtype=np.int32) // 9, rows)]) if charged else None
+        costs = join_costs([FrameCost("a", np.arange(25, dtype=np.int32) // 9, rows)]) if charged else None
         paths = []
         for narrow, drawn, ordered in ((10**9, 8, 1), (2, 8, 16), (40, 0, 3), (90, 10**9, 10**9)):
             monkeypatch.setattr(f"{module}.NARROW", narrow)
@@ -282,7 +282,7 @@ def test_the_best_path_is_the_same_wherever_the_first_guess_leaves_somebody_out(
                 with suppress(SynthesisError):
                     paths += [search.within(bound) for bound in (20.0, 40.0)]
             with suppress(SynthesisError):
-                paths.append(best(graph, sound, want, run=run, charged=costs))
+                paths.append(find_best_path(graph, sound, want, run=run, charged=costs))
         found += len(paths) == 12
         assert len(paths) in (0, 12)
         for path in paths:
@@ -317,13 +317,13 @@ def test_the_best_path_is_the_same_from_whichever_side_jumps_are_looked_for_and_
             chance.choice([IDLE, CLAUSE, ALL], 25).astype(np.uint8), np.repeat([-1, 0, -1, 1, -1], 5)
         )
         rows = chance.integers(0, 4, (3, 400)).astype(np.float32) / 16
-        costs = together([FrameCost("a", np.arange(25, dtype=np.int32) // 9, rows)]) if charged else None
+        costs = join_costs([FrameCost("a", np.arange(25, dtype=np.int32) // 9, rows)]) if charged else None
         paths = []
         for drawn, half in ((0, 0.45), (10**9, 0.45), (0, 0.0), (10**9, 0.9), (8, 1.5)):
             monkeypatch.setattr(f"{module}_sweep.DRAWN", drawn)
             monkeypatch.setattr(f"{module}.HALF", half)
             try:
-                paths.append(best(graph, sound, want, run=1 + seed % 3, charged=costs))
+                paths.append(find_best_path(graph, sound, want, run=1 + seed % 3, charged=costs))
             except SynthesisError:
                 assert not paths
                 break
@@ -346,9 +346,9 @@ def test_a_second_search_goes_by_the_transitions_of_the_first_where_the_same_was
     ]
     for sound in (sounds[0], sounds[0], sounds[1], sounds[0]):
         fresh = graph_of(90, [0, 40, 90], dict(_links(graph)))
-        path = best(graph, sound, want)
+        path = find_best_path(graph, sound, want)
         check(graph, sound, want, path)
-        assert path.states.tolist() == best(fresh, sound, want).states.tolist()
+        assert path.states.tolist() == find_best_path(fresh, sound, want).states.tolist()
 
 
 def _links(graph: MotionGraph) -> list[tuple[tuple[int, int], float]]:
@@ -362,7 +362,7 @@ def _links(graph: MotionGraph) -> list[tuple[tuple[int, int], float]]:
 def test_a_search_that_is_cancelled_ends_soon_and_says_so(exact: bool) -> None:
     graph = graph_of(40, [0, 40], {(n, 0): 0.5 for n in range(1, 40)})
     sound = HeardStates(np.full(40, IDLE, np.uint8), np.zeros(40, bool))
-    want = wanted([], 600.0)
+    want = list_wanted([], 600.0)
     asked = 0
 
     def cancelled() -> bool:
@@ -371,5 +371,7 @@ def test_a_search_that_is_cancelled_ends_soon_and_says_so(exact: bool) -> None:
         return asked > 5
 
     with pytest.raises(SynthesisError, match="the search was cancelled"):
-        best(graph, sound, want, cancelled) if exact else greedy(graph, sound, want, cancelled=cancelled)
+        find_best_path(graph, sound, want, cancelled) if exact else greedy(
+            graph, sound, want, cancelled=cancelled
+        )
     assert asked < 20

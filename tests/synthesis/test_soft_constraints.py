@@ -7,18 +7,24 @@ import pytest
 
 from metagraph.graph.conversation.model import Segment
 from metagraph.motion.clip import Clip
-from metagraph.research.motion_graph.evaluation_table import csv_of, table_of
-from metagraph.research.motion_graph.search_evaluation import SETTINGS, Beside, Trials, cut, evaluate
+from metagraph.research.motion_graph.evaluation_table import cases_as_csv, cases_as_text
+from metagraph.research.motion_graph.search_evaluation import (
+    SETTINGS,
+    Beside,
+    Trials,
+    cut_segments,
+    evaluate_search,
+)
 from metagraph.speech.prosody import prosody
 from metagraph.synthesis.assemble import assemble
-from metagraph.synthesis.constraints import changes, heard
+from metagraph.synthesis.constraints import find_change_states, find_heard_at
 from metagraph.synthesis.cooccurrence import speeds
-from metagraph.synthesis.graph import MotionGraph, build
+from metagraph.synthesis.graph import MotionGraph, build_graph
 from metagraph.synthesis.iconic_words import word_wish
 from metagraph.synthesis.prosody_costs import SpokenTake
-from metagraph.synthesis.search.relaxing import Searching, answer
+from metagraph.synthesis.search.relaxing import Searching, answer_speech
 from metagraph.synthesis.soft_constraints import NO_WISH, SoftMaterial, SoftWish, soft_report
-from metagraph.synthesis.states import SynthesisError, key_states, states_of
+from metagraph.synthesis.states import SynthesisError, key_states, read_states
 from tests.synthesis.talking import VOICE, aloud, speech, talking
 
 WORDS = (word_wish("big, nothing"), word_wish("round = river"))
@@ -40,10 +46,10 @@ class Studio:
             talking(f"take {n}", said, seconds, n, sizes=[1 + 0.5 * step for step in steps])
             for n, (said, steps, _) in enumerate(made)
         ]
-        self.states = states_of(self.clips)
+        self.states = read_states(self.clips)
         self.said = [said for said, *_ in made]
-        keys = key_states(self.states, changes=changes(self.states, self.said))
-        self.graph: MotionGraph = build(self.states, keys=keys)
+        keys = key_states(self.states, changes=find_change_states(self.states, self.said))
+        self.graph: MotionGraph = build_graph(self.states, keys=keys)
 
     def material(self, wish: SoftWish) -> SoftMaterial:
         return SoftMaterial(wish, self.states, self.clips, self.spoken, self.graph.threshold.limit)
@@ -59,7 +65,7 @@ def studio() -> Studio:
 def test_what_is_said_louder_is_gestured_faster_where_it_was_so_in_the_takes(
     studio: Studio, search: str
 ) -> None:
-    sound = heard(studio.states, studio.said)
+    sound = find_heard_at(studio.states, studio.said)
     both = studio.material(SoftWish(loudness=1, rate=1))
     told: dict[str, list[float]] = {}
     for name, wish in (("none", NO_WISH), ("loud", SoftWish(loudness=1)), ("fast", SoftWish(rate=1))):
@@ -67,10 +73,10 @@ def test_what_is_said_louder_is_gestured_faster_where_it_was_so_in_the_takes(
         loud, rate = [], []
         for seed in range(100, 104):
             said, heights, new = recorded(seed, 20, -30.0)
-            found = answer(
+            found = answer_speech(
                 studio.graph,
                 sound,
-                cut(said, 0, 10),
+                cut_segments(said, 0, 10),
                 10.0,
                 None,
                 Searching(search),  # type: ignore[arg-type]
@@ -93,12 +99,12 @@ def test_what_is_said_louder_is_gestured_faster_where_it_was_so_in_the_takes(
 
 
 def test_words_and_speed_are_told_and_what_is_paid(studio: Studio) -> None:
-    sound = heard(studio.states, studio.said)
+    sound = find_heard_at(studio.states, studio.said)
     _, _, new = recorded(103, 20, 0.0)
     wish = SoftWish(0.25, 0.25, WORDS, hard=True, retime=0.15)
     soft = studio.material(wish).constraints(new, 2.0, 10.0)
-    found = answer(
-        studio.graph, sound, cut(new.segments, 2.0, 10.0), 10.0, None, Searching("greedy"), soft=soft
+    found = answer_speech(
+        studio.graph, sound, cut_segments(new.segments, 2.0, 10.0), 10.0, None, Searching("greedy"), soft=soft
     )
     report = soft_report(soft, studio.states, found.path, found.retiming)
     assert set(report.paid) == {"loudness", "rate", "words"} and [m.measure for m in report.matches] == [
@@ -117,11 +123,11 @@ def test_words_and_speed_are_told_and_what_is_paid(studio: Studio) -> None:
 
 
 def test_nothing_asked_for_changes_nothing(studio: Studio) -> None:
-    sound, (said, _, new) = heard(studio.states, studio.said), recorded(100, 20, 0.0)
+    sound, (said, _, new) = find_heard_at(studio.states, studio.said), recorded(100, 20, 0.0)
     soft = studio.material(NO_WISH).constraints(new, 0.0, 10.0)
     assert soft.charged is None and soft.free is None and not NO_WISH.asks
     a, b = (
-        answer(studio.graph, sound, cut(said, 0, 10), 10.0, **some)  # type: ignore[arg-type]
+        answer_speech(studio.graph, sound, cut_segments(said, 0, 10), 10.0, **some)  # type: ignore[arg-type]
         for some in ({}, {"soft": soft})
     )
     assert (a.path.states == b.path.states).all() and b.retiming is None
@@ -143,11 +149,13 @@ def test_what_cannot_be_compared_is_told(studio: Studio) -> None:
 def test_an_evaluation_tells_what_became_of_a_wish() -> None:
     few = Studio(3, 24)
     wish = SoftWish(0.25, 0.25, WORDS, retime=0.15)
-    found = evaluate(few.clips, few.said, SETTINGS[:1], Trials(("exact",)), beside=Beside(wish, few.spoken))
+    found = evaluate_search(
+        few.clips, few.said, SETTINGS[:1], Trials(("exact",)), beside=Beside(wish, few.spoken)
+    )
     (row,) = found.rows
     assert row.loudness is not None and row.pace is not None and row.off is not None and row.was is not None
     assert 0 < row.off <= row.was and row.words is not None and 0 <= row.words <= 1
-    assert "spreads off" in table_of(found) and "before retiming" in table_of(found)
-    assert csv_of(found.cases).splitlines()[0].endswith("loudness,pace,words,off,was")
-    plain = evaluate(few.clips, few.said, SETTINGS[:1], Trials(("exact",)))
-    assert plain.rows[0].loudness is None and "spreads" not in table_of(plain)
+    assert "spreads off" in cases_as_text(found) and "before retiming" in cases_as_text(found)
+    assert cases_as_csv(found.cases).splitlines()[0].endswith("loudness,pace,words,off,was")
+    plain = evaluate_search(few.clips, few.said, SETTINGS[:1], Trials(("exact",)))
+    assert plain.rows[0].loudness is None and "spreads" not in cases_as_text(plain)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
-from metagraph.synthesis.standing_feet import FARTHEST, held_feet, standing
+from metagraph.synthesis.standing_feet import FARTHEST, find_standing, keep_feet_still
 
 Array = NDArray[Any]
 
@@ -42,30 +42,30 @@ def everywhere(clip: Clip) -> dict[str, Array]:
 
 
 def test_who_stands_still_stands_and_who_is_carried_does_not(still: Clip) -> None:
-    found = standing(still.skeleton, still.poses())
+    found = find_standing(still.skeleton, still.poses())
     assert all(there.all() for there in found.values()) and set(found) == {"left", "right"}
     carried = slid(still, np.linspace(0, 2, 60))
-    assert not any(there.any() for there in standing(carried.skeleton, carried.poses()).values())
+    assert not any(there.any() for there in find_standing(carried.skeleton, carried.poses()).values())
 
 
 def test_feet_that_do_not_slide_stay_as_they_are(still: Clip) -> None:
-    made = held_feet(still, everywhere(still))
+    made = keep_feet_still(still, everywhere(still))
     assert np.abs(made.rotations - still.rotations).max() < 1e-4
     step = slid(still, np.where(np.arange(60) < 30, 0.0, 0.5))
     nowhere = {side: np.zeros(60, bool) for side in ("left", "right")}
-    assert np.abs(held_feet(step, nowhere).rotations - step.rotations).max() < 1e-6
+    assert np.abs(keep_feet_still(step, nowhere).rotations - step.rotations).max() < 1e-6
 
 
 def test_feet_stay_where_they_were_put_down_while_the_body_sways(still: Clip) -> None:
     sways = slid(still, 0.05 * np.sin(np.linspace(0, 6, 60)))
-    made = feet(held_feet(sways, everywhere(sways)))
+    made = feet(keep_feet_still(sways, everywhere(sways)))
     assert np.abs(made[..., [0, 2]] - made[0][:, [0, 2]]).max() < 0.004
     assert np.abs(feet(sways) - feet(sways)[0]).max() > 0.045
 
 
 def test_a_foot_goes_along_with_what_goes_too_far(still: Clip) -> None:
     far = slid(still, np.linspace(0, 0.6, 60))
-    made = feet(held_feet(far, everywhere(far)))
+    made = feet(keep_feet_still(far, everywhere(far)))
     back = np.linalg.norm((made - feet(far))[..., [0, 2]], axis=-1)
     assert back.max() <= FARTHEST * 1.2
     assert np.linalg.norm(np.diff(made, axis=0), axis=-1).max() < 0.03  # and never jumps
@@ -74,9 +74,9 @@ def test_a_foot_goes_along_with_what_goes_too_far(still: Clip) -> None:
 def test_a_foot_that_is_let_go_does_not_jump(still: Clip) -> None:
     sways = slid(still, np.linspace(0, 0.08, 60))
     there = {side: np.arange(60) < 40 for side in ("left", "right")}
-    made = feet(held_feet(sways, there))
+    made = feet(keep_feet_still(sways, there))
     assert np.linalg.norm(np.diff(made, axis=0), axis=-1).max() < 0.03
 
 
 def test_without_legs_nothing_is_held(still: Clip) -> None:
-    assert held_feet(still, {}) is still
+    assert keep_feet_still(still, {}) is still

@@ -7,14 +7,14 @@ import pytest
 
 from metagraph.graph.conversation.model import Segment
 from metagraph.motion.clip import Clip
-from metagraph.research.motion_graph.search_evaluation import cut
+from metagraph.research.motion_graph.search_evaluation import cut_segments
 from metagraph.synthesis.assemble import assemble
-from metagraph.synthesis.constraints import changes, heard, wanted
+from metagraph.synthesis.constraints import find_change_states, find_heard_at, list_wanted
 from metagraph.synthesis.cooccurrence import activation, speeds
-from metagraph.synthesis.graph import build
-from metagraph.synthesis.search.exact_search import best
+from metagraph.synthesis.graph import build_graph
+from metagraph.synthesis.search.exact_search import find_best_path
 from metagraph.synthesis.search.greedy_search import greedy
-from metagraph.synthesis.states import key_states, states_of
+from metagraph.synthesis.states import key_states, read_states
 from tests.synthesis.talking import speech, talking
 
 NEAR = 0.15  # seconds: the search's tolerance, and a frame or so
@@ -42,15 +42,15 @@ def stresses(segments: list[Segment]) -> list[float]:
 def test_strokes_fall_on_the_stresses_of_new_speech_and_not_on_those_of_shuffled_speech() -> None:
     said = [speech(60, n) for n in range(4)]
     takes = [talking(f"take {n}", s, 60, n) for n, s in enumerate(said)]
-    states = states_of(takes)
-    graph = build(states, keys=key_states(states, changes=changes(states, said)))
-    sound = heard(states, said)
+    states = read_states(takes)
+    graph = build_graph(states, keys=key_states(states, changes=find_change_states(states, said)))
+    sound = find_heard_at(states, said)
     chance = np.random.default_rng(7)
-    for search in (greedy, best):
+    for search in (greedy, find_best_path):
         with_speech, shuffled = [], []
         for seed in range(100, 106):
-            new = cut(speech(30, seed), 0, SECONDS)
-            at = strokes(assemble(states, takes, search(graph, sound, wanted(new, SECONDS))))
+            new = cut_segments(speech(30, seed), 0, SECONDS)
+            at = strokes(assemble(states, takes, search(graph, sound, list_wanted(new, SECONDS))))
             with_speech.append(met(at, stresses(new)))
             turned = [
                 [(p + s) % SECONDS for p in stresses(new)] for s in chance.uniform(1.5, SECONDS - 1.5, 40)

@@ -13,11 +13,11 @@ from typing import Any
 import pytest
 
 from metagraph.formats.project.data import FORMAT, from_data, to_data
-from metagraph.formats.project.text import parse
+from metagraph.formats.project.text import parse_yaml
 from metagraph.formats.recovery import read_journal
 from metagraph.formats.store import UPGRADES, read_project, save_project
 from metagraph.motion.joint_map import JointMap
-from metagraph.research.study.logs.log import read as read_log
+from metagraph.research.study.logs.log import read_log as read_log
 from metagraph.suggest.memory import Memory
 
 HERE = Path(__file__).parent
@@ -42,7 +42,7 @@ def test_projects_are_read_saved_and_read_again(path: Path, tmp_path: Path) -> N
     save_project(project, tmp_path / "again.metagraph.yaml")
     again = read_project(tmp_path / "again.metagraph.yaml")
     assert to_data(again) == to_data(project)
-    said, kept = parse(path.read_text(encoding="utf-8"))[0], to_data(project)
+    said, kept = parse_yaml(path.read_text(encoding="utf-8"))[0], to_data(project)
     lost = [key for key in said if key not in kept and key != "next_id"]
     assert not lost, "a field that was written is not read any more"
 
@@ -79,10 +79,10 @@ def test_settings_are_read(path: Path) -> None:
 
 def test_a_project_of_a_format_to_come_is_told_and_left_alone() -> None:
     from metagraph.errors import FileError
-    from metagraph.formats.store import from_text
+    from metagraph.formats.store import parse_project
 
     text = (FORMATS[-1] / "first.metagraph.yaml").read_text(encoding="utf-8")
     newer = text.replace(f"metagraph: {FORMAT}", f"metagraph: {FORMAT + 1}")
     with pytest.raises(FileError, match="newer"):
-        from_text(newer, Path("x"))
-    assert from_data(parse(text)[0]).name == "First"
+        parse_project(newer, Path("x"))
+    assert from_data(parse_yaml(text)[0]).name == "First"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from app.features.character.character_commands import COMMANDS, CharacterFeature
 from app.features.character.watch_commands import WATCH_COMMANDS, WatchFeature
 from app.project.files import Files
-from app.shell.command_table import bound
+from app.shell.command_table import bind_commands
 from app.shell.context import Contribution, Panel, Shell
 from app.translation import tr
 
@@ -31,6 +31,6 @@ def contribute(shell: Shell) -> Contribution:
                 least=(300, 230),
             ),
         ),
-        commands=(*bound(COMMANDS, character), *bound(WATCH_COMMANDS, WatchFeature(shell))),
+        commands=(*bind_commands(COMMANDS, character), *bind_commands(WATCH_COMMANDS, WatchFeature(shell))),
         close=lambda: character.panel.stop(),
     )

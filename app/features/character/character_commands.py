@@ -9,9 +9,9 @@ from app.features.character.character_panel import PreviewPanel
 from app.features.character.mesh_menu import MeshButton
 from app.features.character.watch_commands import fill_watch
 from app.shell.actions import Command
-from app.shell.command_table import Feature, actions_selected, any_of, clips_selected, has_character
+from app.shell.command_table import Feature, any_met, has_actions_selected, has_character, has_clips_selected
 from app.shell.context import Shell
-from app.shell.places import Places
+from app.shell.places import PanelPlaces
 from app.shell.workspace_keeper import Workspaces
 from app.translation import tr, tr_noop
 from metagraph.graph import edits
@@ -47,7 +47,7 @@ class CharacterFeature(Feature):
         panel.watch_button.menu_of.aboutToShow.connect(lambda: fill_watch(shell, panel.watch_button.menu_of))
         panel.view.failed.connect(shell.tell)
         panel.view.painted.connect(lambda _: stage.painted.emit())
-        shell.services[Workspaces].changed.connect(lambda: panel.set_bare(shell.services[Places].alone))
+        shell.services[Workspaces].changed.connect(lambda: panel.set_bare(shell.services[PanelPlaces].alone))
         return panel
 
     # --- which character
@@ -153,7 +153,7 @@ class CharacterFeature(Feature):
         return self.panel.bones
 
     def show_only_character(self) -> None:
-        places = self.shell.services[Places]
+        places = self.shell.services[PanelPlaces]
         places.only("character")
         self.panel.set_bare(places.alone)
 
@@ -259,7 +259,7 @@ COMMANDS = (
         tr_noop("The clip &alone"),
         CharacterFeature.play_alone,
         ("Ctrl+Return",),
-        enabled=any_of(clips_selected, actions_selected),
+        enabled=any_met(has_clips_selected, has_actions_selected),
         study=True,
     ),
     Command(
@@ -269,7 +269,7 @@ COMMANDS = (
         tr_noop("In &context"),
         CharacterFeature.play_in_context,
         ("Shift+Return",),
-        enabled=any_of(clips_selected, actions_selected),
+        enabled=any_met(has_clips_selected, has_actions_selected),
         study=True,
     ),
     Command(

@@ -16,14 +16,14 @@ from app.features.character.overlays import Overlays
 from app.features.character.panes import Panes
 from app.features.character.reference import Reference, ReferenceBar, ReferencePicture
 from app.look import icons
-from app.look.names import plain
+from app.look.names import plain_action_name
 from app.look.theme import theme
 from app.stage.figures import Figures
 from app.stage.gl_view import MOUSE, GLView, ImageView, make_view
-from app.stage.performance import Performance
+from app.stage.performance import StagePerformance
 from app.stage.playback_source import ASIDE
 from app.stage.playhead import Playhead
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.stage.stools import stools
 from app.translation import tr, tr_noop
 from app.widgets.making import make_widget
@@ -31,11 +31,11 @@ from app.widgets.more_button import MoreButton
 from app.widgets.one_stop import OneStop
 from app.widgets.quiet_fields import ComboBox, Scrub
 from app.widgets.sentence import OneLine
-from app.widgets.vocabulary import word
+from app.widgets.vocabulary import vocabulary_word
 from metagraph.graph.model import LAYERS, Project
-from preview.camera import Camera, close_up, whole_figure
-from preview.figure import Figure, SkinnedFigure
-from preview.scene import Actor, Scene
+from preview.camera import OrbitCamera, close_up, frame_whole_figure
+from preview.figure import MeshFigure, SkinnedFigure
+from preview.scene import Scene, SceneActor
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 1.5, 2.0)
 BASE_TIP = tr_noop(
@@ -52,8 +52,8 @@ class PreviewPanel(QWidget):
 
     def __init__(
         self,
-        session: Session,
-        performance: Performance,
+        session: StageSession,
+        performance: StagePerformance,
         playhead: Playhead,
         figures: Figures,
         parent: QWidget | None = None,
@@ -65,7 +65,7 @@ class PreviewPanel(QWidget):
         self.bones = False
         self._framed: tuple[object, ...] = ()  # whom the camera was last framed on
         self.composed = Scene()  # what was drawn last
-        self._last: tuple[Figure, np.ndarray, np.ndarray] | None = None
+        self._last: tuple[MeshFigure, np.ndarray, np.ndarray] | None = None
         self._marks: dict[int, tuple[float, float, float]] = {}  # of joints, as drawn last
         self._make_view(choose, may_choose)
         self.overlays = Overlays(self)
@@ -245,7 +245,7 @@ class PreviewPanel(QWidget):
             morphs = figure.morph_weights(one.morphs(seconds)) if figure.morphs else None
             marks = mask_marks(self.performance, self.session) if one is shown else {}
             self._marks = marks if one is shown else self._marks
-            actors.append(Actor(figure, rotations, positions, morphs, marks, self.bones))
+            actors.append(SceneActor(figure, rotations, positions, morphs, marks, self.bones))
             if one is shown:
                 actors += self.overlays.made(figure, seconds)
         seats = (seat for one in shown.everyone for seat in stools(one))
@@ -258,7 +258,7 @@ class PreviewPanel(QWidget):
         if actors and self._framed != framed and not self.view.moved_by_hand:
             self._framed = framed
             aside = ASIDE if shown.others else 0.0
-            self.view.camera = whole_figure(
+            self.view.camera = frame_whole_figure(
                 solid.bounds(), self.view.width() / max(1, self.view.height()), aside
             )
         self.directing.follow(shown, seconds)
@@ -302,12 +302,12 @@ class PreviewPanel(QWidget):
         """Say what plays: the clip alone, or each layer's action and when the next begins."""
         shown = self.performance.shown
         if shown.clip is not None:
-            return tr("{name}, alone", name=plain(shown.project.clips[shown.clip].name))
+            return tr("{name}, alone", name=plain_action_name(shown.project.clips[shown.clip].name))
         seconds, out = self.session.transport.seconds, []
         for layer in LAYERS:
             cue = shown.plan.layers[layer].cue_at(seconds)
             if cue is not None:
-                out.append(f"{word(layer)}: {plain(cue.action.name)}")
+                out.append(f"{vocabulary_word(layer)}: {plain_action_name(cue.action.name)}")
         if self.session.transport.show == "context":
             out.append(tr("in context"))
         return "   ".join(out)
@@ -348,7 +348,7 @@ class PreviewPanel(QWidget):
             self._hint_goes.stop()
 
     @property
-    def drawn(self) -> tuple[Figure, np.ndarray, np.ndarray] | None:
+    def drawn(self) -> tuple[MeshFigure, np.ndarray, np.ndarray] | None:
         """Figure, rotations `[J, 4]` and positions `[J, 3]` of what was drawn last."""
         return self._last
 
@@ -375,7 +375,7 @@ class PreviewPanel(QWidget):
             view.camera, view.moved_by_hand = camera, True
             view.update()
 
-    def face_camera(self, aspect: float) -> Camera | None:
+    def face_camera(self, aspect: float) -> OrbitCamera | None:
         """Return what looks at the face, None while nobody is drawn."""
         if self._last is None:
             return None
@@ -415,7 +415,9 @@ class PreviewPanel(QWidget):
         elif entry is None:
             self.base.say(tr("Base pose: rest pose"))
         else:
-            self.base.say(tr("Base pose: {name}, frame {frame}", name=plain(entry.name), frame=base.frame))
+            self.base.say(
+                tr("Base pose: {name}, frame {frame}", name=plain_action_name(entry.name), frame=base.frame)
+            )
         if after.skeleton is None:
             self._tell_mesh()
         # What plays follows when it is planned anew; the marks of a mask are the project's own.

@@ -8,7 +8,7 @@ from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QPainter, QPaintEvent
 from PySide6.QtWidgets import QWidget
 
-from app.stage.playback_source import Shown
+from app.stage.playback_source import ShownPlayback
 from app.widgets.memo import Once
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ class Directing:
         self._cutting, self._captions, self._cut = None, Once(), False
         self.label.say([])
 
-    def follow(self, shown: Shown, seconds: float) -> None:
+    def follow(self, shown: ShownPlayback, seconds: float) -> None:
         """Let the camera be where the cuts want it; called before a picture is drawn."""
         view, performance = self.panel.view, self.panel.performance
         cuts = performance.timeline.now.cuts if shown.others else ()
@@ -96,11 +96,11 @@ class Directing:
             return
         from pathlib import Path
 
-        from app.stage.cutting import captions_shown
+        from app.stage.cutting import list_captions
         from metagraph.speech.captions import captions_at
 
         shown, document = performance.shown, performance.document
         talk = document.project.conversations.get(performance.conversation or "")
         folder = document.folder or Path()
-        found = self._captions.of((), (shown, talk), lambda: captions_shown(shown, talk, folder))
+        found = self._captions.of((), (shown, talk), lambda: list_captions(shown, talk, folder))
         self.label.say(captions_at(found, seconds))

@@ -14,14 +14,14 @@ from PySide6.QtWidgets import QWidget
 from app.features.character.over_view import lie_over
 from app.features.character.overlay_host import OverlayHost
 from app.features.character.plates import draw_plate
-from app.look.theme import Theme, theme
-from app.translation import tr, tr_noop, translated
+from app.look.theme import WindowTheme, theme
+from app.translation import lazy_texts, tr, tr_noop
 from metagraph.playback.posing.foot_slides import RATE, SLIDES, FeetSeen, FeetWatch, FootState, worst_slide
 
 SPAN = 1.5  # seconds before and after now that the line tells of
 AT_ONCE = 12  # poses that are composed in one event: the window stays free
 HIGH = 42  # pixels of the line
-SIDES = translated(lambda: (tr("Left foot"), tr("Right foot")))
+SIDES = lazy_texts(lambda: (tr("Left foot"), tr("Right foot")))
 BELOW = 12.0  # pixels from a foot to its mark
 SIZE = 7.0  # pixels of half a mark
 LEGEND = tr_noop(
@@ -99,7 +99,7 @@ class FootMarks(QWidget):
         self._feet(painter, theme(self.panel.session.look.name), seen, n)
         painter.end()
 
-    def _feet(self, painter: QPainter, look: Theme, seen: FeetSeen, n: int) -> None:
+    def _feet(self, painter: QPainter, look: WindowTheme, seen: FeetSeen, n: int) -> None:
         view = self.panel.view
         watch, drawn = self.watch, self.panel.drawn
         if watch is None or drawn is None:
@@ -139,7 +139,7 @@ class FootLine(QWidget):
         """Show what is known of the feet round now; None where nothing is."""
         if seen is not None and len(seen.times) > 1:  # until it is known again, what was stands
             self._known = seen
-            self.setAccessibleDescription(slide_words(seen))
+            self.setAccessibleDescription(describe_slide(seen))
         self.update()
 
     def paintEvent(self, event: QPaintEvent) -> None:
@@ -159,7 +159,7 @@ class FootLine(QWidget):
             y = lane.top() + 6 + 10 * side
             painter.setPen(QColor(look.text))
             painter.drawText(QRectF(room.left(), y - 7, 14, 14), Qt.AlignmentFlag.AlignCenter, "LR"[side])
-            for first, end, state, slides in runs(seen, side) if seen is not None else ():
+            for first, end, state, slides in find_foot_states(seen, side) if seen is not None else ():
                 a = max(lane.left(), lane.center().x() + (first - now) * wide)
                 b = lane.center().x() + (end - now) * wide
                 high = 8.0 if slides else 4.0 if state == FootState.HELD else 1.0
@@ -173,12 +173,12 @@ class FootLine(QWidget):
         painter.setPen(QPen(QColor(look.text), 1.0))
         painter.drawLine(QPointF(lane.center().x(), lane.top()), QPointF(lane.center().x(), lane.bottom()))
         row = QRectF(room.left(), room.bottom() - 16, room.width(), 16)
-        words = slide_words(seen) if seen is not None else ""
+        words = describe_slide(seen) if seen is not None else ""
         painter.drawText(row, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, words)
         painter.end()
 
 
-def runs(seen: FeetSeen, side: int) -> list[tuple[float, float, int, bool]]:
+def find_foot_states(seen: FeetSeen, side: int) -> list[tuple[float, float, int, bool]]:
     """Return of one foot when each state begins and ends, the state, and whether it slides."""
     key = seen.states[:, side] * 2 + seen.sliding()[:, side]
     edges = np.flatnonzero(np.diff(key)) + 1
@@ -190,7 +190,7 @@ def runs(seen: FeetSeen, side: int) -> list[tuple[float, float, int, bool]]:
     ]
 
 
-def slide_words(seen: FeetSeen) -> str:
+def describe_slide(seen: FeetSeen) -> str:
     """Say which foot slides fastest round now and when, or that none does."""
     worst = worst_slide(seen)
     if worst is None:
@@ -220,7 +220,7 @@ def watch_of(shown: Any) -> FeetWatch | None:
     return watch if watch.feet else None
 
 
-def draw_mark(painter: QPainter, look: Theme, at: QPointF, state: FootState, slides: bool) -> None:
+def draw_mark(painter: QPainter, look: WindowTheme, at: QPointF, state: FootState, slides: bool) -> None:
     """Draw a foot's mark: a filled square that is held, an empty diamond that steps, an empty circle that is
     lifted, a filled triangle that slides.
     """

@@ -15,13 +15,13 @@ from app.features.character.over_view import lie_over
 from app.features.character.overlay_host import OverlayHost
 from app.features.character.plates import draw_plate
 from app.look.theme import theme
-from app.stage.playback_source import Shown
-from app.widgets.vocabulary import word
+from app.stage.playback_source import ShownPlayback
+from app.widgets.vocabulary import vocabulary_word
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.posing.composer import playable
-from preview.figure import Figure
-from preview.scene import Actor
+from preview.figure import MeshFigure
+from preview.scene import SceneActor
 
 NOW = 0.03  # seconds from the present moment within which a ghost would only blur the figure
 NEAREST, FARTHEST = 0.34, 0.12  # how much of the ghost next to now is seen, and of the last
@@ -39,7 +39,7 @@ class Ghosts(QWidget):
         super().__init__(panel.view)
         self.panel = panel
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
-        self._still: tuple[Shown, Shown] | None = None  # one that plays, and itself at rest
+        self._still: tuple[ShownPlayback, ShownPlayback] | None = None  # one that plays, and itself at rest
         self._labels: list[tuple[str, np.ndarray]] = []
         self.hide()
         panel.view.painted.connect(self._follow)
@@ -50,7 +50,7 @@ class Ghosts(QWidget):
         self._follow()
         self.panel.view.update()
 
-    def made(self, figure: Figure, seconds: float) -> list[Actor]:
+    def made(self, figure: MeshFigure, seconds: float) -> list[SceneActor]:
         """Return all ghosts at a time."""
         shown, watch = self.panel.performance.shown, self.panel.session.watch.now
         self._labels = []
@@ -62,7 +62,7 @@ class Ghosts(QWidget):
             *(self._of_stance(figure, shown, seconds) if watch.stance else ()),
         ]
 
-    def _of_action(self, figure: Figure, shown: Shown, seconds: float) -> list[Actor]:
+    def _of_action(self, figure: MeshFigure, shown: ShownPlayback, seconds: float) -> list[SceneActor]:
         """Return the moments of an action that are to be seen through, but for those that are now."""
         skin, out = self.panel.session.onion.skin, []
         for moment, opacity in skin.moments if skin is not None else ():
@@ -74,7 +74,7 @@ class Ghosts(QWidget):
                 out.append(self._ghost(figure, shown, pose, opacity))
         return out
 
-    def _of_moments(self, figure: Figure, shown: Shown, seconds: float) -> list[Actor]:
+    def _of_moments(self, figure: MeshFigure, shown: ShownPlayback, seconds: float) -> list[SceneActor]:
         watch = self.panel.session.watch.now
         steps = [*range(-watch.before, 0), *range(1, watch.after + 1)]
         moments = [(k, seconds + k * watch.spacing) for k in steps]
@@ -95,15 +95,15 @@ class Ghosts(QWidget):
             return BEFORE
         return AFTER if self.panel.session.look.name == "dark" else AFTER_ON_LIGHT
 
-    def _of_stance(self, figure: Figure, shown: Shown, seconds: float) -> list[Actor]:
+    def _of_stance(self, figure: MeshFigure, shown: ShownPlayback, seconds: float) -> list[SceneActor]:
         pose = self._stance(shown, seconds)
         if pose is None:
             return []
         color = QColor(theme(self.panel.session.look.name).fill("stance"))
         actor = self._ghost(figure, shown, pose, STANCE, (color.redF(), color.greenF(), color.blueF()))
-        return [actor] if self._label(word("stance"), actor) else []
+        return [actor] if self._label(vocabulary_word("stance"), actor) else []
 
-    def _label(self, words: str, ghost: Actor) -> bool:
+    def _label(self, words: str, ghost: SceneActor) -> bool:
         """Name a ghost where it is farthest from now; return whether it is anywhere."""
         last = self.panel.drawn
         if last is None or last[2].shape != ghost.positions.shape:
@@ -114,7 +114,7 @@ class Ghosts(QWidget):
         self._labels.append((words, ghost.positions[int(away.argmax())]))
         return True
 
-    def _stance(self, shown: Shown, seconds: float) -> Pose | None:
+    def _stance(self, shown: ShownPlayback, seconds: float) -> Pose | None:
         """Return the pose the character would have without what it plays: the stances of all layers; of
         a clip alone the beginning of its stance's loop.
         """
@@ -129,18 +129,18 @@ class Ghosts(QWidget):
 
     def _ghost(
         self,
-        figure: Figure,
-        shown: Shown,
+        figure: MeshFigure,
+        shown: ShownPlayback,
         pose: Pose,
         opacity: float,
         color: tuple[float, float, float] | None = None,
-    ) -> Actor:
+    ) -> SceneActor:
         assert shown.skeleton is not None
         rotations, positions = shown.skeleton.globals(pose)
         if shown.stand is not None:
             rotations, positions = shown.stand.placed(rotations, positions)
         marks = dict.fromkeys(range(len(shown.skeleton)), color) if color is not None else {}
-        return Actor(figure, rotations, positions, marks=marks, opacity=opacity)
+        return SceneActor(figure, rotations, positions, marks=marks, opacity=opacity)
 
     def _follow(self, *_: object) -> None:
         if bool(self._labels) == self.isHidden():

@@ -15,13 +15,13 @@ from app.features.character.foot_marks import draw_mark
 from app.features.character.over_view import lie_over
 from app.features.character.overlay_host import OverlayHost
 from app.features.character.plates import draw_plate
-from app.look.theme import Theme, theme
-from app.translation import tr, translated
+from app.look.theme import WindowTheme, theme
+from app.translation import lazy_texts, tr
 from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.posing.foot_slides import FootState
 from metagraph.playback.posing.hand_touches import HandTouch, hand_touches, plan_of_clip
 
-HANDS = translated(lambda: (tr("Left hand"), tr("Right hand")))
+HANDS = lazy_texts(lambda: (tr("Left hand"), tr("Right hand")))
 BESIDE = 20.0  # pixels from a mark to its words
 
 
@@ -62,7 +62,7 @@ class HandMarks(QWidget):
     def paintEvent(self, event: QPaintEvent) -> None:
         touches = self.touches()
         skeleton = self.panel.performance.shown.skeleton
-        self.setAccessibleDescription(touch_words(touches, skeleton))
+        self.setAccessibleDescription(describe_touch(touches, skeleton))
         if not touches or skeleton is None or self.panel.drawn is None:
             return
         painter = QPainter(self)
@@ -73,7 +73,7 @@ class HandMarks(QWidget):
         painter.end()
 
     def _mark(
-        self, painter: QPainter, look: Theme, touch: HandTouch, skeleton: Skeleton, taken: list[QRectF]
+        self, painter: QPainter, look: WindowTheme, touch: HandTouch, skeleton: Skeleton, taken: list[QRectF]
     ) -> None:
         assert self.panel.drawn is not None
         positions = self.panel.drawn[2]
@@ -86,7 +86,7 @@ class HandMarks(QWidget):
             painter.setPen(pen)
             painter.drawLine(hand, other)
         draw_mark(painter, look, hand, FootState.HELD if touch.held else FootState.STEPPING, touch.missed)
-        words = plate_words(touch, skeleton)
+        words = describe_plate(touch, skeleton)
         wide = painter.fontMetrics().horizontalAdvance(words) / 2 + BESIDE
         beside = hand + QPointF(wide if hand.x() < self.width() / 2 else -wide, 0.0)
         taken.append(draw_plate(painter, look, beside, words, taken))
@@ -101,17 +101,17 @@ class HandMarks(QWidget):
         return QPointF(x, y) if np.isfinite((x, y)).all() else None
 
 
-def plate_words(touch: HandTouch, skeleton: Skeleton) -> str:
+def describe_plate(touch: HandTouch, skeleton: Skeleton) -> str:
     """Say what a hand touches, and how far it is from there where it should be."""
     joint = skeleton.names[touch.to]
     return f"{joint}  ⚠ {touch.away * 1000:.0f} mm" if touch.missed else joint
 
 
-def touch_words(touches: Sequence[HandTouch], skeleton: Skeleton | None) -> str:
+def describe_touch(touches: Sequence[HandTouch], skeleton: Skeleton | None) -> str:
     """Say which hands touch what."""
     if skeleton is None or not touches:
         return tr("No hand is in contact")
     return "; ".join(
-        tr("{hand} on {joint}", hand=HANDS[touch.side], joint=plate_words(touch, skeleton))
+        tr("{hand} on {joint}", hand=HANDS[touch.side], joint=describe_plate(touch, skeleton))
         for touch in touches
     )

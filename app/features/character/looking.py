@@ -14,10 +14,10 @@ from PySide6.QtGui import QGuiApplication
 from app.features.character.overlay_host import OverlayHost
 from app.features.character.trails import Trails
 from app.look.theme import theme
-from app.stage.performance import Performance
-from app.stage.session import Session
+from app.stage.performance import StagePerformance
+from app.stage.session import StageSession
 from metagraph.graph import anatomy
-from preview.camera import Camera
+from preview.camera import OrbitCamera
 
 if TYPE_CHECKING:
     from app.stage.gl_view import GLView, ImageView
@@ -49,7 +49,7 @@ class Looking(QObject):
         """The view that was touched last, of several."""
         return self.panel.active_view
 
-    def _aim(self, camera: Camera) -> None:
+    def _aim(self, camera: OrbitCamera) -> None:
         view = self._view
         view.camera = camera
         view.moved_by_hand = True
@@ -76,7 +76,7 @@ class Looking(QObject):
         last, project = self.panel.drawn, self.panel.performance.shown.project
         if last is None or project.skeleton is None or len(last[2]) != len(project.skeleton):
             return None
-        roles = anatomy.roles(project)
+        roles = anatomy.project_roles(project)
         hands = [last[2][roles[role]] for role in ("left_hand", "right_hand") if role in roles]
         return (np.min(hands, axis=0) - HANDS, np.max(hands, axis=0) + HANDS) if hands else None
 
@@ -119,7 +119,7 @@ class Looking(QObject):
         QGuiApplication.clipboard().setPixmap(self.panel.view.grab())
 
 
-def mask_marks(performance: Performance, session: Session) -> dict[int, tuple[float, float, float]]:
+def mask_marks(performance: StagePerformance, session: StageSession) -> dict[int, tuple[float, float, float]]:
     """Point out the joints of the selected action's mask, each in its kind's colour, the darker the less far
     it moves.
     """
@@ -127,7 +127,7 @@ def mask_marks(performance: Performance, session: Session) -> dict[int, tuple[fl
     actions = session.selection.selected_actions()
     if len(actions) != 1 or project.skeleton is None or not (actions[0].joints or actions[0].joint_weights):
         return {}
-    moved = anatomy.mask(project, actions[0])
+    moved = anatomy.action_mask(project, actions[0])
     color = theme(session.look.name).fill(actions[0].kind)
     rgb = np.array([color.redF(), color.greenF(), color.blueF()])
     if moved is None:

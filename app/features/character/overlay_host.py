@@ -8,31 +8,31 @@ import numpy as np
 from PySide6.QtWidgets import QWidget
 
 from app.stage.gl_view import GLView, ImageView
-from app.stage.performance import Performance
-from app.stage.session import Session
-from preview.camera import Camera
-from preview.figure import Figure
+from app.stage.performance import StagePerformance
+from app.stage.session import StageSession
+from preview.camera import OrbitCamera
+from preview.figure import MeshFigure
 from preview.scene import Scene
 
 
 class OverlayHost(Protocol):
     """view: the first view of the character. composed: what it drew last. bare: whether it is shown alone."""
 
-    session: Session
-    performance: Performance
+    session: StageSession
+    performance: StagePerformance
     view: GLView | ImageView
     composed: Scene
     bare: bool
 
     @property
-    def drawn(self) -> tuple[Figure, np.ndarray, np.ndarray] | None:
+    def drawn(self) -> tuple[MeshFigure, np.ndarray, np.ndarray] | None:
         """Figure, rotations `[J, 4]` and positions `[J, 3]` of what was drawn last."""
 
     @property
     def active_view(self) -> GLView | ImageView:
         """The view that was touched last, of several."""
 
-    def face_camera(self, aspect: float) -> Camera | None:
+    def face_camera(self, aspect: float) -> OrbitCamera | None:
         """Return what looks at the face, None while nobody is drawn."""
 
     def put_below_view(self, widget: QWidget) -> None:

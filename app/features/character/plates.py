@@ -7,13 +7,13 @@ from collections.abc import Iterable
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter
 
-from app.look.theme import Theme
+from app.look.theme import WindowTheme
 
 ROUND = 4.0  # pixels, of corners and above the highest
 
 
 def draw_plate(
-    painter: QPainter, look: Theme, at: QPointF, words: str, taken: Iterable[QRectF] = ()
+    painter: QPainter, look: WindowTheme, at: QPointF, words: str, taken: Iterable[QRectF] = ()
 ) -> QRectF:
     """Draw words on a plate about a place; below what is taken, where it would cover that. Return where it
     is.

@@ -59,7 +59,7 @@ class Trails(QWidget):
         skeleton = shown.skeleton
         if skeleton is None or skeleton != shown.project.skeleton:
             return nothing
-        roles = anatomy.roles(shown.project)
+        roles = anatomy.project_roles(shown.project)
         known = [role for role, _ in ROLES if role in roles]
         if shown is not self._of:
             self._forget()

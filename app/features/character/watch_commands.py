@@ -10,7 +10,7 @@ import numpy as np
 from PySide6.QtGui import QAction, QActionGroup
 from PySide6.QtWidgets import QFileDialog, QMenu
 
-from app.project.jobs import Job
+from app.project.jobs import WindowJob
 from app.shell.actions import Command
 from app.shell.command_table import Feature
 from app.shell.context import Shell
@@ -63,7 +63,7 @@ class WatchFeature(Feature):
         return self.now.hands
 
     def go_to_next_slide(self) -> None:
-        next_slide(self.shell)
+        go_to_next_slide(self.shell)
 
     def toggle_stance(self) -> None:
         self.watch.set(stance=not self.now.stance)
@@ -106,7 +106,7 @@ class WatchFeature(Feature):
         fill_choice(self.shell, menu, "background")
 
     def use_next_light(self) -> None:
-        next_light(self.watch)
+        choose_next_light(self.watch)
 
     def fill_onion_skin(self, menu: QMenu) -> None:
         fill_onion(self.shell, menu)
@@ -252,7 +252,7 @@ def fill_watch(shell: Shell, menu: QMenu) -> None:
         menu.addSeparator()
 
 
-def next_light(watch: Watch) -> None:
+def choose_next_light(watch: Watch) -> None:
     """Light the character by the light that comes after this one, the first after the last."""
     from preview.looks import LIGHTS
 
@@ -262,12 +262,12 @@ def next_light(watch: Watch) -> None:
 
 def fill_choice(shell: Shell, menu: QMenu, name: str) -> None:
     """Fill a menu of lights or backgrounds. name: of `Watched`."""
-    from preview.looks import BACKDROPS, LIGHTS, words_of
+    from preview.looks import BACKDROPS, LIGHTS, look_name
 
     choices: Iterable[str] = LIGHTS if name == "light" else BACKDROPS
     watch, group = shell.stage.session.watch, QActionGroup(menu)
     for choice in choices:
-        action = QAction(tr(words_of(choice)), menu, checkable=True)
+        action = QAction(tr(look_name(choice)), menu, checkable=True)
         action.setChecked(getattr(watch.now, name) == choice)
         action.triggered.connect(lambda _=False, c=choice: watch.set(**{name: c}))
         group.addAction(action)
@@ -292,7 +292,7 @@ def fill_onion(shell: Shell, menu: QMenu) -> None:
             part.addAction(action)
 
 
-def next_slide(shell: Shell) -> None:
+def go_to_next_slide(shell: Shell) -> None:
     """Go to where a foot that stands slides next, after now; searched beside the window."""
     from app.features.character.foot_marks import watch_of
     from metagraph.playback.posing.foot_slides import RATE
@@ -305,7 +305,7 @@ def next_slide(shell: Shell) -> None:
     session.transport.set_playing(False)
     end = min(shown.length, now + AHEAD)
 
-    def search(job: Job) -> float | None:
+    def search(job: WindowJob) -> float | None:
         first, last = int(now * RATE) + 1, int(end * RATE) + 1
         for part in range(first, last, PART):
             if job.cancelled:

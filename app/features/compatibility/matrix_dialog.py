@@ -32,17 +32,17 @@ from app.features.compatibility.matrix_table import (
     USES,
     Cell,
     Legend,
-    Marks,
+    MatrixMarks,
     MatrixModel,
     Rows,
-    told,
+    describe_cell,
 )
 from app.look.domain_words import LAYER_LONG_TITLES
 from app.look.theme import KIND_MARKS, KIND_TITLES, strengthen
 from app.project.document import Document
-from app.project.jobs import Job, Jobs
-from app.stage.compatibility_state import Compatibility, proposed_fields
-from app.stage.session import Session
+from app.project.jobs import Jobs, WindowJob
+from app.stage.compatibility_state import Compatibility, compare_proposed_timing
+from app.stage.session import StageSession
 from app.translation import tr, tr_error, tr_phrase, tr_plural
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph import edits
@@ -58,7 +58,7 @@ class MatrixDialog(QDialog):
     def __init__(
         self,
         document: Document,
-        session: Session,
+        session: StageSession,
         compatibility: Compatibility,
         jobs: Jobs,
         parent: QWidget | None = None,
@@ -107,7 +107,7 @@ class MatrixDialog(QDialog):
         header.setSortIndicatorShown(True)
         header.setSortIndicator(USES, Qt.SortOrder.AscendingOrder)
         header.sortIndicatorChanged.connect(self._sort)
-        self.table.setItemDelegate(Marks(self.session, self))
+        self.table.setItemDelegate(MatrixMarks(self.session, self))
         self.table.setItemDelegateForColumn(CLIP, QStyledItemDelegate(self.table))
         self.table.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
         self.table.setShowGrid(False)
@@ -255,7 +255,7 @@ class MatrixDialog(QDialog):
                 )
             )
             return
-        words = told(found[2], entry.name, stance.name)
+        words = describe_cell(found[2], entry.name, stance.name)
         if self.kind.currentData() == "transition":
             end = project.stance(self._end(found[0], stance.id))
             words += (
@@ -307,21 +307,23 @@ class MatrixDialog(QDialog):
         clip, stance, kind, layer = found[0], found[1], self.kind.currentData(), self.session.place.layer
         project, judged = self.document.project, self.compatibility.judged
         end = self._end(clip, stance) if kind == "transition" else None
-        why = edits.refusal(project, [clip], layer, kind, stance, end)
+        why = edits.find_placing_refusal(project, [clip], layer, kind, stance, end)
         if why is not None:
             why = tr_phrase(why)
             self.words.setText(f"{why[:1].upper()}{why[1:]}.")
             return
         measured = judged.measured[layer] if judged is not None else None
 
-        def work(_: Job) -> Mapping[str, Any]:
-            from metagraph.suggest.jumps.found import curves
+        def work(_: WindowJob) -> Mapping[str, Any]:
+            from metagraph.suggest.jumps.found import stance_curves
 
-            after = edits.place(project, [clip], layer, kind, stance, end)
+            after = edits.place_clips(project, [clip], layer, kind, stance, end)
             action = _newest(project, after)
-            seen = curves(after, measured, action) if measured is not None else None
+            seen = stance_curves(after, measured, action) if measured is not None else None
             return (
-                proposed_fields(action, seen.proposed, after.clips[clip].duration) if seen is not None else {}
+                compare_proposed_timing(action, seen.proposed, after.clips[clip].duration)
+                if seen is not None
+                else {}
             )
 
         document, session, failures = self.document, self.session, list[str]()
@@ -330,7 +332,7 @@ class MatrixDialog(QDialog):
             """Put it into the project, whether the dialog is still there or not."""
 
             def placed(p: Project) -> Project:
-                after = edits.place(p, [clip], layer, kind, stance, end)
+                after = edits.place_clips(p, [clip], layer, kind, stance, end)
                 return edits.update_actions(after, [_newest(p, after).id], timing=timing)
 
             before = document.project

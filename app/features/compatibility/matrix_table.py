@@ -12,9 +12,9 @@ from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelInd
 from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPainterPath, QPen
 from PySide6.QtWidgets import QStyle, QStyledItemDelegate, QStyleOptionViewItem, QWidget
 
-from app.look.theme import KIND_MARKS, Theme, theme
-from app.stage.session import Session
-from app.translation import tr, translated
+from app.look.theme import KIND_MARKS, WindowTheme, theme
+from app.stage.session import StageSession
+from app.translation import lazy_texts, tr
 from metagraph.graph.model import KINDS, Kind, Project
 
 if TYPE_CHECKING:
@@ -41,17 +41,19 @@ class Cell:
     here: tuple[Kind, ...] = ()
 
 
-def grade(cost: float) -> int:
+def grade_jump(cost: float) -> int:
     """Return 0 for what does not show, 1 for what a blend hides, 2 for a jump, 3 for nothing known."""
     return 0 if cost <= 1 else 1 if cost <= BLENDED else 2 if isfinite(cost) else 3
 
 
-def words_of(cost: float, seconds: float, what: str) -> str:
+def describe_half_cell(cost: float, seconds: float, what: str) -> str:
     """Say a half: "leaves at 1.24 s: 0.6 of what shows as a jump"."""
     if not isfinite(cost):
         return tr("{what}: nothing to compare", what=what)
     of = tr("of") if cost <= 1 else tr("times")
-    more = {0: "", 1: tr("; a usual blend hides it")}.get(grade(cost), tr("; a usual blend does not hide it"))
+    more = {0: "", 1: tr("; a usual blend hides it")}.get(
+        grade_jump(cost), tr("; a usual blend does not hide it")
+    )
     return tr(
         "{what} at {seconds:.2f} s: {cost:.1f} {of} what shows as a jump{more}",
         what=what,
@@ -62,12 +64,12 @@ def words_of(cost: float, seconds: float, what: str) -> str:
     )
 
 
-def told(cell: Cell, clip: str, stance: str) -> str:
+def describe_cell(cell: Cell, clip: str, stance: str) -> str:
     """Say a cell in two lines under its names."""
     lines = [
         f"{clip}  ·  {stance}",
-        words_of(cell.enter, cell.enter_at, "enters"),
-        words_of(cell.leave, cell.leave_at, "leaves"),
+        describe_half_cell(cell.enter, cell.enter_at, "enters"),
+        describe_half_cell(cell.leave, cell.leave_at, "leaves"),
     ]
     if cell.here:
         lines.append(tr("placed here as {here}", here=" and ".join(cell.here)))
@@ -215,7 +217,7 @@ class MatrixModel(QAbstractTableModel):
         if role == CELL:
             return cell
         if role in (Qt.ItemDataRole.ToolTipRole, Qt.ItemDataRole.AccessibleTextRole):
-            return told(cell, entry.name, self._name(column))
+            return describe_cell(cell, entry.name, self._name(column))
         return None
 
     def _name(self, column: int) -> str:
@@ -238,7 +240,7 @@ class MatrixModel(QAbstractTableModel):
         return None
 
 
-def half(rect: QRectF, side: str) -> QPainterPath:
+def half_disc(rect: QRectF, side: str) -> QPainterPath:
     """Return half a disc: "in" is the left one, its arrow's way into the clip, "out" the right one."""
     path = QPainterPath(rect.center())
     path.arcTo(rect, 90, 180 if side == "in" else -180)
@@ -246,18 +248,18 @@ def half(rect: QRectF, side: str) -> QPainterPath:
     return path
 
 
-def draw_half(painter: QPainter, t: Theme, rect: QRectF, side: str, cost: float) -> None:
+def draw_half(painter: QPainter, t: WindowTheme, rect: QRectF, side: str, cost: float) -> None:
     """Draw one half of a mark: filled, outlined, a cross, or a dot; shape says it as well as colour."""
     moved = rect.translated(-1.5 if side == "in" else 1.5, 0)
-    level = grade(cost)
+    level = grade_jump(cost)
     if level == 0:
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(t.kind("stance"))
-        painter.drawPath(half(moved, side))
+        painter.drawPath(half_disc(moved, side))
     elif level == 1:
         painter.setPen(QPen(QColor(t.warning), 1.4))
         painter.setBrush(Qt.BrushStyle.NoBrush)
-        painter.drawPath(half(moved.adjusted(0.7, 0.7, -0.7, -0.7), side))
+        painter.drawPath(half_disc(moved.adjusted(0.7, 0.7, -0.7, -0.7), side))
     else:
         x = rect.center().x() + (-0.32 if side == "in" else 0.32) * rect.width()
         y, r = rect.center().y(), 3.2 if level == 2 else 0.8
@@ -266,10 +268,10 @@ def draw_half(painter: QPainter, t: Theme, rect: QRectF, side: str, cost: float)
         painter.drawLine(round(x - r), round(y + r), round(x + r), round(y - r))
 
 
-class Marks(QStyledItemDelegate):
+class MatrixMarks(QStyledItemDelegate):
     """Draws cells and kinds."""
 
-    def __init__(self, session: Session, parent: QWidget) -> None:
+    def __init__(self, session: StageSession, parent: QWidget) -> None:
         super().__init__(parent)
         self.session = session
 
@@ -309,9 +311,9 @@ class Marks(QStyledItemDelegate):
 class Legend(QWidget):
     """What the marks mean."""
 
-    PARTS = translated(lambda: ((0.5, tr("no jump")), (2.0, tr("a blend hides it")), (9.0, tr("jumps"))))
+    PARTS = lazy_texts(lambda: ((0.5, tr("no jump")), (2.0, tr("a blend hides it")), (9.0, tr("jumps"))))
 
-    def __init__(self, session: Session, parent: QWidget) -> None:
+    def __init__(self, session: StageSession, parent: QWidget) -> None:
         super().__init__(parent)
         self.session = session
         self.setFixedHeight(24)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.features.conversation.conversation_menu import COMMANDS, ConversationFeature
-from app.shell.command_table import bound
+from app.shell.command_table import bind_commands
 from app.shell.context import Contribution, Panel, Shell
 from app.translation import tr
 
@@ -24,6 +24,6 @@ def contribute(shell: Shell) -> Contribution:
                 imports=("app.features.conversation.conversation_panel",),
             ),
         ),
-        commands=bound(COMMANDS, conversation),
+        commands=bind_commands(COMMANDS, conversation),
         drops=(conversation.drop(),),
     )

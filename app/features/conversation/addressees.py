@@ -31,7 +31,7 @@ def offer_addressees(menu: QMenu, editing: Editing) -> None:
         action.setChecked(now == {to})
 
 
-def addressee_words(conversation: Conversation, side: int, at: int) -> str:
+def describe_addressee(conversation: Conversation, side: int, at: int) -> str:
     """Return a line that says whom a segment is said to; nothing of two, who have nobody else, and of what
     takes no turn.
     """

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QFileDialog, QInputDialog
 
 from app.project.document import Edit
 from app.project.files import Files
-from app.project.speech_files import SOUNDS, TRANSCRIPTS, beside, kinds_of
+from app.project.speech_files import SOUNDS, TRANSCRIPTS, find_transcripts_beside, sort_speech_files
 from app.translation import tr, tr_error, tr_noop
 from metagraph.errors import FileError
 from metagraph.graph.conversation import edits as conversation_edits
@@ -33,14 +33,14 @@ def _filter() -> str:
     )
 
 
-def on_stage(shell: Shell) -> tuple[str, Conversation] | None:
+def get_conversation(shell: Shell) -> tuple[str, Conversation] | None:
     """Return the conversation on stage with its id."""
     ident = shell.stage.session.onstage.conversation or ""
     found = shell.document.project.conversations.get(ident)
     return (ident, found) if found is not None else None
 
 
-def converse(shell: Shell, paths: Sequence[Path] = ()) -> None:
+def ask_for_conversation(shell: Shell, paths: Sequence[Path] = ()) -> None:
     """Open the dialog on sounds and transcripts; without any they are asked for."""
     if shell.services[Files].refuse():
         return
@@ -53,7 +53,7 @@ def converse(shell: Shell, paths: Sequence[Path] = ()) -> None:
             _filter(),
         )
         paths = [Path(n) for n in names]
-    sounds, transcripts = kinds_of(paths)
+    sounds, transcripts = sort_speech_files(paths)
     if not sounds:
         if paths:
             shell.tell(
@@ -67,15 +67,15 @@ def converse(shell: Shell, paths: Sequence[Path] = ()) -> None:
         shell.stage.session,
         shell.jobs,
         sounds[:MOST_SPEAKERS],
-        transcripts or beside(sounds[:MOST_SPEAKERS]),
+        transcripts or find_transcripts_beside(sounds[:MOST_SPEAKERS]),
         shell.widget,
     )
     dialog.imported.connect(lambda: shell.show("conversation"))
     dialog.open()
 
 
-def rename(shell: Shell) -> None:
-    found = on_stage(shell)
+def rename_conversation(shell: Shell) -> None:
+    found = get_conversation(shell)
     if found is not None:
         name, ok = QInputDialog.getText(
             shell.widget, tr("Rename conversation"), tr("Name"), text=found[1].name
@@ -88,8 +88,8 @@ def rename(shell: Shell) -> None:
             )
 
 
-def remove(shell: Shell) -> None:
-    found = on_stage(shell)
+def remove_shown_conversation(shell: Shell) -> None:
+    found = get_conversation(shell)
     if found is not None:
         _edit(shell, tr("Remove conversation"), lambda p: conversation_edits.remove_conversation(p, found[0]))
         shell.tell(
@@ -100,17 +100,17 @@ def remove(shell: Shell) -> None:
         )
 
 
-def rates(shell: Shell) -> None:
-    found = on_stage(shell)
+def edit_rates(shell: Shell) -> None:
+    found = get_conversation(shell)
     if found is not None:
-        from app.features.conversation.conversation_settings import RatesDialog
+        from app.features.conversation.conversation_settings import SideRatesDialog
 
-        RatesDialog(shell.document, *found, shell.stage.performance, shell.widget).open()
+        SideRatesDialog(shell.document, *found, shell.stage.performance, shell.widget).open()
 
 
-def graph_again(shell: Shell) -> None:
+def use_graph_again(shell: Shell) -> None:
     """Let the graph move all who talk again."""
-    found = on_stage(shell)
+    found = get_conversation(shell)
     if found is not None:
 
         def everyone(project: Project) -> Project:
@@ -121,16 +121,16 @@ def graph_again(shell: Shell) -> None:
         _edit(shell, tr("Move with the graph again"), everyone)
 
 
-def word_lists(shell: Shell) -> None:
-    found = on_stage(shell)
+def edit_word_lists(shell: Shell) -> None:
+    found = get_conversation(shell)
     if found is not None:
         from app.features.conversation.word_lists import WordsDialog
 
         WordsDialog(shell.document, *found, shell.widget).open()
 
 
-def side_sounds(shell: Shell) -> None:
-    found = on_stage(shell)
+def edit_side_sounds(shell: Shell) -> None:
+    found = get_conversation(shell)
     if found is not None:
         from app.features.conversation.sides_dialog import SidesDialog
 
@@ -139,7 +139,7 @@ def side_sounds(shell: Shell) -> None:
 
 def write_segments(shell: Shell) -> None:
     """Ask where to, and write the segments of the conversation on stage."""
-    found = on_stage(shell)
+    found = get_conversation(shell)
     if found is None:
         return
     start = (shell.document.folder or Path.home()) / f"{found[1].name}.eaf"

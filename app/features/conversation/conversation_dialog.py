@@ -26,16 +26,16 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.conversation.conversation_settings import caption
-from app.features.conversation.speaker_card import Card, Cards
+from app.features.conversation.conversation_settings import make_caption
+from app.features.conversation.speaker_card import Cards, SpeakerCard
 from app.features.conversation.word_lists import LanguageBox, Lists, WordLists, language_name
 from app.look.theme import strengthen, theme
 from app.project.document import Document
-from app.project.jobs import Job, Jobs
+from app.project.jobs import Jobs, WindowJob
 from app.project.speech_files import TRANSCRIPTS, facts_of
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr, tr_error, tr_phrase
-from app.widgets.act_strip import clock
+from app.widgets.act_strip import format_clock
 from app.widgets.making import make_widget
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.conversation.model import (
@@ -67,7 +67,7 @@ class ImportDialog(QDialog):
     def __init__(
         self,
         document: Document,
-        session: Session,
+        session: StageSession,
         jobs: Jobs,
         sounds: Sequence[Path],
         transcripts: Sequence[Path],
@@ -80,7 +80,7 @@ class ImportDialog(QDialog):
         self.read: Read | None = None
         self.typed: list[Lists | None] = []  # lists that were typed, by the sides as they are read
         self.order = [0, 1]  # of the cards: which of those that were read each shows
-        self.job: Job | None = None
+        self.job: WindowJob | None = None
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle(tr("Conversation from sound"))
         self.resize(920, 500)  # at which both cards are as wide
@@ -91,7 +91,7 @@ class ImportDialog(QDialog):
         self.start()
 
     @property
-    def cards(self) -> list[Card]:
+    def cards(self) -> list[SpeakerCard]:
         """A card for each who was read, as they are to stand."""
         return self.table.cards
 
@@ -103,11 +103,11 @@ class ImportDialog(QDialog):
         layout.setSpacing(12)
         row = QHBoxLayout()
         row.setSpacing(12)
-        row.addWidget(caption(tr("Name"), self, True))
+        row.addWidget(make_caption(tr("Name"), self, True))
         self.name = QLineEdit(self.sounds[0].stem, self)
         self.name.setAccessibleName(tr("Name of the conversation"))
         row.addWidget(self.name, 1)
-        row.addWidget(caption(tr("Language"), self, True))
+        row.addWidget(make_caption(tr("Language"), self, True))
         self.language = LanguageBox(self)
         self.language.show_code(self.document.project.language)
         self.language.activated.connect(self.take_language)
@@ -120,7 +120,7 @@ class ImportDialog(QDialog):
         self.table.chosen.connect(self._show_parts)
         layout.addWidget(self.table)
         # All sides' lists, or the first one's and the second one's where two speak different languages.
-        self.whose = caption("", self), caption("", self)
+        self.whose = make_caption("", self), make_caption("", self)
         self.lists, self.others = WordLists(self), WordLists(self)
         for label, lists in zip(self.whose, (self.lists, self.others), strict=True):
             lists.changed.connect(self._typed)
@@ -153,7 +153,7 @@ class ImportDialog(QDialog):
         """The row of what was found, with what can be done about the words."""
         row = QHBoxLayout()
         row.setSpacing(8)
-        row.addWidget(caption(tr("Found"), self, True))
+        row.addWidget(make_caption(tr("Found"), self, True))
         self.files = QLabel(self, wordWrap=True)
         row.addWidget(self.files, 1)
         self.add_words = make_widget(
@@ -226,12 +226,12 @@ class ImportDialog(QDialog):
         language, usual = str(self.language.currentData()), self.document.project.language
         lists = tuple(self.typed)
 
-        def work(job: Job) -> Any:
+        def work(job: WindowJob) -> Any:
             from metagraph.formats.conversations.files import read_conversation
             from metagraph.formats.conversations.languages import Speaking
-            from metagraph.speech.language_packs import languages
+            from metagraph.speech.language_packs import list_language_packs
 
-            chosen = language if language in languages() else AUTO  # one's own list is not at hand
+            chosen = language if language in list_language_packs() else AUTO  # one's own list is not at hand
 
             return read_conversation(
                 sounds,
@@ -265,7 +265,7 @@ class ImportDialog(QDialog):
             if not card.name.isModified():
                 card.name.setText("" if NUMBERED.fullmatch(side.name) else side.name)
         self._show_lists()
-        minutes = clock(round(read.conversation.length))
+        minutes = format_clock(round(read.conversation.length))
         self._show(tr("Read {minutes} of conversation.", minutes=minutes))
 
     def _failed(self, error: Exception) -> None:

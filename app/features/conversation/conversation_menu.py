@@ -10,9 +10,9 @@ from PySide6.QtWidgets import QMenu, QWidget
 
 from app.project.files import Files
 from app.project.importing import FileDrop
-from app.project.speech_files import SOUNDS, converses, kinds_of
+from app.project.speech_files import SOUNDS, is_conversation, sort_speech_files
 from app.shell.actions import Command
-from app.shell.command_table import Feature, conversation_staged
+from app.shell.command_table import Feature, is_conversation_staged
 from app.translation import tr_noop
 from metagraph.graph.conversation.model import Conversation
 
@@ -40,9 +40,9 @@ class ConversationFeature(Feature):
         return FileDrop(SOUNDS, self._claim, self._take)
 
     def _claim(self, paths: Sequence[Path]) -> Sequence[Path]:
-        sounds, transcripts = kinds_of(paths)
+        sounds, transcripts = sort_speech_files(paths)
         mine = (*sounds, *transcripts)
-        return mine if sounds and converses(mine) else ()
+        return mine if sounds and is_conversation(mine) else ()
 
     def _take(self, paths: Sequence[Path]) -> None:
         if not self.shell.services[Files].refuse():
@@ -61,7 +61,7 @@ class ConversationFeature(Feature):
     def converse(self, paths: Sequence[Path] = ()) -> None:
         from app.features.conversation import conversation_commands
 
-        conversation_commands.converse(self.shell, paths)
+        conversation_commands.ask_for_conversation(self.shell, paths)
 
     def edit_sounds(self) -> None:
         self.do("side_sounds")
@@ -103,7 +103,7 @@ COMMANDS = (
         "settings",
         tr_noop("Re&name conversation…"),
         partial(ConversationFeature.do, name="rename"),
-        enabled=conversation_staged,
+        enabled=is_conversation_staged,
         menus=(SHORT,),
     ),
     Command(
@@ -112,7 +112,7 @@ COMMANDS = (
         "settings",
         tr_noop("&Rates…"),
         partial(ConversationFeature.do, name="rates"),
-        enabled=conversation_staged,
+        enabled=is_conversation_staged,
         tip=tr_noop("How often each gestures and nods"),
         menus=(SHORT,),
     ),
@@ -122,7 +122,7 @@ COMMANDS = (
         "settings",
         tr_noop("&Word lists…"),
         partial(ConversationFeature.do, name="word_lists"),
-        enabled=conversation_staged,
+        enabled=is_conversation_staged,
         tip=tr_noop("Which words are responses, which hesitations"),
         menus=(SHORT,),
     ),
@@ -132,7 +132,7 @@ COMMANDS = (
         "settings",
         tr_noop("S&ounds and names…"),
         ConversationFeature.edit_sounds,
-        enabled=conversation_staged,
+        enabled=is_conversation_staged,
         tip=tr_noop("Who talks, which sound is whose, and where each stands"),
         menus=(SHORT,),
     ),
@@ -142,7 +142,7 @@ COMMANDS = (
         "settings",
         tr_noop("C&haracters and voices"),
         fill=ConversationFeature.fill_partners,
-        enabled=conversation_staged,
+        enabled=is_conversation_staged,
         tip=tr_noop("Another character, body or voice for each who talks"),
     ),
     Command(
@@ -151,7 +151,7 @@ COMMANDS = (
         "stage",
         tr_noop("The &other's plan"),
         ConversationFeature.show_next_side,
-        enabled=conversation_staged,
+        enabled=is_conversation_staged,
         tip=tr_noop("Whose plan the timeline shows: of several the next one's"),
     ),
     Command(
@@ -169,7 +169,7 @@ COMMANDS = (
         "stage",
         tr_noop("&Keep as performances"),
         ConversationFeature.keep_as_performances,
-        enabled=conversation_staged,
+        enabled=is_conversation_staged,
         tip=tr_noop("What all of them do, as requests that can be edited one by one, and exported"),
     ),
     Command(
@@ -178,7 +178,7 @@ COMMANDS = (
         "write",
         tr_noop("&Export segments…"),
         partial(ConversationFeature.do, name="write_segments"),
-        enabled=conversation_staged,
+        enabled=is_conversation_staged,
         tip=tr_noop("As ELAN or Praat TextGrid"),
         menus=(SHORT,),
     ),
@@ -188,7 +188,7 @@ COMMANDS = (
         "remove",
         tr_noop("Remove conversation"),
         partial(ConversationFeature.do, name="remove"),
-        enabled=conversation_staged,
+        enabled=is_conversation_staged,
         menus=(SHORT,),
     ),
 )

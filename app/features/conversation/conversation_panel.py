@@ -7,15 +7,15 @@ from PySide6.QtGui import QDragMoveEvent, QDropEvent, QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from app.features.conversation.segment_editing import Editing
-from app.features.conversation.segment_lanes import KINDS, PLURALS, segment_words
+from app.features.conversation.segment_lanes import KINDS, PLURALS, describe_segment
 from app.features.conversation.segment_view import SegmentView
 from app.features.conversation.sound_reading import Sounds
-from app.look.plural import listed
+from app.look.plural import list_in_words
 from app.look.theme import SOUND_MARKS, theme
 from app.project.document import Document
 from app.project.jobs import Jobs
-from app.stage.performance import Performance
-from app.stage.session import Session
+from app.stage.performance import StagePerformance
+from app.stage.session import StageSession
 from app.translation import group_thousands, tr, tr_noop, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.mime import sounds_of
@@ -37,9 +37,9 @@ class ConversationPanel(QWidget):
     def __init__(
         self,
         document: Document,
-        session: Session,
+        session: StageSession,
         jobs: Jobs,
-        performance: Performance,
+        performance: StagePerformance,
         parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
@@ -137,7 +137,7 @@ class ConversationPanel(QWidget):
         chosen, found = self.editing.chosen, self.editing.segment(self.editing.last)
         if len(chosen) == 1 and found is not None and self.editing.last is not None:
             self.title.say(
-                f"{side_name(of, self.editing.last[0])}: {segment_words(found)}".replace("\n", ", "), True
+                f"{side_name(of, self.editing.last[0])}: {describe_segment(found)}".replace("\n", ", "), True
             )
         elif chosen:
             self.title.say(
@@ -149,7 +149,7 @@ class ConversationPanel(QWidget):
             )
         else:
             minutes, seconds = divmod(round(of.length), 60)
-            who = listed([side_name(of, side) for side in range(len(of.sides))])
+            who = list_in_words([side_name(of, side) for side in range(len(of.sides))])
             self.title.say(f"{who}, {minutes}:{seconds:02d}{self._delivered()}")
 
     def _delivered(self) -> str:
@@ -162,7 +162,7 @@ class ConversationPanel(QWidget):
             whole = sum(t.count for t in told)
             shares = [(sum(t.performed for t in told) / whole, sum(t.asked * t.count for t in told) / whole)]
         done, asked = (
-            listed([f"{100 * share:.0f} %" for share in some]) for some in zip(*shares, strict=True)
+            list_in_words([f"{100 * share:.0f} %" for share in some]) for some in zip(*shares, strict=True)
         )
         return tr(". Gestures go with {done} of the clauses, {asked} were asked for", done=done, asked=asked)
 

@@ -22,18 +22,18 @@ from PySide6.QtWidgets import (
 
 from app.look.theme import strengthen
 from app.project.document import Document
-from app.stage.performance import Performance
-from app.stage.playback_source import Shown
-from app.translation import tr, tr_error, tr_noop, translated
+from app.stage.performance import StagePerformance
+from app.stage.playback_source import ShownPlayback
+from app.translation import lazy_texts, tr, tr_error, tr_noop
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.conversation.model import SPOKEN, Conversation, Rates, side_name
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
-from metagraph.speech.gaze_shares import together
+from metagraph.speech.gaze_shares import join_shares
 
-RATES = translated(
+RATES = lazy_texts(
     lambda: {
         "clause": (tr("gestures with its own clauses"), tr("How often the hands move with a clause")),
         "response": (
@@ -55,7 +55,7 @@ RATES = translated(
         "laugh": (tr("laughs along"), tr("How many of the others' laughs are answered with a laughing face")),
     }
 )
-BLINKS = translated(
+BLINKS = lazy_texts(
     lambda: {
         "life": (
             tr("As in Life, and on stresses"),
@@ -70,7 +70,7 @@ BLINKS = translated(
         ),
     }
 )
-ORDINALS = translated(
+ORDINALS = lazy_texts(
     lambda: (
         tr("first"),
         tr("second"),
@@ -82,17 +82,17 @@ ORDINALS = translated(
         tr("eighth"),
     )
 )
-ACTORS = translated(lambda: {"female": tr("the woman"), "male": tr("the man")})
+ACTORS = lazy_texts(lambda: {"female": tr("the woman"), "male": tr("the man")})
 
 
-def asked(words: str) -> tuple[str, ...]:
+def parse_word_list(words: str) -> tuple[str, ...]:
     """Return the words of a list that was typed: one a line, or parted by commas."""
     return tuple(
         dict.fromkeys(x for part in words.replace(",", "\n").split("\n") if (x := " ".join(part.split())))
     )
 
 
-def caption(words: str, parent: QWidget, dim: bool = False) -> QLabel:
+def make_caption(words: str, parent: QWidget, dim: bool = False) -> QLabel:
     out = QLabel(words, parent, wordWrap=dim)
     out.setProperty("dim" if dim else "title", True)
     return out
@@ -141,7 +141,7 @@ class SettingDialog(QDialog):
         super().accept()
 
 
-def delivered_words(shown: Shown, conversation: Conversation) -> str:
+def describe_delivered(shown: ShownPlayback, conversation: Conversation) -> str:
     """Return what becomes of all sides' rates in what is shown, a line for each, and of three or more where
     they look; empty where nothing is.
     """
@@ -151,7 +151,7 @@ def delivered_words(shown: Shown, conversation: Conversation) -> str:
         for told in one.told
         if told.count
     ]
-    looks = together([share for one in shown.everyone for share in one.looks])
+    looks = join_shares([share for one in shown.everyone for share in one.looks])
     return "\n".join((*rates, *(tr("Whoever is {words}", words=share.words()) for share in looks)))
 
 
@@ -178,7 +178,7 @@ class Tall(QScrollArea):
         return QSize(inside.width() + bar, min(self.most, inside.height() + 2, 160))
 
 
-class RatesDialog(SettingDialog):
+class SideRatesDialog(SettingDialog):
     """How often each who talks moves with what is said, and what becomes of it on stage."""
 
     title, text = tr_noop("Rates"), tr_noop("Change rates")
@@ -188,7 +188,7 @@ class RatesDialog(SettingDialog):
         document: Document,
         ident: str,
         conversation: Conversation,
-        performance: Performance,
+        performance: StagePerformance,
         parent: QWidget,
     ) -> None:
         self.performance = performance
@@ -198,7 +198,7 @@ class RatesDialog(SettingDialog):
 
     def build(self, layout: QVBoxLayout) -> None:
         layout.addWidget(
-            caption(
+            make_caption(
                 tr("How often each moves with what is said. Beside: what actors did (Yang et al. 2020)."),
                 self,
                 True,
@@ -209,11 +209,11 @@ class RatesDialog(SettingDialog):
         grid.setVerticalSpacing(8)
         count = len(self.conversation.sides)
         for side in range(count):
-            whose = caption(side_name(self.conversation, side), self)
+            whose = make_caption(side_name(self.conversation, side), self)
             whose.setWordWrap(True)
             grid.addWidget(whose, 0, 1 + side)
         for column, actor in enumerate(ACTORS.values()):
-            told = caption(actor[:1].upper() + actor[1:], self, True)
+            told = make_caption(actor[:1].upper() + actor[1:], self, True)
             told.setWordWrap(count == 2)  # of more the fields need the room
             grid.addWidget(told, 0, 1 + count + column)
         self.fields: list[dict[str, QDoubleSpinBox]] = [{} for _ in range(count)]
@@ -230,7 +230,7 @@ class RatesDialog(SettingDialog):
                 did = (
                     f"{100 * getattr(conversation_edits.PAPER[actor], name):.0f} %" if name in SPOKEN else "–"
                 )
-                told = caption(did, self, True)
+                told = make_caption(did, self, True)
                 told.setWordWrap(count == 2)
                 grid.addWidget(told, row, 1 + count + column)
         for side in range(count):
@@ -260,7 +260,7 @@ class RatesDialog(SettingDialog):
         row_of.addWidget(self.blinks)
         row_of.addStretch(1)
         layout.addLayout(row_of)
-        self.delivered = caption("", self, True)
+        self.delivered = make_caption("", self, True)
         if count == 2:
             layout.addWidget(self.delivered)
             layout.addStretch(1)
@@ -271,7 +271,7 @@ class RatesDialog(SettingDialog):
 
     def refresh(self) -> None:
         """Say what becomes of the rates as they are."""
-        self.delivered.setText(delivered_words(self.performance.shown, self.conversation))
+        self.delivered.setText(describe_delivered(self.performance.shown, self.conversation))
         self.delivered.setVisible(bool(self.delivered.text()))
 
     def take(self, side: int, rates: Rates) -> None:

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QMenu, QWidget
 
 from app.project.document import Document
 from app.project.speech_files import SOUNDS, channels_of
-from app.translation import tr, tr_error, translated
+from app.translation import lazy_texts, tr, tr_error
 from metagraph.formats.store import SUFFIX, relative
 from metagraph.graph.conversation.edits import change_side
 from metagraph.graph.conversation.model import Conversation, side_name
@@ -21,10 +21,12 @@ from metagraph.graph.edit_error import EditError
 BODIES = (".glb", ".gltf")
 MOST = 24  # files of a kind that a menu offers; all others are chosen in the dialog
 LOOKED_AT = 2000  # files of a folder
-EARS = translated(lambda: (tr("left"), tr("right")))
+EARS = lazy_texts(lambda: (tr("left"), tr("right")))
 
 
-def partner_menu(parent: QWidget, document: Document, ident: str, side: int, more: object = None) -> QMenu:
+def make_partner_menu(
+    parent: QWidget, document: Document, ident: str, side: int, more: object = None
+) -> QMenu:
     """Return the menu of one who talks. more: called for what the menu does not offer."""
     return fill_partner(QMenu(parent), document, ident, side, more)
 

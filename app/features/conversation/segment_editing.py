@@ -13,7 +13,7 @@ from PySide6.QtCore import QObject, Signal
 from app.features.conversation.segment_lanes import KINDS
 from app.features.conversation.sound_reading import SideSound, Sounds
 from app.project.document import Document, Edit
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr, tr_error, tr_plural
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.conversation.model import SPOKEN, Conversation, Segment, Sound
@@ -30,7 +30,7 @@ class Editing(QObject):
     changed = Signal()
 
     def __init__(
-        self, document: Document, session: Session, sounds: Sounds, parent: QObject | None = None
+        self, document: Document, session: StageSession, sounds: Sounds, parent: QObject | None = None
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.sounds = document, session, sounds
@@ -276,10 +276,10 @@ class Editing(QObject):
         """Return when in a stretch the voice is highest; None where none is heard."""
         of = self.conversation
         heard = self.sounds.of(of, side) if of is not None else None
-        return highest(heard, min(start, end), max(start, end)) if heard is not None else None
+        return find_highest_pitch(heard, min(start, end), max(start, end)) if heard is not None else None
 
 
-def highest(heard: SideSound, start: float, end: float) -> float | None:
+def find_highest_pitch(heard: SideSound, start: float, end: float) -> float | None:
     """Return when in a stretch a pitch is highest; None where there is none."""
     if heard.pitch is None:
         return None

@@ -12,8 +12,8 @@ from typing import Any, Literal
 import numpy as np
 from PySide6.QtCore import QPointF
 
-from app.features.conversation.segment_lanes import lanes, visible
-from app.widgets.lane_geometry import LEFT, Scale
+from app.features.conversation.segment_lanes import find_visible_segments, place_segment_lanes
+from app.widgets.lane_geometry import LEFT, LaneScale
 from metagraph.graph.conversation.model import Conversation, Word
 
 Part = Literal["nothing", "title", "ruler", "wave", "start", "end", "body", "gap", "peak"]
@@ -37,17 +37,21 @@ class SegmentHit:
 NOTHING = SegmentHit("nothing")
 
 
-def on_arrow(point: QPointF, size: tuple[float, float], conversation: Conversation | None, side: int) -> bool:
+def is_on_arrow(
+    point: QPointF, size: tuple[float, float], conversation: Conversation | None, side: int
+) -> bool:
     """Return whether a point of a side's title is on the arrow behind its name, which opens its menu."""
     if conversation is None:
         return False
-    lane = lanes(*size, len(conversation.sides))[side]
+    lane = place_segment_lanes(*size, len(conversation.sides))[side]
     return point.x() >= LEFT - ARROW and point.y() <= lane.wave.top() + ARROW
 
 
-def hit_at(conversation: Conversation, scale: Scale, size: tuple[float, float], point: QPointF) -> SegmentHit:
+def find_segment_hit(
+    conversation: Conversation, scale: LaneScale, size: tuple[float, float], point: QPointF
+) -> SegmentHit:
     """Return what is under a point. size: width and height of all lanes, pixels."""
-    for side, lane in enumerate(lanes(*size, len(conversation.sides))):
+    for side, lane in enumerate(place_segment_lanes(*size, len(conversation.sides))):
         if not lane.whole.top() <= point.y() <= lane.whole.bottom() + 2:
             continue
         if point.x() < LEFT:
@@ -59,11 +63,11 @@ def hit_at(conversation: Conversation, scale: Scale, size: tuple[float, float], 
     return NOTHING if point.x() < LEFT else SegmentHit("ruler")
 
 
-def _peak(conversation: Conversation, side: int, scale: Scale, x: float) -> int | None:
+def _peak(conversation: Conversation, side: int, scale: LaneScale, x: float) -> int | None:
     """Return the clause whose stress is nearest, if one is near enough."""
     segments = conversation.sides[side].segments
     reach = DOT / scale.each
-    near = visible(segments, scale.seconds(x) - reach, scale.seconds(x) + reach)
+    near = find_visible_segments(segments, scale.seconds(x) - reach, scale.seconds(x) + reach)
     found = [
         (abs(scale.x(p) - x), n)
         for n in near
@@ -72,10 +76,10 @@ def _peak(conversation: Conversation, side: int, scale: Scale, x: float) -> int 
     return min(found)[1] if found and min(found)[0] <= DOT else None
 
 
-def _segment(conversation: Conversation, side: int, scale: Scale, x: float) -> SegmentHit:
+def _segment(conversation: Conversation, side: int, scale: LaneScale, x: float) -> SegmentHit:
     segments, seconds, reach = conversation.sides[side].segments, scale.seconds(x), EDGE / scale.each
     edges: list[tuple[float, bool, SegmentHit]] = []  # how far off, whether it is held from outside, and what
-    for n in visible(segments, seconds - reach, seconds + reach):
+    for n in find_visible_segments(segments, seconds - reach, seconds + reach):
         left, right = scale.x(segments[n].start), scale.x(segments[n].end)
         inner = EDGE if right - left > NARROW else 0.0
         if left <= x <= right and (inner == 0.0 or left + inner < x < right - inner):
@@ -111,7 +115,7 @@ def pitch_maxima(times: Any, hertz: Any) -> Any:
     return np.array([(times[a - 1] + times[b - 1]) / 2 for a, b in tops])
 
 
-def snapped(seconds: float, marks: Iterable[float], scale: Scale, on: bool = True) -> float:
+def snap_time(seconds: float, marks: Iterable[float], scale: LaneScale, on: bool = True) -> float:
     """Return the nearest of some times if it is near on the screen, else the time itself. on: snapping is
     wanted.
     """

@@ -11,14 +11,14 @@ from PySide6.QtGui import QKeySequence
 
 from app.features.conversation.segment_editing import Editing
 from app.look.theme import SOUND_MARKS
-from app.translation import tr, translated
+from app.translation import lazy_texts, tr
 from metagraph.graph.conversation.model import SPOKEN, Sound
 
 FINE, FAR = 0.02, 0.2  # seconds a key moves something
-TITLES = translated(
+TITLES = lazy_texts(
     lambda: {"clause": tr("Clause"), "response": tr("Response"), "hesitation": tr("Hesitation")}
 )
-NUDGES = translated(
+NUDGES = lazy_texts(
     lambda: {
         "body": (tr("Move earlier"), tr("Move later")),
         "end": (tr("Move the end earlier"), tr("Move the end later")),
@@ -78,7 +78,7 @@ def _nudges() -> list[Deed]:
     return out
 
 
-DEEDS: tuple[Deed, ...] = translated(
+DEEDS: tuple[Deed, ...] = lazy_texts(
     lambda: (
         *(
             Deed(f"{SOUND_MARKS[kind]}  {TITLES[kind]}", (_combined(key),), partial(_label, kind))
@@ -129,6 +129,6 @@ _BY_KEY = {key: deed for deed in DEEDS for key in deed.keys}
 _PLAIN = ~(Modifier.KeypadModifier | Modifier.GroupSwitchModifier)
 
 
-def deed_of(key: int, modifiers: Qt.KeyboardModifier) -> Deed | None:
+def find_deed(key: int, modifiers: Qt.KeyboardModifier) -> Deed | None:
     """Return what a key does."""
     return _BY_KEY.get(QKeyCombination(modifiers & _PLAIN, Qt.Key(key)))

@@ -14,15 +14,15 @@ from typing import Any
 import numpy as np
 from PySide6.QtCore import QRectF
 
-from app.translation import tr, translated
-from app.widgets.lane_geometry import LEFT, RULER, Scale
+from app.translation import lazy_texts, tr
+from app.widgets.lane_geometry import LEFT, RULER, LaneScale
 from metagraph.graph.conversation.model import Segment, Word
 
 # what the window calls the kinds of segments
-KINDS = translated(
+KINDS = lazy_texts(
     lambda: {"clause": tr("clause"), "response": tr("response"), "hesitation": tr("hesitation")}
 )
-PLURALS = translated(
+PLURALS = lazy_texts(
     lambda: {"clause": tr("clauses"), "response": tr("responses"), "hesitation": tr("hesitations")}
 )
 GAP = 8.0  # pixels between two
@@ -47,7 +47,7 @@ class SegmentLane:
         return self.wave.united(self.segments)
 
 
-def least(sides: int) -> int:
+def least_lane_height(sides: int) -> int:
     """Return how many pixels the lanes of so many need."""
     return round(sides * _low(sides) + (sides - 1) * GAP + 4 + RULER)
 
@@ -56,7 +56,7 @@ def _low(sides: int) -> float:
     return LOW if sides == 2 else LOWER
 
 
-def lanes(width: float, height: float, sides: int = 2) -> tuple[SegmentLane, ...]:
+def place_segment_lanes(width: float, height: float, sides: int = 2) -> tuple[SegmentLane, ...]:
     """Return the lanes of all who talk, one under the other."""
     each = min(TALLEST, max(_low(sides), (height - RULER - (sides - 1) * GAP - 4) / sides))
     segments = min(SEGMENTS, max(LEGIBLE, each * 0.28))
@@ -74,7 +74,7 @@ def lanes(width: float, height: float, sides: int = 2) -> tuple[SegmentLane, ...
     return tuple(out)
 
 
-def farthest(width: float, length: float) -> float:
+def least_scale(width: float, length: float) -> float:
     """Return the fewest pixels a second: at which all of it is in sight."""
     return min(2.0, max(40.0, width - LEFT - 8) / max(length, 1e-3))
 
@@ -86,24 +86,24 @@ def pitch_y(hertz: Any, wave: QRectF) -> Any:
     return wave.bottom() - 4 - part * (wave.height() - 8)
 
 
-def visible(segments: Sequence[Segment], begin: float, end: float) -> range:
+def find_visible_segments(segments: Sequence[Segment], begin: float, end: float) -> range:
     """Return the places of the segments that are in sight, one that only touches it, too."""
     first = bisect_left(segments, begin, key=lambda s: s.end)
     return range(first, max(first, bisect_right(segments, end, key=lambda s: s.start)))
 
 
-def words_in(words: Sequence[Word], begin: float, end: float) -> Sequence[Word]:
+def find_words_between(words: Sequence[Word], begin: float, end: float) -> Sequence[Word]:
     """Return the words that start in a stretch, and the one before."""
     first = bisect_left(words, begin, key=lambda w: w.start)
     return words[max(0, first - 1) : bisect_right(words, end, key=lambda w: w.start)]
 
 
-def segment_rect(segment: Segment, scale: Scale, lane: SegmentLane) -> QRectF:
+def segment_rect(segment: Segment, scale: LaneScale, lane: SegmentLane) -> QRectF:
     left = scale.x(segment.start)
     return QRectF(left, lane.segments.top(), max(1.5, scale.x(segment.end) - left), lane.segments.height())
 
 
-def segment_words(segment: Segment) -> str:
+def describe_segment(segment: Segment) -> str:
     """Return a segment in words: what is said, what it is, from when to when, and its stress."""
     what = {
         "clause": tr("Clause"),

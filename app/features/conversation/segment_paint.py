@@ -13,18 +13,18 @@ from app.features.conversation.segment_hits import SegmentHit
 from app.features.conversation.segment_lanes import (
     AXIS,
     SegmentLane,
-    lanes,
+    find_visible_segments,
+    find_words_between,
     pitch_y,
+    place_segment_lanes,
     segment_rect,
-    visible,
-    words_in,
 )
 from app.features.conversation.sound_reading import SideSound
-from app.look.theme import SOUND_MARKS, Theme
+from app.look.theme import SOUND_MARKS, WindowTheme
 from app.translation import tr
-from app.widgets.act_strip import STEPS, clock
-from app.widgets.lane_geometry import LEFT, RULER, Scale, advance, elided
-from app.widgets.waveforms import Envelope, joined, painted
+from app.widgets.act_strip import STEPS, format_clock
+from app.widgets.lane_geometry import LEFT, RULER, LaneScale, elide_text, text_width
+from app.widgets.waveforms import Envelope, join_columns, paint_columns
 from metagraph.graph.conversation.model import Conversation, Segment, side_name
 
 INK = "#17181b"  # on the fills
@@ -44,7 +44,7 @@ class SegmentScene:
 
     conversation: Conversation
     heard: Sequence[SideSound | None]
-    scale: Scale
+    scale: LaneScale
     width: float
     height: float
     ratio: float
@@ -53,12 +53,14 @@ class SegmentScene:
     side: int = 0  # whose plan the timeline shows
 
 
-def paint(painter: QPainter, t: Theme, scene: SegmentScene) -> None:
+def paint_segments(painter: QPainter, t: WindowTheme, scene: SegmentScene) -> None:
     """Paint everything but the playhead."""
     painter.fillRect(QRectF(0, 0, scene.width, scene.height), QColor(t.panel))
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     _ruler(painter, t, scene)
-    for side, lane in enumerate(lanes(scene.width, scene.height, len(scene.conversation.sides))):
+    for side, lane in enumerate(
+        place_segment_lanes(scene.width, scene.height, len(scene.conversation.sides))
+    ):
         _titles(painter, t, scene, side, lane)
         painter.save()
         painter.setClipRect(lane.whole.adjusted(0, 0, 0, 2))
@@ -76,19 +78,19 @@ def paint(painter: QPainter, t: Theme, scene: SegmentScene) -> None:
         painter.fillRect(QRectF(max(x, LEFT), RULER, scene.width, scene.height), veil)
 
 
-def _ruler(painter: QPainter, t: Theme, scene: SegmentScene) -> None:
+def _ruler(painter: QPainter, t: WindowTheme, scene: SegmentScene) -> None:
     scale = scene.scale
     step = next((s for s in (0.1, 0.2, *STEPS) if s * scale.each >= 64), STEPS[-1])
     painter.setPen(QColor(t.dim))
     n = int(scale.first // step)
     while (x := scale.x(n * step)) < scene.width:
-        words = clock(round(n * step, 3))
-        if x >= LEFT - 1 and x + advance(words, painter.font().toString()) / 2 + 1 <= scene.width:
+        words = format_clock(round(n * step, 3))
+        if x >= LEFT - 1 and x + text_width(words, painter.font().toString()) / 2 + 1 <= scene.width:
             painter.drawText(QRectF(x - 40, 0, 80, RULER), Qt.AlignmentFlag.AlignCenter, words)
         n += 1
 
 
-def _titles(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: SegmentLane) -> None:
+def _titles(painter: QPainter, t: WindowTheme, scene: SegmentScene, side: int, lane: SegmentLane) -> None:
     """Who it is, the pitches' axis, and what the rows below are."""
     own, small, bold = painter.font(), QFont(painter.font()), QFont(painter.font())
     small.setPixelSize(SMALL)
@@ -98,12 +100,12 @@ def _titles(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: S
         painter.fillRect(QRectF(0, lane.whole.top(), LEFT - 1, lane.whole.height()), QColor(t.hover))
     if side == scene.side:
         painter.fillRect(QRectF(3, lane.wave.top() + 3, 3, lane.whole.height() - 6), QColor(t.text))
-    if advance(name, bold.toString()) > LEFT - 32:
+    if text_width(name, bold.toString()) > LEFT - 32:
         bold.setPixelSize(SMALL)
     painter.setFont(bold)
     painter.setPen(QColor(t.text if over or side == scene.side else t.dim))
     painter.drawText(
-        QRectF(12, lane.wave.top() + 2, LEFT - 30, 18), MIDDLE, elided(name, bold.toString(), LEFT - 32)
+        QRectF(12, lane.wave.top() + 2, LEFT - 30, 18), MIDDLE, elide_text(name, bold.toString(), LEFT - 32)
     )
     x, y = LEFT - 11.0, lane.wave.top() + 11.0  # what opens the menu of who it is
     painter.setPen(QPen(QColor(t.text if over else t.dim), 1.5))
@@ -123,7 +125,7 @@ def _titles(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: S
     painter.setFont(own)
 
 
-def _wave(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: SegmentLane) -> None:
+def _wave(painter: QPainter, t: WindowTheme, scene: SegmentScene, side: int, lane: SegmentLane) -> None:
     """The waveform with what is segmented behind it, its pitch over it; where it is not there, why."""
     area, heard = lane.wave, scene.heard[side]
     painter.setPen(Qt.PenStyle.NoPen)
@@ -167,13 +169,13 @@ def _curve(
     there = high >= low
     top, bottom = (y(np.where(there, v, 1.0)) * ratio for v in (high, low))
     top, bottom = np.where(there, top, np.inf), np.where(there, bottom, -np.inf)
-    top, bottom = joined(top, bottom, thick * ratio)
-    picture = painted(top, bottom, int(area.height() * ratio), color)
+    top, bottom = join_columns(top, bottom, thick * ratio)
+    picture = paint_columns(top, bottom, int(area.height() * ratio), color)
     picture.setDevicePixelRatio(ratio)
     painter.drawImage(area.topLeft(), picture)
 
 
-def _told(painter: QPainter, t: Theme, heard: SideSound | None, area: QRectF) -> None:
+def _told(painter: QPainter, t: WindowTheme, heard: SideSound | None, area: QRectF) -> None:
     """Say why there is no sound, or how far it is."""
     inner = area.adjusted(14, 2, -14, -2)
     if heard is None or heard.missing:
@@ -187,14 +189,14 @@ def _told(painter: QPainter, t: Theme, heard: SideSound | None, area: QRectF) ->
     elif heard.told:
         painter.setPen(QColor(t.dim))
         if heard.wave is not None:  # then it stands over the waveform
-            wide = advance(heard.told, painter.font().toString()) + 12
+            wide = text_width(heard.told, painter.font().toString()) + 12
             inner = QRectF(area.right() - wide - 6, area.top() + 3, wide, 18)
             painter.fillRect(inner, QColor(t.panel))
         painter.drawText(inner, MIDDLE if heard.wave is None else Qt.AlignmentFlag.AlignCenter, heard.told)
         painter.fillRect(QRectF(area.left(), area.bottom() - 2, area.width() * heard.part, 2), QColor(t.dim))
 
 
-def _words(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: SegmentLane) -> None:
+def _words(painter: QPainter, t: WindowTheme, scene: SegmentScene, side: int, lane: SegmentLane) -> None:
     """The words where they are said, as far as there is room before the next."""
     scale, font = scene.scale, QFont(painter.font())
     own = painter.font()
@@ -202,26 +204,29 @@ def _words(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: Se
     painter.setFont(font)
     key = font.toString()
     painter.setPen(QColor(t.text))
-    some = words_in(scene.conversation.sides[side].words, scale.first, scale.seconds(scene.width))
+    some = find_words_between(scene.conversation.sides[side].words, scale.first, scale.seconds(scene.width))
     for n, word in enumerate(some):
         left = scale.x(word.start)
         until = min(scale.x(some[n + 1].start) if n + 1 < len(some) else left + 300.0, scene.width)
         words = (
             word.text
-            if advance(word.text, key) <= until - left - 4
-            else elided(word.text, key, int(until - left - 4))
+            if text_width(word.text, key) <= until - left - 4
+            else elide_text(word.text, key, int(until - left - 4))
         )
         if len(words) > 3 or words == word.text:
             painter.drawText(QRectF(left + 1, lane.words.top(), 400, lane.words.height()), MIDDLE, words)
     painter.setFont(own)
 
 
-def _segments(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: SegmentLane) -> None:
+def _segments(painter: QPainter, t: WindowTheme, scene: SegmentScene, side: int, lane: SegmentLane) -> None:
     scale, segments = scene.scale, scene.conversation.sides[side].segments
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(QColor(t.field))
     painter.drawRoundedRect(lane.segments, 4, 4)
-    key, seen = painter.font().toString(), visible(segments, scale.first, scale.seconds(scene.width))
+    key, seen = (
+        painter.font().toString(),
+        find_visible_segments(segments, scale.first, scale.seconds(scene.width)),
+    )
     wide = [n for n in seen if segments[n].end - segments[n].start > NARROW / scale.each]
     if len(wide) < len(seen):
         few = set(wide)
@@ -244,21 +249,21 @@ def _segments(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane:
         left = max(rect.left(), LEFT)
         room = min(rect.right(), scene.width) - left - 10
         mark = SOUND_MARKS[segment.kind]
-        if room < advance(mark, key) - 2:
+        if room < text_width(mark, key) - 2:
             continue
         painter.setPen(QColor(INK))
         words = f"{mark} {segment.text}".strip() if segment.text else f"{mark} {segment.kind}"
-        out = elided(words, key, int(room))
+        out = elide_text(words, key, int(room))
         out = out if len(out) > 4 or out == words else mark
         painter.drawText(QRectF(left + 6, rect.top(), room + 4, rect.height()), MIDDLE, out)
 
 
-def _peaks(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: SegmentLane) -> None:
+def _peaks(painter: QPainter, t: WindowTheme, scene: SegmentScene, side: int, lane: SegmentLane) -> None:
     """The stress of every clause: a dot on its pitch, and a line down to its segment."""
     scale, segments, heard = scene.scale, scene.conversation.sides[side].segments, scene.heard[side]
     fill, stem = QColor(t.sounds["clause"]), QColor(t.sounds["clause"])
     stem.setAlpha(130)
-    for n in visible(segments, scale.first, scale.seconds(scene.width)):
+    for n in find_visible_segments(segments, scale.first, scale.seconds(scene.width)):
         segment = segments[n]
         if segment.kind != "clause" or segment.peak is None:
             continue
@@ -273,7 +278,7 @@ def _peaks(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: Se
 
 def _strokes(
     painter: QPainter,
-    t: Theme,
+    t: WindowTheme,
     scene: SegmentScene,
     segments: Sequence[Segment],
     area: QRectF,
@@ -283,7 +288,7 @@ def _strokes(
     """Paint segments as plain strokes in one picture a pixel high, however many there are. alphas: 0..255, of
     a stroke, of a chosen one.
     """
-    seen = visible(segments, scene.scale.first, scene.scale.seconds(scene.width))
+    seen = find_visible_segments(segments, scene.scale.first, scene.scale.seconds(scene.width))
     if not seen:
         return
     some = segments[seen.start : seen.stop]
@@ -320,7 +325,7 @@ def peak_y(seconds: float, heard: SideSound | None, lane: SegmentLane) -> float:
     return lane.wave.bottom() - 8
 
 
-def empty(painter: QPainter, t: Theme, area: QRectF, lines: Sequence[str]) -> None:
+def paint_empty_conversation(painter: QPainter, t: WindowTheme, area: QRectF, lines: Sequence[str]) -> None:
     """Paint what an empty panel says: two who talk, and how to bring them in."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     middle, top = area.center().x(), area.center().y() - 62

@@ -22,34 +22,34 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QMenu, QToolTip, QWidget
 
-from app.features.conversation.addressees import addressee_words, offer_addressees
+from app.features.conversation.addressees import describe_addressee, offer_addressees
 from app.features.conversation.drags.choice import gesture_for
 from app.features.conversation.drags.pan import SegmentPan
 from app.features.conversation.drags.segment import SegmentDrag
 from app.features.conversation.segment_editing import Editing
-from app.features.conversation.segment_hits import NOTHING, SegmentHit, hit_at, on_arrow
-from app.features.conversation.segment_keys import DEEDS, deed_of
+from app.features.conversation.segment_hits import NOTHING, SegmentHit, find_segment_hit, is_on_arrow
+from app.features.conversation.segment_keys import DEEDS, find_deed
 from app.features.conversation.segment_lanes import (
     NEAREST,
-    farthest,
-    least,
-    segment_words,
-    words_in,
+    describe_segment,
+    find_words_between,
+    least_lane_height,
+    least_scale,
 )
-from app.features.conversation.segment_paint import SegmentScene, empty, paint
+from app.features.conversation.segment_paint import SegmentScene, paint_empty_conversation, paint_segments
 from app.features.conversation.sound_reading import Sounds
 from app.look.theme import theme
 from app.project.document import Edit
-from app.translation import tr, tr_noop, translated
-from app.widgets.gesture import Hand
-from app.widgets.lane_geometry import LEFT, Scale
-from app.widgets.lane_paint import badge, playhead
+from app.translation import lazy_texts, tr, tr_noop
+from app.widgets.gesture import PointerHand
+from app.widgets.lane_geometry import LEFT, LaneScale
+from app.widgets.lane_paint import paint_badge, paint_playhead
 from app.widgets.memo import Once
 from metagraph.graph.conversation.model import Conversation, side_name
 from metagraph.graph.edit_error import EditError
 
 ZOOM, USUAL = 1.2, 100.0  # of a turn of the wheel; pixels a second to begin with: most words have room
-EMPTY = translated(
+EMPTY = lazy_texts(
     lambda: (
         tr("Drop the sound of a conversation here"),
         tr(
@@ -59,7 +59,7 @@ EMPTY = translated(
         tr("What they say appears here, in clauses, responses and hesitations, and moves the characters."),
     )
 )
-UNCHOSEN = translated(
+UNCHOSEN = lazy_texts(
     lambda: (tr("No conversation is on stage"), tr("Choose one above, or drop the sound of another here."))
 )
 TEXT = tr_noop(
@@ -78,7 +78,7 @@ class SegmentView(QWidget):
         self.editing, self.sounds = editing, sounds
         self.document, self.session = editing.document, editing.session
         self.each, self.first = USUAL, 0.0
-        self.hand = Hand()
+        self.hand = PointerHand()
         self.held: Conversation | None = None  # as it would be if what is dragged were let go
         self.over: SegmentHit = NOTHING
         self.pointer = QPointF(-1, -1)
@@ -87,7 +87,7 @@ class SegmentView(QWidget):
         self._came = 0  # how often more of a sound has come
         self._by_keys = False
         self._ident: str | None = None  # of the conversation on stage
-        self.setMinimumHeight(least(2))
+        self.setMinimumHeight(least_lane_height(2))
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAccessibleName(tr("Conversation"))
@@ -105,8 +105,8 @@ class SegmentView(QWidget):
         """Return the conversation as it is drawn: with what is being dragged."""
         return self.held or self.editing.conversation
 
-    def scale(self) -> Scale:
-        return Scale(self.first, self.each)
+    def scale(self) -> LaneScale:
+        return LaneScale(self.first, self.each)
 
     def look_at(self, first: float) -> None:
         """Begin at a time, but never leave the conversation."""
@@ -118,7 +118,7 @@ class SegmentView(QWidget):
     def zoom(self, by: float, x: float) -> None:
         """Zoom about a place on the screen."""
         of = self.editing.conversation
-        at, least = self.scale().seconds(x), farthest(self.width(), of.length if of is not None else 60.0)
+        at, least = self.scale().seconds(x), least_scale(self.width(), of.length if of is not None else 60.0)
         self.each = min(NEAREST, max(least, self.each * by))
         self.look_at(at - (x - LEFT) / self.each)
 
@@ -162,7 +162,7 @@ class SegmentView(QWidget):
     def _make_room(self) -> None:
         """Be as high as the lanes need; the panel scrolls where there is less."""
         of = self.editing.conversation
-        self.setMinimumHeight(least(len(of.sides) if of is not None else 2))
+        self.setMinimumHeight(least_lane_height(len(of.sides) if of is not None else 2))
 
     def _read(self) -> None:
         self._came += 1
@@ -182,19 +182,21 @@ class SegmentView(QWidget):
         t, painter, of = theme(self.session.look.name), QPainter(self), self.conversation()
         if of is None:
             painter.fillRect(self.rect(), QColor(t.panel))
-            empty(painter, t, QRectF(self.rect()), UNCHOSEN if self.document.project.conversations else EMPTY)
+            paint_empty_conversation(
+                painter, t, QRectF(self.rect()), UNCHOSEN if self.document.project.conversations else EMPTY
+            )
             painter.end()
             return
         painter.drawPixmap(0, 0, self._picture(of))
         x = self.scale().x(self.session.transport.seconds)
         if x >= LEFT - 1:
-            playhead(painter, t, x, self.height())
+            paint_playhead(painter, t, x, self.height())
         drag = self.hand.gesture
         if isinstance(drag, SegmentDrag) and drag.begun and drag.words:
             font = QFont(self.font())
             font.setFeature(QFont.Tag("tnum"), 1)
             painter.setFont(font)
-            badge(painter, t, QPointF(self.scale().x(drag.seconds), 0), drag.words, self.width())
+            paint_badge(painter, t, QPointF(self.scale().x(drag.seconds), 0), drag.words, self.width())
         if self.hasFocus() and self._by_keys:
             painter.setPen(QPen(QColor(t.dim), 1))
             painter.setBrush(Qt.BrushStyle.NoBrush)
@@ -216,7 +218,7 @@ class SegmentView(QWidget):
             scene = SegmentScene(
                 of, heard, self.scale(), self.width(), self.height(), ratio, chosen, self.over, s.onstage.side
             )
-            paint(painter, theme(s.look.name), scene)
+            paint_segments(painter, theme(s.look.name), scene)
             painter.end()
             self.painted += 1
             return picture
@@ -238,7 +240,11 @@ class SegmentView(QWidget):
 
     def _hit(self, at: QPointF) -> SegmentHit:
         of = self.editing.conversation
-        return hit_at(of, self.scale(), (self.width(), self.height()), at) if of is not None else NOTHING
+        return (
+            find_segment_hit(of, self.scale(), (self.width(), self.height()), at)
+            if of is not None
+            else NOTHING
+        )
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         at, hit = event.position(), self._hit(event.position())
@@ -249,7 +255,7 @@ class SegmentView(QWidget):
             self.hand.take(SegmentPan(self), at)
         elif event.button() == Qt.MouseButton.LeftButton and hit.part == "title":
             self.session.onstage.set_side(hit.side)
-            if on_arrow(at, (self.width(), self.height()), self.editing.conversation, hit.side):
+            if is_on_arrow(at, (self.width(), self.height()), self.editing.conversation, hit.side):
                 self._partner(hit.side, event.globalPosition().toPoint())
         elif event.button() == Qt.MouseButton.LeftButton:
             if hit.at >= 0:
@@ -338,11 +344,11 @@ class SegmentView(QWidget):
 
     def _partner(self, side: int, at: QPoint) -> None:
         """Offer another character, body or voice for one who talks."""
-        from app.features.conversation.partner_menu import partner_menu
+        from app.features.conversation.partner_menu import make_partner_menu
 
         ident = self.session.onstage.conversation
         if ident is not None and ident in self.editing.document.project.conversations:
-            menu = partner_menu(self, self.editing.document, ident, side, self.more)
+            menu = make_partner_menu(self, self.editing.document, ident, side, self.more)
             menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
             menu.popup(at)
 
@@ -372,7 +378,7 @@ class SegmentView(QWidget):
         )
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        deed, key = deed_of(event.key(), event.modifiers()), event.key()
+        deed, key = find_deed(event.key(), event.modifiers()), event.key()
         if key == Qt.Key.Key_Escape and (self._stop_dragging() or self.editing.chosen):
             self.editing.select(())
             self.update()
@@ -413,7 +419,7 @@ class SegmentView(QWidget):
             and event.type() == QKeyEvent.Type.ShortcutOverride
             and self.editing.conversation is not None
         ):
-            deed = deed_of(event.key(), event.modifiers())
+            deed = find_deed(event.key(), event.modifiers())
             escapes = event.key() == Qt.Key.Key_Escape and (
                 self.hand.gesture is not None or self.editing.chosen
             )
@@ -428,12 +434,16 @@ class SegmentView(QWidget):
         if of is None or self.hand.gesture is not None:
             return ""
         if hit.at >= 0:
-            words = segment_words(of.sides[hit.side].segments[hit.at]) + addressee_words(of, hit.side, hit.at)
+            words = describe_segment(of.sides[hit.side].segments[hit.at]) + describe_addressee(
+                of, hit.side, hit.at
+            )
             return words + (tr("\nDrag it to another top of the pitch") if hit.part == "peak" else "")
         if hit.part == "wave":
             seconds = self.scale().seconds(at.x())
             said = [
-                w for w in words_in(of.sides[hit.side].words, seconds, seconds) if w.start <= seconds <= w.end
+                w
+                for w in find_words_between(of.sides[hit.side].words, seconds, seconds)
+                if w.start <= seconds <= w.end
             ]
             return (
                 tr(

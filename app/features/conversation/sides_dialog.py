@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.conversation.conversation_settings import ORDINALS, SettingDialog, Tall, caption
+from app.features.conversation.conversation_settings import ORDINALS, SettingDialog, Tall, make_caption
 from app.project.speech_files import SOUNDS, channels_of
 from app.translation import tr, tr_noop
 from app.widgets.making import make_widget
@@ -27,7 +27,7 @@ from metagraph.formats.store import SUFFIX, relative
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Project
-from metagraph.speech.duet import stands
+from metagraph.speech.duet import place_sides
 
 ROWS = 8  # of the grid for each who talks
 
@@ -75,7 +75,9 @@ class SidesDialog(SettingDialog):
     def _add_side(self, grid: QGridLayout, inside: QWidget, side: int) -> None:
         """Add the fields of one who talks."""
         of, top, ordinal = self.conversation.sides[side], ROWS * side, ORDINALS[side]
-        grid.addWidget(caption(tr("{ordinal} speaker", ordinal=ordinal.capitalize()), inside), top, 0, 1, 3)
+        grid.addWidget(
+            make_caption(tr("{ordinal} speaker", ordinal=ordinal.capitalize()), inside), top, 0, 1, 3
+        )
         name, sound, channel, mover, body = (
             QLineEdit(of.name, inside),
             QLineEdit(of.audio or "", inside),
@@ -137,7 +139,7 @@ class SidesDialog(SettingDialog):
         row.setSpacing(10)
         row.addWidget(own)
         fields = []
-        here = stands(self.conversation)[side]
+        here = place_sides(self.conversation)[side]
         for at, words, tip in (
             (here.x, tr("right"), tr("Metres to the right of the middle; less than 0 to the left")),
             (here.z, tr("nearer"), tr("Metres towards the viewer; less than 0 away")),

@@ -15,10 +15,10 @@ from PySide6.QtCore import QObject, Qt, Signal
 
 from app.features.conversation.segment_hits import pitch_maxima
 from app.project.document import Document
-from app.project.jobs import Job, Jobs
-from app.stage.session import Session
+from app.project.jobs import Jobs, WindowJob
+from app.stage.session import StageSession
 from app.translation import tr, tr_noop
-from app.widgets.waveforms import Envelope, binned
+from app.widgets.waveforms import Envelope, bin_values
 from metagraph.errors import FileError
 from metagraph.graph.conversation.model import Conversation
 
@@ -54,12 +54,12 @@ class Sounds(QObject):
     _read = Signal(object)  # from the thread that reads: what to do here with what it has
 
     def __init__(
-        self, document: Document, session: Session, jobs: Jobs, parent: QObject | None = None
+        self, document: Document, session: StageSession, jobs: Jobs, parent: QObject | None = None
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.jobs = document, session, jobs
         self.heard: dict[Key, SideSound] = {}
-        self._job: Job | None = None
+        self._job: WindowJob | None = None
         self._read.connect(_do, Qt.ConnectionType.QueuedConnection)
         document.changed.connect(
             lambda before, after: self._follow() if before.conversations is not after.conversations else None
@@ -149,7 +149,7 @@ class _Work:
         """Set fields of what is painted, on the window's thread."""
         self.hand_over(partial(_set, heard, values))
 
-    def __call__(self, job: Job) -> None:
+    def __call__(self, job: WindowJob) -> None:
         samples: dict[Key, tuple[Any, int]] = {}
         steps, done = 3 * len(self.wanted), 0
         for path in dict.fromkeys(path for path, _ in self.wanted):
@@ -198,7 +198,9 @@ class _Work:
             self.set(heard, length=read.duration)
         return out
 
-    def _draw(self, job: Job, heard: SideSound, samples: Any, rate: int, progress: tuple[int, int]) -> None:
+    def _draw(
+        self, job: WindowJob, heard: SideSound, samples: Any, rate: int, progress: tuple[int, int]
+    ) -> None:
         """Fill the waveform, a minute at a time."""
         wave, loudest = Envelope(len(samples) / rate), 0.0
         self.set(heard, wave=wave)
@@ -208,7 +210,7 @@ class _Work:
             if begin >= len(samples) or job.cancelled:
                 break
             piece = samples[begin : round((first + step) * each)]
-            self.hand_over(partial(wave.put, first, *binned(piece, each)))
+            self.hand_over(partial(wave.put, first, *bin_values(piece, each)))
             loudest = max(loudest, float(abs(piece).max()))
             self.set(heard, loudest=loudest, part=0.5 * begin / len(samples))
             job.tell(*progress, tr("waveform"))

@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.conversation.conversation_settings import ORDINALS, Tall, caption
+from app.features.conversation.conversation_settings import ORDINALS, Tall, make_caption
 from app.features.conversation.segment_lanes import KINDS, PLURALS
 from app.features.conversation.word_lists import language_name
 from app.look.theme import SOUND_MARKS
@@ -25,7 +25,7 @@ from app.widgets.making import make_widget
 from metagraph.graph.conversation.model import SPOKEN, Side
 
 
-class Card(QFrame):
+class SpeakerCard(QFrame):
     """One who talks: name, sound, words, and how many segments. taken: whether it is in the conversation; of
     two both are. ordinal: "first", "second". earlier: lets it stand before the one on its left.
     """
@@ -40,7 +40,7 @@ class Card(QFrame):
         grid.setVerticalSpacing(6)
         grid.setColumnStretch(1, 1)
         row_of = QHBoxLayout()
-        row_of.addWidget(caption(title, self), 1)
+        row_of.addWidget(make_caption(title, self), 1)
         self.taken = QCheckBox(tr("Takes part"), self)
         self.taken.setChecked(True)
         self.taken.setToolTip(tr("Whether this speaker is in the conversation, with a character of its own"))
@@ -67,7 +67,7 @@ class Card(QFrame):
             ),
             1,
         ):
-            grid.addWidget(caption(words, self, True), row, 0)
+            grid.addWidget(make_caption(words, self, True), row, 0)
             grid.addWidget(widget, row, 1)
             if isinstance(widget, QLabel):
                 widget.setTextFormat(Qt.TextFormat.PlainText)
@@ -111,7 +111,7 @@ class Cards(Tall):
         inside = QWidget(parent)
         super().__init__(inside, 330, parent)  # two rows; more are scrolled
         self.setAccessibleName(tr("Who was read"))
-        self.cards: list[Card] = []
+        self.cards: list[SpeakerCard] = []
         self.grid = QGridLayout(inside)
         self.grid.setContentsMargins(0, 0, 0, 0)
         self.grid.setSpacing(10)
@@ -136,7 +136,7 @@ class Cards(Tall):
             card.deleteLater()
         del self.cards[count:]
         for n in range(len(self.cards), count):
-            card = Card(ORDINALS[n], self.inside, n == 0)
+            card = SpeakerCard(ORDINALS[n], self.inside, n == 0)
             card.earlier.clicked.connect(lambda _=False, n=n: self.moved.emit(n))
             card.taken.toggled.connect(lambda _: self.chosen.emit())
             self.cards.append(card)

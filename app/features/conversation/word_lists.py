@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.conversation.conversation_settings import SettingDialog, Tall, asked, caption
+from app.features.conversation.conversation_settings import SettingDialog, Tall, make_caption, parse_word_list
 from app.look.theme import SOUND_MARKS
 from app.translation import tr, tr_noop
 from app.widgets.making import make_widget
@@ -25,8 +25,8 @@ from app.widgets.quiet_fields import ComboBox
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.conversation.model import AUTO, Conversation, lists_of, side_name
 from metagraph.graph.model import Project
-from metagraph.speech.language_detection import language_spoken
-from metagraph.speech.language_packs import languages
+from metagraph.speech.language_detection import detect_language
+from metagraph.speech.language_packs import list_language_packs
 
 Lists = tuple[tuple[str, ...], tuple[str, ...]]  # responses and hesitations
 LOW = 84  # pixels
@@ -34,7 +34,7 @@ LOW = 84  # pixels
 
 def language_name(code: str) -> str:
     """Return what the language of a code is called; "" of none."""
-    pack = languages().get(code)
+    pack = list_language_packs().get(code)
     return pack.name if pack is not None else {"": "", "und": tr("language not known")}.get(code, f"'{code}'")
 
 
@@ -44,7 +44,7 @@ class LanguageBox(ComboBox):
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
         self.addItem(tr("Automatic"), AUTO)
-        for pack in languages().values():
+        for pack in list_language_packs().values():
             self.addItem(pack.name if pack.name == pack.own else f"{pack.name} · {pack.own}", pack.code)
         self.setAccessibleName(tr("Language"))
         self.setToolTip(
@@ -72,14 +72,14 @@ class WordLists(QWidget):
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setHorizontalSpacing(16)
         grid.setVerticalSpacing(4)
-        english = languages()["en"]
+        english = list_language_packs()["en"]
         self.usual: Lists = (english.responses, english.hesitations)
         self.edits: list[QPlainTextEdit] = []
         for column, (title, kind) in enumerate(
             ((tr("Listener responses"), "response"), (tr("Hesitations"), "hesitation"))
         ):
             row = QHBoxLayout()
-            row.addWidget(caption(f"{SOUND_MARKS[kind]}  {title}", self), 1)
+            row.addWidget(make_caption(f"{SOUND_MARKS[kind]}  {title}", self), 1)
             reset = make_widget(
                 QToolButton,
                 self,
@@ -101,7 +101,7 @@ class WordLists(QWidget):
 
     def show_lists(self, lists: Lists, code: str = "") -> None:
         """Show lists without telling of it. code: the language whose usual lists there are to go back to."""
-        pack = languages().get(code)
+        pack = list_language_packs().get(code)
         if pack is not None:
             self.usual = (pack.responses, pack.hesitations)
         for edit, words in zip(self.edits, lists, strict=True):
@@ -116,7 +116,7 @@ class WordLists(QWidget):
             edit.setMaximumHeight(LOW if low else 16777215)
 
     def lists(self) -> Lists:
-        return asked(self.edits[0].toPlainText()), asked(self.edits[1].toPlainText())
+        return parse_word_list(self.edits[0].toPlainText()), parse_word_list(self.edits[1].toPlainText())
 
 
 class WordsDialog(SettingDialog):
@@ -126,7 +126,7 @@ class WordsDialog(SettingDialog):
 
     def build(self, layout: QVBoxLayout) -> None:
         layout.addWidget(
-            caption(
+            make_caption(
                 tr(
                     "Segments made of nothing but these words are labelled so; "
                     "what you labelled yourself stays."
@@ -150,12 +150,12 @@ class WordsDialog(SettingDialog):
             column.setContentsMargins(0, 0, 0, 0)
             row = QHBoxLayout()
             row.setSpacing(10)
-            name, box, lists = caption("", whole), LanguageBox(whole), WordLists(whole)
+            name, box, lists = make_caption("", whole), LanguageBox(whole), WordLists(whole)
             box.show_code(of.sides[side].language or "en")
             box.activated.connect(lambda _, n=side: self._take_language(n))
             lists.show_lists(lists_of(of, side), of.sides[side].language)
             row.addWidget(name, 1)
-            row.addWidget(caption(tr("Language"), whole, True))
+            row.addWidget(make_caption(tr("Language"), whole, True))
             row.addWidget(box)
             column.addLayout(row)
             column.addWidget(lists, 1)
@@ -184,7 +184,7 @@ class WordsDialog(SettingDialog):
         if code == AUTO:
             code = _spoken_by(self.conversation, (n,) if self.apart.isChecked() else self.sides)
             box.show_code(code)
-        pack = languages().get(code)
+        pack = list_language_packs().get(code)
         if pack is not None:
             lists.show_lists((pack.responses, pack.hesitations), code)
 
@@ -202,5 +202,5 @@ class WordsDialog(SettingDialog):
 def _spoken_by(conversation: Conversation, sides: Sequence[int]) -> str:
     """Return the code of what sides' words tell; English where they tell nothing."""
     words = [w.text for side in sides for w in conversation.sides[side].words]
-    found = language_spoken(words, tuple(languages().values())).language
+    found = detect_language(words, tuple(list_language_packs().values())).language
     return found.code if found is not None else "en"

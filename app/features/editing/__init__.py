@@ -5,7 +5,7 @@ renamed at once. And the history of all that was done.
 from __future__ import annotations
 
 from app.features.editing.editing_commands import COMMANDS, EditingFeature
-from app.shell.command_table import bound
+from app.shell.command_table import bind_commands
 from app.shell.context import Contribution, Panel, Shell
 from app.translation import tr
 
@@ -25,5 +25,5 @@ def contribute(shell: Shell) -> Contribution:
                 rank=8,
             ),
         ),
-        commands=bound(COMMANDS, editing),
+        commands=bind_commands(COMMANDS, editing),
     )

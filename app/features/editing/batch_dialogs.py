@@ -25,13 +25,13 @@ from PySide6.QtWidgets import (
 
 from app.look.theme import strengthen
 from app.project.document import Document
-from app.translation import tr, tr_error, tr_plural, translated
+from app.translation import lazy_texts, tr, tr_error, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing import batch
 
-TITLES = translated(
+TITLES = lazy_texts(
     lambda: {
         "blends": tr("Blend in and out"),
         "part": tr("Start and end"),
@@ -147,7 +147,9 @@ class RenameDialog(BatchDialog):
 
     def finish(self) -> None:
         names = self.names
-        self.document.edit(tr("Rename {names} actions", names=len(names)), lambda p: batch.rename(p, names))
+        self.document.edit(
+            tr("Rename {names} actions", names=len(names)), lambda p: batch.rename_actions(p, names)
+        )
         self.accept()
 
 
@@ -188,7 +190,7 @@ class PasteDialog(BatchDialog):
     def finish(self) -> None:
         groups = [group for group, box in self.boxes.items() if box.isChecked()]
         try:
-            after = batch.paste(self.document.project, self.source, self.edited, groups)
+            after = batch.paste_properties(self.document.project, self.source, self.edited, groups)
         except EditError as error:
             self.trouble.setText(tr_error(error))
             return

@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtWidgets import QFrame, QUndoView, QWidget
 
 from app.shell.actions import Command, Standard
-from app.shell.command_table import Feature, actions_selected, meta_graph_shown
+from app.shell.command_table import Feature, has_actions_selected, is_meta_graph_shown
 from app.shell.context import Shell
 from app.shell.verbs import Verbs
 from app.translation import tr, tr_noop
@@ -31,7 +31,7 @@ class EditingFeature(Feature):
         self.verbs.offer("paste", self.can_paste_properties, self.paste_properties)
 
     def _in_graph(self, selected: bool) -> bool:
-        return selected and meta_graph_shown(self)
+        return selected and is_meta_graph_shown(self)
 
     def make_history(self) -> QWidget:
         view = QUndoView(self.document.undo_stack, self.shell.widget)
@@ -157,7 +157,7 @@ COMMANDS = (
         tr_noop("Replace c&lip…"),
         EditingFeature.replace_clip,
         tip=tr_noop("Another clip, the same settings"),
-        enabled=actions_selected,
+        enabled=has_actions_selected,
         when="meta",
         study=True,
         menus=("action",),

@@ -33,27 +33,27 @@ from PySide6.QtWidgets import (
 )
 
 from app.look.theme import strengthen
-from app.project.chosen import was_chosen
+from app.project.chosen import is_chosen
 from app.project.document import Document
-from app.project.jobs import Job, Jobs
+from app.project.jobs import Jobs, WindowJob
 from app.project.reveal import open_folder
 from app.translation import tr, tr_error, tr_phrase
 from app.widgets.making import make_widget
 from app.widgets.tree_items import items_below, top_items
 from metagraph.engines.targets import registry
 from metagraph.engines.targets.placing import ForeignFilesError
-from metagraph.engines.targets.target import Contents, ExportTarget, Report
+from metagraph.engines.targets.target import Contents, ExportTarget, TargetReport
 from metagraph.engines.tools_file import write_tools
 from metagraph.engines.vectors import write_vectors
-from metagraph.graph.check import check
-from metagraph.graph.expand import size
+from metagraph.graph.check import check_project
+from metagraph.graph.expand import count_machine_size
 from metagraph.graph.manual.meta import exportable
 
 NAME = Qt.ItemDataRole.UserRole
 
 
 @dataclass(frozen=True)
-class Choice:
+class ExportChoice:
     """What was last chosen for a project. folders: by target, where it is not the usual one."""
 
     target: str = registry.DEFAULT
@@ -66,7 +66,7 @@ class Choice:
 
 
 @dataclass(frozen=True)
-class Result:
+class ExportResult:
     """What came of an export: where it stands, and what there is to say of it."""
 
     folder: str
@@ -75,7 +75,7 @@ class Result:
 
 
 @cache
-def served(folder: str) -> str:
+def serve_folder(folder: str) -> str:
     """Return the address at which this program shows a folder to the browser, as long as it runs."""
     from metagraph.engines.serve import Served
 
@@ -96,7 +96,7 @@ class ExportDialog(QDialog):
         )  # a running export goes on; the status bar shows it
         self.setWindowTitle(tr("Export for engines"))
         self.resize(860, 620)
-        self.results: dict[str, Result] = {}  # of what was written, by target
+        self.results: dict[str, ExportResult] = {}  # of what was written, by target
         chosen = self.chosen = self._remembered()
         self.targets = self._list()
         self.title = QLabel(self)
@@ -127,7 +127,7 @@ class ExportDialog(QDialog):
         layout.addWidget(self._buttons())
         self.targets.currentItemChanged.connect(self._describe)
         self._select(chosen.target)
-        errors = [p for p in check(self.project) if p.severity == "error"]
+        errors = [p for p in check_project(self.project) if p.severity == "error"]
         if errors:
             self.go.setEnabled(False)
             self.trouble.setText(
@@ -156,7 +156,7 @@ class ExportDialog(QDialog):
         out.setItemsExpandable(False)
         return out
 
-    def _form(self, chosen: Choice) -> QFormLayout:
+    def _form(self, chosen: ExportChoice) -> QFormLayout:
         project = self.document.project
         form = QFormLayout()
         row = QHBoxLayout()
@@ -203,11 +203,11 @@ class ExportDialog(QDialog):
     def _key(self) -> str:
         return f"export/{self.document.path}" if self.document.path else "export/unsaved"
 
-    def _remembered(self) -> Choice:
+    def _remembered(self) -> ExportChoice:
         """Return what was last chosen for this project; what cannot be read is as nothing."""
         try:
             data: Any = json.loads(str(QSettings().value(self._key()) or "{}"))
-            known = Choice(**data)
+            known = ExportChoice(**data)
             folders = {str(k): str(v) for k, v in known.folders.items()}
             return replace(
                 known,
@@ -215,7 +215,7 @@ class ExportDialog(QDialog):
                 target=known.target if known.target in registry.targets() else registry.DEFAULT,
             )
         except (ValueError, TypeError, AttributeError):
-            return Choice()
+            return ExportChoice()
 
     def _usual(self, target: str) -> str:
         """Return the folder a target goes to unless another is chosen: one of its own, since exports share
@@ -243,7 +243,7 @@ class ExportDialog(QDialog):
     def _describe(self) -> None:
         target, project = self.target, self.project
         self.folder.setText(self.chosen.folders.get(target.name) or self._usual(target.name))
-        whole = size(project)
+        whole = count_machine_size(project)
         played = (target.name == registry.DEFAULT) or target.group == registry.target(registry.DEFAULT).group
         self.title.setText(tr_phrase(target.title))
         joints = len(project.skeleton) if project.skeleton else 0
@@ -303,7 +303,7 @@ class ExportDialog(QDialog):
         name = self.target.name
         folder = self.results[name].folder
         if name == "web":
-            QDesktopServices.openUrl(QUrl(served(folder)))
+            QDesktopServices.openUrl(QUrl(serve_folder(folder)))
         else:
             open_folder(Path(folder))
 
@@ -317,7 +317,7 @@ class ExportDialog(QDialog):
         character = (
             (base or Path()) / project.character if project.character and self.mesh.isChecked() else None
         )
-        self.chosen = Choice(
+        self.chosen = ExportChoice(
             name, self.chosen.folders, self.mesh.isChecked(), *(b.isChecked() for b in boxes)
         )
         QSettings().setValue(self._key(), json.dumps(asdict(self.chosen)))
@@ -326,9 +326,9 @@ class ExportDialog(QDialog):
         self.progress.setRange(0, 0)
         self.progress.show()
 
-        def work(job: Job) -> Report:
-            contents = Contents(character, expanded, base, was_chosen, compress)
-            made = registry.write(project, name, folder, contents, job.tell, overwrite)
+        def work(job: WindowJob) -> TargetReport:
+            contents = Contents(character, expanded, base, is_chosen, compress)
+            made = registry.write_for_target(project, name, folder, contents, job.tell, overwrite)
             if vectors:
                 write_vectors(next(path for path in made.files if path.suffix == ".json"))
             if tools:
@@ -347,7 +347,7 @@ class ExportDialog(QDialog):
         self.progress.setRange(0, total)
         self.progress.setValue(done)
 
-    def _done(self, made: Report, folder: Path) -> None:
+    def _done(self, made: TargetReport, folder: Path) -> None:
         self.progress.hide()
         self.go.setEnabled(True)
         main = [path.name for path in sorted(made.files, key=lambda path: -path.stat().st_size)[:3]]
@@ -360,7 +360,9 @@ class ExportDialog(QDialog):
             size=size,
             clips=made.clips,
         )
-        self.results[made.target] = Result(str(folder), words, "\n".join(map(tr_phrase, made.warnings[:5])))
+        self.results[made.target] = ExportResult(
+            str(folder), words, "\n".join(map(tr_phrase, made.warnings[:5]))
+        )
         if self.target.name == made.target:
             self._show_result()
 

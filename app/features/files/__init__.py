@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import Qt
 
 from app.features.files.file_commands import COMMANDS, FileFeature
-from app.shell.command_table import bound
+from app.shell.command_table import bind_commands
 from app.shell.context import Contribution, HeaderItem, Shell
 
 
@@ -15,7 +15,7 @@ def contribute(shell: Shell) -> Contribution:
     shell.widget.addToolBar(Qt.ToolBarArea.BottomToolBarArea, line)
     line.hide()
     return Contribution(
-        commands=bound(COMMANDS, files),
+        commands=bind_commands(COMMANDS, files),
         header=(HeaderItem("left", "import"), HeaderItem("left", "undo"), HeaderItem("left", "redo")),
         drops=(files.labels.drop,),
     )

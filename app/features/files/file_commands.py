@@ -92,15 +92,15 @@ class FileFeature(Feature):
         return self.document.path is not None
 
     def show_versions(self) -> None:
-        from app.features.files.versions_dialog import Found, VersionsDialog, found_versions
-        from app.project.questions import moment_words
+        from app.features.files.versions_dialog import Found, VersionsDialog, find_versions
+        from app.project.questions import describe_moment
 
         path, now = self.document.path, self.document.project
         if path is None:
             return
 
         def open_copy(found: Found) -> None:
-            words = moment_words(found.version.saved).replace(":", ".")
+            words = describe_moment(found.version.saved).replace(":", ".")
             self.files.open(found.version.path, template=True, name=f"{now.name} {words}")
 
         def show(found: tuple[Found, ...]) -> None:
@@ -108,7 +108,7 @@ class FileFeature(Feature):
                 VersionsDialog(path.name, found, open_copy, self.shell.widget).open()
 
         self.shell.jobs.start(
-            tr("Reading earlier versions"), lambda _: found_versions(path, now), show, self.files.show_failure
+            tr("Reading earlier versions"), lambda _: find_versions(path, now), show, self.files.show_failure
         )
 
     # --- clips

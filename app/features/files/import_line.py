@@ -15,7 +15,7 @@ from app.project.document import Document
 from app.project.importing import Importing
 from app.translation import tr, tr_noop, tr_phrase
 from app.widgets.making import make_widget
-from metagraph.formats.import_words import Remedy, counted, head, remedies, said
+from metagraph.formats.import_words import Remedy, count_alike, describe_import, describe_imported, remedies
 from metagraph.formats.imports import Imported
 from metagraph.graph.model import Project
 
@@ -73,8 +73,8 @@ class ImportLine(QToolBar):
     def tell(self, result: Imported) -> None:
         """Show what came of an import."""
         self.forget()
-        words = said(result)
-        fresh = words == head(result) and not result.failures
+        words = describe_import(result)
+        fresh = words == describe_imported(result) and not result.failures
         if fresh and not self._unlabelled(result):
             return
         if fresh:
@@ -132,5 +132,5 @@ class ImportLine(QToolBar):
 
     def _details(self) -> None:
         if self.result is not None:
-            lines = counted([*self.result.failures, *self.result.notes])
-            self._show(tr_phrase(head(self.result)), [tr_phrase(line) for line in lines])
+            lines = count_alike([*self.result.failures, *self.result.notes])
+            self._show(tr_phrase(describe_imported(self.result)), [tr_phrase(line) for line in lines])

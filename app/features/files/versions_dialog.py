@@ -23,16 +23,16 @@ from PySide6.QtWidgets import (
 )
 
 from app.look.theme import strengthen
-from app.project.leftovers import pose_of
-from app.project.questions import moment_words
+from app.project.leftovers import find_telling_pose
+from app.project.questions import describe_moment
 from app.project.recovering import PICTURE, SittingPicture
 from app.project.version_count import set_version_count, version_count
 from app.translation import tr, tr_phrase, tr_plural
 from app.widgets.quiet_fields import SpinBox
-from metagraph.errors import FileError, error_words
+from metagraph.errors import FileError, describe_error
 from metagraph.formats.project.versions import MOST, Version, earlier_versions
 from metagraph.formats.store import read_project
-from metagraph.graph.editing.differences import differences
+from metagraph.graph.editing.differences import describe_differences
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 
@@ -52,7 +52,7 @@ class Found:
     pose: Clip | None = None
 
 
-def found_versions(path: Path, now: Project) -> tuple[Found, ...]:
+def find_versions(path: Path, now: Project) -> tuple[Found, ...]:
     """Return a project file's earlier versions, the most recent first, compared with what it is now; for a
     thread.
     """
@@ -61,10 +61,10 @@ def found_versions(path: Path, now: Project) -> tuple[Found, ...]:
         try:
             project = read_project(version.path, [])
         except FileError as error:
-            out.append(Found(version, None, why=error_words(error)))
+            out.append(Found(version, None, why=describe_error(error)))
             continue
-        pose = pose_of(project, version.path.parent)
-        out.append(Found(version, project, tuple(differences(project, now)), pose=pose))
+        pose = find_telling_pose(project, version.path.parent)
+        out.append(Found(version, project, tuple(describe_differences(project, now)), pose=pose))
     return tuple(out)
 
 
@@ -158,7 +158,7 @@ class VersionsDialog(QDialog):
             self.resize(560, 160)
 
     def _item(self, one: Found) -> QListWidgetItem:
-        when = tr("Version {n}, {when}", n=one.version.number, when=moment_words(one.version.saved))
+        when = tr("Version {n}, {when}", n=one.version.number, when=describe_moment(one.version.saved))
         if one.project is None:
             words = tr("Cannot be read")
         elif not one.changes:
@@ -194,7 +194,7 @@ class VersionsDialog(QDialog):
         if one is None:
             self.title.clear()
             return
-        self.title.setText(tr("Changed since {when}", when=moment_words(one.version.saved)))
+        self.title.setText(tr("Changed since {when}", when=describe_moment(one.version.saved)))
         if one.project is None:
             self.changes.addItem(tr_phrase(one.why))
             return

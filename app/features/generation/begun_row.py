@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QWidget
 
-from app.features.generation.training_run import left_of
+from app.features.generation.training_run import describe_progress
 from app.translation import tr
 from app.widgets.quiet_fields import ComboBox
 from metagraph.generation.standing import Standing
@@ -45,7 +45,7 @@ class BegunRow(QWidget):
         self.which.blockSignals(True)
         self.which.clear()
         for n, one in enumerate(found):
-            self.which.addItem(f"{one.out.stem} · {left_of(one)}", one)
+            self.which.addItem(f"{one.out.stem} · {describe_progress(one)}", one)
             self.which.setItemData(n, str(one.out), Qt.ItemDataRole.ToolTipRole)
         at = [n for n, one in enumerate(found) if before is not None and one.out == before.out]
         self.which.setCurrentIndex(at[0] if at else 0 if found else -1)

@@ -8,11 +8,11 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QDialog, QHBoxLayout, QLabel, QPushButton, QTabWidget, QVBoxLayout, QWidget
 
 from app.features.generation.learn_page import LearnPage
-from app.features.generation.training_run import begin
+from app.features.generation.training_run import begin_training
 from app.features.generation.use_page import UsePage
 from app.project.document import Document
 from app.project.jobs import Jobs
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr
 from metagraph.graph.model import Project
 
@@ -21,7 +21,7 @@ class GenerationDialog(QDialog):
     """Stays open beside the window; a training ends with it, and keeps what it has."""
 
     def __init__(
-        self, document: Document, session: Session, jobs: Jobs, parent: QWidget | None = None
+        self, document: Document, session: StageSession, jobs: Jobs, parent: QWidget | None = None
     ) -> None:
         super().__init__(parent)
         self.document = document
@@ -29,7 +29,7 @@ class GenerationDialog(QDialog):
         self.setWindowTitle(tr("Generate motion"))
         self.resize(1120, 680)
         self.use = UsePage(document, session, jobs, self)
-        self.learn = LearnPage(document, session, jobs, begin, self)
+        self.learn = LearnPage(document, session, jobs, begin_training, self)
         self.tabs = QTabWidget(self)
         self.tabs.setAccessibleName(tr("Generate or learn"))
         self.tabs.addTab(self.use, tr("Generate"))

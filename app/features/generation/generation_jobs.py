@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from app.project.new_clips import Loaded, pieces, save
+from app.project.new_clips import Loaded, cut_into_pieces, save
 from app.translation import tr, tr_noop, tr_plural
 from metagraph.errors import FileError
 from metagraph.graph import edits
@@ -24,7 +24,7 @@ from metagraph.motion.clip import Clip
 if TYPE_CHECKING:
     from metagraph.generation.performing import Chance
     from metagraph.generation.stored import Model, ModelCard
-    from metagraph.generation.take_files import Batch
+    from metagraph.generation.take_files import TakeBatch
 
 KINDS = {"matching": "Matching", "flow-vae": "Flow-VAE", "moglow": "MoGlow", "cvae": "CVAE"}
 FOLDER = "generated"  # beside the project file, where new clips are kept
@@ -34,7 +34,7 @@ Progress = Callable[[int, int], None]
 Cancelled = Callable[[], bool]
 
 
-def sentence(error: Exception) -> str:
+def as_sentence(error: Exception) -> str:
     """Return what went wrong as a sentence; a file's name stays as it is written."""
     text = str(error).rstrip(".")
     return f"{text}." if isinstance(error, FileError) else f"{text[:1].upper()}{text[1:]}."
@@ -57,13 +57,13 @@ class TakeRow:
 
 
 @dataclass(frozen=True, eq=False)
-class Listing:
+class TakeListing:
     """What came of looking through folders. batch: takes that can be learned from, None where there are
     none.
     """
 
     rows: tuple[TakeRow, ...] = ()
-    batch: Batch | None = None
+    batch: TakeBatch | None = None
 
     @property
     def seconds(self) -> float:
@@ -72,11 +72,11 @@ class Listing:
 
 def list_takes(
     folders: Sequence[Path], project: Project, progress: Progress, cancelled: Cancelled
-) -> Listing:
+) -> TakeListing:
     """Look through folders, and read what can be learned from; what cannot is told, and spoils nothing else.
     Raises CancelledError.
     """
-    from metagraph.generation.take_files import find_takes, read_takes
+    from metagraph.generation.take_files import find_takes, read_take_batch
 
     rows: list[TakeRow] = []
     files: list[Any] = []
@@ -90,7 +90,7 @@ def list_takes(
         files += [f for f in found if f not in files]
         without += alone
     rig = _rig_for(files, project)
-    batch = read_takes(files, rig, progress=lambda n, _: progress(n, len(files)), cancelled=cancelled)
+    batch = read_take_batch(files, rig, progress=lambda n, _: progress(n, len(files)), cancelled=cancelled)
     for take in batch.takes:
         name = take.source.name
         told = [left for n in (*take.notes, *batch.notes) if (left := _without_name(n, name)) != n]
@@ -101,17 +101,17 @@ def list_takes(
         TakeRow(_file_of(w), wrong=_without_name(w, _file_of(w)), bad=True)
         for w in (*batch.failures, *without)
     ]
-    return Listing(tuple(rows), batch if batch.takes else None)
+    return TakeListing(tuple(rows), batch if batch.takes else None)
 
 
 def _rig_for(files: Sequence[Any], project: Project) -> Any:
     """Return the project's own joints where the takes are of its figure, None for those of another."""
-    from metagraph.formats.clips import read_clips
+    from metagraph.formats.clips import read_clip_file
     from metagraph.generation.performing import project_rig
 
     for each in files[:8]:
         try:
-            clip = max(read_clips(each.clip), key=lambda c: c.frames)
+            clip = max(read_clip_file(each.clip), key=lambda c: c.frames)
         except FileError:
             continue
         return project_rig(project) if clip.skeleton == project.skeleton else None
@@ -152,12 +152,12 @@ def side_motion(
     """Make the motion of one side of a conversation and keep it as a file; return what `add_clips` takes, and
     what there is to know. Raises what `heard_side` and `side_clip` of `performing` raise.
     """
-    from metagraph.generation.performing import heard_side, side_clip
+    from metagraph.generation.performing import hear_side, side_clip
 
     project, side, folder = speaker.project, speaker.side, speaker.folder
     talk = project.conversations[speaker.conversation]
     name = tr("{talk} {side} by {model}", talk=talk.name, side=talk.sides[side].name or side + 1, model=named)
-    heard = heard_side(project, speaker.conversation, side, folder)
+    heard = hear_side(project, speaker.conversation, side, folder)
     clip, notes = side_clip(model, project, heard, chance, name, progress, cancelled)
     if cancelled():
         raise CancelledError
@@ -175,7 +175,7 @@ def with_side_moved(
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class GeneratedPiece:
     """A clip cut from what was made. kind, limb: what it is taken for. sure: 0..1."""
 
     clip: Clip
@@ -186,28 +186,30 @@ class Piece:
 
 def cut_pieces(
     clips: Sequence[Clip], project: Project, progress: Progress, cancelled: Cancelled
-) -> tuple[list[Piece], str]:
+) -> tuple[list[GeneratedPiece], str]:
     """Cut takes of one name at moments at which they rest alike, and say what each piece is taken for; or why
     there is none. Raises SynthesisError, and CancelledError.
     """
     from metagraph.synthesis.cut import candidates, uncut
     from metagraph.synthesis.graph import threshold
-    from metagraph.synthesis.states import states_of
+    from metagraph.synthesis.states import read_states
 
-    limit = threshold(states_of(clips)).limit
+    limit = threshold(read_states(clips)).limit
     cuts: list[Clip] = []
     for n, clip in enumerate(clips):
         if cancelled():
             raise CancelledError
         progress(n, len(clips))
-        cuts += pieces(clip, [(start, end) for start, end, _ in candidates(clip, limit, LEAST, MOST)])
+        cuts += cut_into_pieces(
+            clip, [(start, end) for start, end, _ in candidates(clip, limit, LEAST, MOST)]
+        )
     if not cuts:
         return [], uncut(max(clips, key=lambda c: c.duration), limit, LEAST, MOST)
     whole = [clip.renamed(f"{clips[0].name}_{n:02d}") for n, clip in enumerate(cuts, 1)]
-    return proposed(whole, project, cancelled), ""
+    return propose_pieces(whole, project, cancelled), ""
 
 
-def proposed(cuts: Sequence[Clip], project: Project, cancelled: Cancelled) -> list[Piece]:
+def propose_pieces(cuts: Sequence[Clip], project: Project, cancelled: Cancelled) -> list[GeneratedPiece]:
     """Return clips with what each is taken for: a gesture or a fidget, by which arm."""
     from metagraph.suggest.propose import propose
 
@@ -224,18 +226,18 @@ def proposed(cuts: Sequence[Clip], project: Project, cancelled: Cancelled) -> li
         p = found.proposals.get(ident) or (spare.proposal if spare is not None else None)
         kind: Kind = "fidget" if p is not None and p.kind.value == "fidget" else "gesture"
         limb: Limb = p.limb.value if p is not None else "both"
-        out.append(Piece(clip, kind, limb, p.kind.confidence if p is not None else 0.0))
+        out.append(GeneratedPiece(clip, kind, limb, p.kind.confidence if p is not None else 0.0))
     return out
 
 
-def keep_pieces(chosen: Sequence[Piece], project: Project, folder: Path) -> list[Loaded]:
+def keep_pieces(chosen: Sequence[GeneratedPiece], project: Project, folder: Path) -> list[Loaded]:
     """Keep pieces as files; return what `add_clips` takes. Raises FileError."""
     return save([p.clip for p in chosen], folder, FOLDER, {e.name for e in project.clips.values()})
 
 
 def with_pieces(
     project: Project,
-    chosen: Sequence[Piece],
+    chosen: Sequence[GeneratedPiece],
     loaded: Sequence[Loaded],
     named: str,
     seed: int,
@@ -249,12 +251,12 @@ def with_pieces(
         return project
     ids = {e.path: e.id for e in project.clips.values()}
     for piece, (path, *_) in zip(chosen, loaded, strict=True):
-        before, project = project, edits.place(project, [ids[path]], "arms", piece.kind, stance)
-        project = edits.update_actions(project, edits.added_actions(before, project), limb=piece.limb)
+        before, project = project, edits.place_clips(project, [ids[path]], "arms", piece.kind, stance)
+        project = edits.update_actions(project, edits.find_added_actions(before, project), limb=piece.limb)
     return project
 
 
-def first_stance(project: Project) -> str | None:
+def find_first_stance(project: Project) -> str | None:
     """Return the stance of the arms' layer that pieces go to if nobody says otherwise: the one it begins
     in.
     """
@@ -262,7 +264,7 @@ def first_stance(project: Project) -> str | None:
     return graph.start if graph.start in graph.stances else next(iter(graph.stances), None)
 
 
-def about(card: ModelCard, project: Project) -> str:
+def describe_model(card: ModelCard, project: Project) -> str:
     """Return what a model is, in words: its kind, what it learned from, whose figure it moves."""
     hours = (
         tr("{minutes:.0f} minutes", minutes=60 * card.hours)

@@ -24,8 +24,8 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.generation.begun_row import BegunRow
-from app.features.generation.generation_jobs import KINDS, Listing, list_takes, sentence
-from app.features.generation.page import Page
+from app.features.generation.generation_jobs import KINDS, TakeListing, as_sentence, list_takes
+from app.features.generation.page import GenerationPage
 from app.features.generation.sample_preview import SamplePreview
 from app.features.generation.training_plots import RATIOS, TrainingPlots
 from app.features.generation.training_run import (
@@ -33,23 +33,23 @@ from app.features.generation.training_run import (
     Hear,
     Process,
     TrainingRun,
-    go_on,
-    goal,
-    keep,
-    stands_of,
+    continue_training,
+    describe_event,
+    describe_goal,
+    keep_checkpoint,
 )
 from app.look.theme import strengthen
 from app.project.document import Document
-from app.project.jobs import Job, Jobs
-from app.stage.session import Session
-from app.translation import tr, tr_plural, translated
+from app.project.jobs import Jobs, WindowJob
+from app.stage.session import StageSession
+from app.translation import lazy_texts, tr, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, SpinBox
-from metagraph.generation.standing import Standing, busy
+from metagraph.generation.standing import Standing, is_busy
 from metagraph.generation.stored import SUFFIX
-from metagraph.generation.train_plan import PLAN, folder_of, read_takes
+from metagraph.generation.train_plan import PLAN, folder_of, read_planned_takes
 
-TIPS = translated(
+TIPS = lazy_texts(
     lambda: (
         ("matching", tr("Follows the speech best for the time it takes: 15 minutes are a beginning")),
         ("flow-vae", tr("As in the paper: a code of poses and a flow over it; needs longer")),
@@ -57,33 +57,38 @@ TIPS = translated(
         ("cvae", tr("The paper's other comparison: moves little")),
     )
 )
-SIZES = translated(
+SIZES = lazy_texts(
     lambda: (("small", tr("small, for this machine")), ("paper", tr("as in the paper, for a graphics card")))
 )
-HEADS = translated(lambda: (tr("Take"), tr("Length"), tr("Speech"), tr("What to know")))
+HEADS = lazy_texts(lambda: (tr("Take"), tr("Length"), tr("Speech"), tr("What to know")))
 
 
-def missing() -> str | None:
+def describe_missing_training() -> str | None:
     """Return what has to be installed before anything can be trained, in words; None where all is there."""
     from metagraph.generation import train_process
 
-    return train_process.missing()
+    return train_process.find_missing_tools()
 
 
-class LearnPage(Page):
+class LearnPage(GenerationPage):
     """trained: a model's file is there. begin: starts a training's process; replaced in tests."""
 
     trained = Signal(object)
 
     def __init__(
-        self, document: Document, session: Session, jobs: Jobs, begin: Begin, parent: QWidget | None = None
+        self,
+        document: Document,
+        session: StageSession,
+        jobs: Jobs,
+        begin: Begin,
+        parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.jobs, self.begin = document, session, jobs, begin
         self.folders: list[Path] = []
-        self.listing = Listing()
+        self.listing = TakeListing()
         self.run: TrainingRun | None = None
-        self._job: Job | None = None
+        self._job: WindowJob | None = None
         columns = QHBoxLayout(self)
         columns.setContentsMargins(0, 8, 0, 0)
         columns.setSpacing(18)
@@ -173,7 +178,7 @@ class LearnPage(Page):
         self.begun.resumed.connect(lambda one: self._go_on(one, False))
         self.begun.kept.connect(lambda one: self._go_on(one, True))
         box.addWidget(self.begun)
-        self.needs = QLabel(missing() or "", self, wordWrap=True)
+        self.needs = QLabel(describe_missing_training() or "", self, wordWrap=True)
         self.needs.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self.needs.setVisible(bool(self.needs.text()))
         box.addWidget(self.needs)
@@ -202,7 +207,7 @@ class LearnPage(Page):
 
     def forget(self) -> None:
         self.folders = []
-        self._listed(Listing())
+        self._listed(TakeListing())
 
     def look_through(self, folders: list[Path]) -> None:
         """List the takes of folders; a second look waits for the first."""
@@ -229,7 +234,7 @@ class LearnPage(Page):
         self._job = None
         self._enable()
 
-    def _listed(self, listing: Listing) -> None:
+    def _listed(self, listing: TakeListing) -> None:
         self.listing = listing
         rows = sorted(listing.rows, key=lambda r: not r.bad)
         self.table.setRowCount(len(rows))
@@ -286,10 +291,12 @@ class LearnPage(Page):
     def fill(self) -> None:
         """List the trainings that were begun before, beside the project."""
         from metagraph.generation.offered import FOLDER
-        from metagraph.generation.standing import begun
+        from metagraph.generation.standing import find_begun_trainings
 
         folder = self.document.folder
-        self.begun.show_begun(begun(folder / FOLDER) if folder is not None and self.run is None else ())
+        self.begun.show_begun(
+            find_begun_trainings(folder / FOLDER) if folder is not None and self.run is None else ()
+        )
         self._enable()
 
     @property
@@ -299,10 +306,10 @@ class LearnPage(Page):
 
     def _enable(self) -> None:
         busy, training = self.busy, self.run is not None
-        ready = self.listing.batch is not None and missing() is None
+        ready = self.listing.batch is not None and describe_missing_training() is None
         for widget in (self.add, self.clear, self.kind, self.how_large, self.minutes, self.name):
             widget.setEnabled(not busy and not training)
-        self.begun.setEnabled(not busy and not training and missing() is None)
+        self.begun.setEnabled(not busy and not training and describe_missing_training() is None)
         self.train.setEnabled(ready and not busy and not training)
         self.train.setVisible(not training)
         self.stop.setVisible(training)
@@ -357,7 +364,7 @@ class LearnPage(Page):
         if self.run is not None or self._job is not None:
             return
         folder, minutes = folder_of(standing.out), float(self.minutes.value())
-        if busy(folder):
+        if is_busy(folder):
             self.said.emit(
                 tr(
                     "'{model}' is being trained by another process, which comes first.",
@@ -367,8 +374,10 @@ class LearnPage(Page):
             return
 
         def work(hear: Hear) -> tuple[Process, Any, Any]:
-            takes, _ = read_takes(folder, standing.plan)
-            process = keep(standing, hear) if as_it_is else go_on(standing, minutes, hear)
+            takes, _ = read_planned_takes(folder, standing.plan)
+            process = (
+                keep_checkpoint(standing, hear) if as_it_is else continue_training(standing, minutes, hear)
+            )
             return process, standing.plan.skeleton.rig(), takes
 
         self._prepare(work)
@@ -389,7 +398,7 @@ class LearnPage(Page):
         self._enable()
 
     def _failed(self, error: Exception) -> None:
-        self.said.emit(sentence(error))
+        self.said.emit(as_sentence(error))
 
     def _started(self, said: deque[Any], process: Process, rig: Any, takes: Sequence[Any]) -> None:
         self.run = TrainingRun(process, said, self)
@@ -405,12 +414,12 @@ class LearnPage(Page):
     def _moved(self, event: Any) -> None:
         """Show what a training's event says."""
         ratios = {words: event.statistics[name] for name, words in RATIOS.items() if name in event.statistics}
-        words, value = goal(event)
+        words, value = describe_goal(event)
         if words or ratios:
             self.plots.add(event.minutes, {words: value} if words else {}, ratios)
         if event.minutes > 0:
             self.progress.setValue(round(1000 * event.share))
-            self.stands.setText(stands_of(event))
+            self.stands.setText(describe_event(event))
         if event.landmarks:
             self.preview.show_sample(event.landmarks)
         if event.event == "finish":

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QWidget
 from app.translation import tr
 
 
-class Page(QWidget):
+class GenerationPage(QWidget):
     """said: words for the foot of the window."""
 
     said = Signal(str)

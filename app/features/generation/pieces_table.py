@@ -11,17 +11,17 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QHeaderView, QTableWidget, QTableWidgetItem, QWidget
 
-from app.features.generation.generation_jobs import Piece
+from app.features.generation.generation_jobs import GeneratedPiece
 from app.features.generation.sample_preview import FigurePreview
 from app.project.document import Document
-from app.translation import tr, tr_noop, translated
+from app.translation import lazy_texts, tr, tr_noop
 from app.widgets.quiet_fields import ComboBox
 from metagraph.generation.landmarks import landmarks_of
 from metagraph.generation.networks import FPS
-from metagraph.generation.poses import poses_of
+from metagraph.generation.poses import encode_clip
 from metagraph.graph.model import Kind, Limb
 
-HEADS = translated(lambda: (tr("Piece"), tr("Length"), tr("Taken for"), tr("Sure"), tr("Arm")))
+HEADS = lazy_texts(lambda: (tr("Piece"), tr("Length"), tr("Taken for"), tr("Sure"), tr("Arm")))
 KIND, SURE, LIMB = 2, 3, 4  # columns
 KINDS: tuple[Kind, ...] = ("gesture", "fidget")
 LIMBS: tuple[Limb, ...] = ("both", "left", "right")
@@ -33,7 +33,7 @@ class PiecesTable(QTableWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(0, len(HEADS), parent)
-        self.pieces: list[Piece] = []
+        self.pieces: list[GeneratedPiece] = []
         self.setHorizontalHeaderLabels(list(HEADS))
         self.setAccessibleName(tr("Pieces"))
         self.setTabKeyNavigation(False)  # Tab leaves it, arrows go about in it
@@ -66,7 +66,7 @@ class PiecesTable(QTableWidget):
             )
             painter.end()
 
-    def show_pieces(self, pieces: Sequence[Piece]) -> None:
+    def show_pieces(self, pieces: Sequence[GeneratedPiece]) -> None:
         """List pieces, all checked, the first one selected."""
         self.pieces = list(pieces)
         self.blockSignals(True)
@@ -113,7 +113,7 @@ class PiecesTable(QTableWidget):
         assert isinstance(box, ComboBox)
         return max(0, box.currentIndex())
 
-    def chosen(self) -> list[Piece]:
+    def chosen(self) -> list[GeneratedPiece]:
         """Return the pieces that are checked."""
         out = []
         for n, piece in enumerate(self.pieces):
@@ -122,7 +122,7 @@ class PiecesTable(QTableWidget):
                 out.append(piece)
         return out
 
-    def selected(self) -> Piece | None:
+    def selected(self) -> GeneratedPiece | None:
         """Return the piece whose row is selected."""
         rows = {i.row() for i in self.selectedItems()}
         return self.pieces[min(rows)] if rows and min(rows) < len(self.pieces) else None
@@ -152,4 +152,4 @@ class PiecesView(QWidget):
 
         rig = project_rig(self.document.project)
         self.preview.words = (piece.clip.name,)
-        self.preview.show_moves(0, landmarks_of(rig, poses_of(rig, piece.clip, FPS)))
+        self.preview.show_moves(0, landmarks_of(rig, encode_clip(rig, piece.clip, FPS)))

@@ -10,12 +10,12 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
 from app.look.theme import theme
-from app.stage.session import Session
-from app.translation import tr, translated
+from app.stage.session import StageSession
+from app.translation import lazy_texts, tr
 from app.widgets.still_plot import empty_plot, still_plot
 
 # Statistics of which 1 is right, as people read them; others are told in words.
-RATIOS = translated(
+RATIOS = lazy_texts(
     lambda: {
         "speed": tr("speed"),
         "trembling": tr("trembling"),
@@ -37,7 +37,7 @@ MOST = 2000  # points of a line, the rest is thinned out
 class TrainingPlots(QWidget):
     """Two plots beside each other, over minutes."""
 
-    def __init__(self, session: Session, parent: QWidget | None = None) -> None:
+    def __init__(self, session: StageSession, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.session = session
         self.goals: dict[str, list[tuple[float, float]]] = {}

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from app.translation import tr, tr_error, tr_plural, translated
+from app.translation import lazy_texts, tr, tr_error, tr_plural
 
 if TYPE_CHECKING:
     from metagraph.generation.standing import Standing
-    from metagraph.generation.train_process import Event
+    from metagraph.generation.train_process import TrainingEvent
 
 # What an event's numbers tell, the most telling first.
-GOALS = translated(
+GOALS = lazy_texts(
     lambda: {
         "likelihood": tr("likelihood: more is better"),
         "matching": tr("error of the flow: less is better"),
@@ -44,19 +44,19 @@ class Process(Protocol):
     def leave(self) -> None: ...
 
 
-Hear = Callable[["Event"], None]
+Hear = Callable[["TrainingEvent"], None]
 Begin = Callable[[Any, Mapping[str, Any], Path, Hear], Process]
 
 
-def begin(batch: Any, wish: Mapping[str, Any], out: Path, hear: Hear) -> Process:
+def begin_training(batch: Any, wish: Mapping[str, Any], out: Path, hear: Hear) -> Process:
     """Begin to train with the takes that were read; on a job's thread. wish: kind, size and minutes. Raises
     SplitError, FileError, TrainingFailedError.
     """
-    from metagraph.generation.takes import split
+    from metagraph.generation.takes import split_takes
     from metagraph.generation.train_plan import folder_of, plan_of, write_training
     from metagraph.generation.train_process import TrainingProcess
 
-    learned, held = split(batch.takes)
+    learned, held = split_takes(batch.takes)
     plan = plan_of(batch.rig, learned, held, out, **wish)
     folder = folder_of(out)
     folder.mkdir(parents=True, exist_ok=True)
@@ -64,7 +64,7 @@ def begin(batch: Any, wish: Mapping[str, Any], out: Path, hear: Hear) -> Process
     return TrainingProcess(out, hear)
 
 
-def go_on(standing: Standing, minutes: float, hear: Hear) -> Process:
+def continue_training(standing: Standing, minutes: float, hear: Hear) -> Process:
     """Go on with a training that was begun, for as long as it was to last, and `minutes` more where that is
     over; on a job's thread. Raises FileError, TrainingFailedError.
     """
@@ -80,7 +80,7 @@ def go_on(standing: Standing, minutes: float, hear: Hear) -> Process:
     return TrainingProcess(standing.out, hear)
 
 
-def keep(standing: Standing, hear: Hear) -> Process:
+def keep_checkpoint(standing: Standing, hear: Hear) -> Process:
     """Write the model of a training's last checkpoint, without learning more; on a job's thread. Raises as
     `go_on` does.
     """
@@ -93,7 +93,7 @@ def keep(standing: Standing, hear: Hear) -> Process:
     return TrainingProcess(standing.out, hear, export=True)
 
 
-def left_of(standing: Standing) -> str:
+def describe_progress(standing: Standing) -> str:
     """Return how far a training got, in words."""
     kind, step = standing.plan.kind, standing.step
     if not step:
@@ -118,7 +118,7 @@ class TrainingRun(QObject):
     moved = Signal(object)
     ended = Signal(object, str)
 
-    def __init__(self, process: Process, said: deque[Event], parent: QObject | None = None) -> None:
+    def __init__(self, process: Process, said: deque[TrainingEvent], parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.process, self.said = process, said
         self.stopping = False
@@ -155,7 +155,7 @@ class TrainingRun(QObject):
         self.process.leave()
 
 
-def stands_of(event: Event) -> str:
+def describe_event(event: TrainingEvent) -> str:
     """Return how far a training is, in words; also how little of the machine it gets, where that is so."""
     words = tr(
         "{steps}, {minutes:.1f} min",
@@ -170,7 +170,7 @@ def stands_of(event: Event) -> str:
     )
 
 
-def goal(event: Event) -> tuple[str, float]:
+def describe_goal(event: TrainingEvent) -> tuple[str, float]:
     """Return what an event tells of how near the training is to its goal, in words and as a number; "" where
     it says nothing of it.
     """

@@ -20,27 +20,27 @@ from PySide6.QtWidgets import (
 from app.features.generation.generation_jobs import (
     UNCUT,
     Speaker,
-    about,
+    as_sentence,
     cut_pieces,
-    first_stance,
+    describe_model,
+    find_first_stance,
     keep_pieces,
-    sentence,
     side_motion,
     with_pieces,
     with_side_moved,
 )
-from app.features.generation.page import Page
+from app.features.generation.page import GenerationPage
 from app.features.generation.pieces_table import PiecesView
 from app.look.theme import strengthen
 from app.project.document import Document
-from app.project.jobs import Job, Jobs
-from app.stage.session import Session
+from app.project.jobs import Jobs, WindowJob
+from app.stage.session import StageSession
 from app.translation import tr, tr_error, tr_noop, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
 from metagraph.errors import FileError
 from metagraph.generation.chunks import GUIDANCE
-from metagraph.generation.offered import offered, words_of
+from metagraph.generation.offered import list_models, model_title
 from metagraph.generation.stored import SUFFIX, read_card
 from metagraph.graph.conversation.model import side_name
 
@@ -50,16 +50,16 @@ NOBODY = tr_noop(
 )
 
 
-class UsePage(Page):
+class UsePage(GenerationPage):
     def __init__(
-        self, document: Document, session: Session, jobs: Jobs, parent: QWidget | None = None
+        self, document: Document, session: StageSession, jobs: Jobs, parent: QWidget | None = None
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.jobs = document, session, jobs
         self._of: tuple[str, int] = ("", 1)  # the model and the seed of the pieces
         self._extra: dict[str, Path] = {}  # models chosen as files
         self._sound: Path | None = None
-        self._job: Job | None = None
+        self._job: WindowJob | None = None
         box = QVBoxLayout(self)
         box.setContentsMargins(0, 8, 0, 0)
         box.setSpacing(6)
@@ -179,24 +179,24 @@ class UsePage(Page):
         for s in project.graphs["arms"].stances.values():
             self.stance.addItem(tr("{layer} · {name}", layer=tr("arms"), name=s.name), s.id)
         self.stance.addItem(tr("the library alone"), "")
-        wanted = stance if stance is not None else first_stance(project)
+        wanted = stance if stance is not None else find_first_stance(project)
         self.stance.choose(wanted)
         self._enable()
 
     def _fill_models(self, wanted: Path | None = None) -> None:
-        found = {**offered(self.document.folder), **self._extra}
+        found = {**list_models(self.document.folder), **self._extra}
         now = wanted or self.model.currentData()
         self.model.blockSignals(True)
         self.model.clear()
         for name, path in found.items():
-            self.model.addItem(words_of(name), path)
+            self.model.addItem(model_title(name), path)
         self.model.choose(now)
         self.model.blockSignals(False)
         self._about()
 
     def show_model(self, path: Path) -> None:
         """Choose a model: one that was just trained, say."""
-        if path not in offered(self.document.folder).values():
+        if path not in list_models(self.document.folder).values():
             self._extra[path.stem] = path
         self._fill_models(path)
 
@@ -215,7 +215,7 @@ class UsePage(Page):
             self.about.setText(tr("There is no model yet: train one, or choose a file."))
         else:
             try:
-                self.about.setText(about(read_card(path), self.document.project))
+                self.about.setText(describe_model(read_card(path), self.document.project))
             except FileError as error:
                 self.about.setText(tr_error(error))
         self._enable()
@@ -256,7 +256,7 @@ class UsePage(Page):
             else tr("Drop")
         )
 
-    def _start(self, title: str, work: Callable[[Job], Any], done: Callable[[Any], None]) -> None:
+    def _start(self, title: str, work: Callable[[WindowJob], Any], done: Callable[[Any], None]) -> None:
         self.said.emit(f"{title}…")
         job = self.jobs.start(title, work, done, self._failed)
         self._job = job
@@ -278,7 +278,7 @@ class UsePage(Page):
         self._enable()
 
     def _failed(self, error: Exception) -> None:
-        self.said.emit(sentence(error))
+        self.said.emit(as_sentence(error))
 
     def cancel(self) -> None:
         if self._job is not None:
@@ -314,7 +314,7 @@ class UsePage(Page):
             )
             return
 
-        def work(job: Job) -> Any:
+        def work(job: WindowJob) -> Any:
             from metagraph.generation.stored import read_model
 
             speaker = Speaker(project, ident, side, folder)
@@ -359,15 +359,15 @@ class UsePage(Page):
         project, chance, named = self.document.project, self._chance(), self.model.currentText()
         seconds, folder, sound = 60 * self.minutes.value(), self.document.folder or Path(), self._sound
 
-        def work(job: Job) -> Any:
-            from metagraph.generation.performing import heard_file, heard_side, long_takes
+        def work(job: WindowJob) -> Any:
+            from metagraph.generation.performing import generate_long_takes, hear_file, hear_side
             from metagraph.generation.stored import read_model
 
             if speech == FILE and sound is not None:
-                heard = heard_file(sound)
+                heard = hear_file(sound)
             else:
-                heard = heard_side(project, speech[0], speech[1], folder)
-            made, told = long_takes(
+                heard = hear_side(project, speech[0], speech[1], folder)
+            made, told = generate_long_takes(
                 read_model(path),
                 project,
                 heard,

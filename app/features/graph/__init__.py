@@ -6,7 +6,7 @@ from functools import partial
 
 from app.features.graph.graph_commands import COMMANDS, GraphFeature
 from app.features.graph.layer_tabs import LayerTabs
-from app.shell.command_table import actions_selected, all_of, bound, meta_graph_shown
+from app.shell.command_table import all_met, bind_commands, has_actions_selected, is_meta_graph_shown
 from app.shell.context import Contribution, HeaderItem, Panel, Shell
 from app.shell.verbs import Verbs
 from app.translation import tr
@@ -14,9 +14,11 @@ from app.translation import tr
 
 def contribute(shell: Shell) -> Contribution:
     graph, verbs = GraphFeature(shell), shell.services[Verbs]
-    shown = partial(meta_graph_shown, graph)
+    shown = partial(is_meta_graph_shown, graph)
     graph.importing.imported.connect(graph.place_imported)
-    verbs.offer("remove", partial(all_of(meta_graph_shown, actions_selected), graph), graph.remove_actions)
+    verbs.offer(
+        "remove", partial(all_met(is_meta_graph_shown, has_actions_selected), graph), graph.remove_actions
+    )
     verbs.offer("rename", shown, graph.rename_stance, rank=9)
     verbs.offer("select_all", shown, graph.select_all, rank=9)
     return Contribution(
@@ -34,7 +36,7 @@ def contribute(shell: Shell) -> Contribution:
                 rank=0,
             ),
         ),
-        commands=bound(COMMANDS, graph),
+        commands=bind_commands(COMMANDS, graph),
         header=(HeaderItem("left", partial(LayerTabs, shell)),),
         close=lambda: graph.canvas.stop(),
     )

@@ -9,16 +9,16 @@ from collections.abc import Sequence
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QInputDialog, QWidget
 
-from app.features.graph.graph_drops import Drop, drop_at, perform
+from app.features.graph.graph_drops import Drop, drop_at, perform_drop
 from app.features.graph.graph_layout import GraphHit
 from app.project.document import Document
 from app.project.load import Load
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr, tr_error, tr_plural
-from app.widgets.vocabulary import word
+from app.widgets.vocabulary import vocabulary_word
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.editing.listing import shifted
+from metagraph.graph.editing.listing import shift_actions
 from metagraph.graph.model import KINDS, Action, Kind
 
 
@@ -30,7 +30,7 @@ class GraphActs(QObject):
     refused = Signal(str)
     labelled = Signal(object, object)
 
-    def __init__(self, document: Document, session: Session, widget: QWidget) -> None:
+    def __init__(self, document: Document, session: StageSession, widget: QWidget) -> None:
         super().__init__(widget)
         self.document, self.session, self.widget = document, session, widget
 
@@ -61,7 +61,7 @@ class GraphActs(QObject):
             else tr("Place {what}", what=what)
         )
         try:
-            self.document.edit(words, lambda p: perform(p, layer, drop, load))
+            self.document.edit(words, lambda p: perform_drop(p, layer, drop, load))
         except EditError as error:
             self.refused.emit(tr_error(error))
             return
@@ -101,7 +101,7 @@ class GraphActs(QObject):
         """List the selected actions a place earlier (-1) or later (1) in their nodes."""
         chosen = self.session.selection.actions
         words = tr("Reorder {what}", what=tr_plural("{count:,} action", "{count:,} actions", len(chosen)))
-        self.document.edit(words, lambda p: shifted(p, chosen, steps))
+        self.document.edit(words, lambda p: shift_actions(p, chosen, steps))
 
     def move_to(self, stance: str) -> None:
         chosen = self.session.selection.actions
@@ -128,7 +128,7 @@ class GraphActs(QObject):
         name, accepted = QInputDialog.getText(
             self.widget,
             tr("New stance"),
-            tr("Name of the new {layer} stance:", layer=word(self.session.place.layer)),
+            tr("Name of the new {layer} stance:", layer=vocabulary_word(self.session.place.layer)),
         )
         if accepted and name.strip():
             layer = self.session.place.layer

@@ -37,22 +37,22 @@ from app.features.graph.graph_layout import (
     LEAST_WIDTH,
     GraphHit,
     Layout,
-    arrange,
-    least_height,
+    lay_out_canvas,
+    least_canvas_height,
 )
 from app.features.graph.graph_look import NOWHERE, GraphLook
-from app.features.graph.graph_menus import ends_menu, menu_of
-from app.features.graph.graph_painter import paint
-from app.features.graph.graph_parts import Parts, parts_of, stale
-from app.features.graph.graph_pictures import Beat, Pictures, pictures_of
-from app.features.graph.graph_words import sentence, tip
+from app.features.graph.graph_menus import make_ends_menu, menu_of
+from app.features.graph.graph_painter import paint_graph
+from app.features.graph.graph_parts import Parts, find_stale_region, list_graph_parts
+from app.features.graph.graph_pictures import Beat, GraphPictures, find_graph_pictures
+from app.features.graph.graph_words import count_machine, describe_graph_hit
 from app.look.theme import theme
 from app.project.document import Document
-from app.stage.performance import Performance
-from app.stage.session import Session
+from app.stage.performance import StagePerformance
+from app.stage.session import StageSession
 from app.stage.thumbnails import Thumbnails
 from app.translation import tr, tr_noop
-from app.widgets.gesture import Hand
+from app.widgets.gesture import PointerHand
 from app.widgets.memo import Once
 from app.widgets.mime import load_of
 from app.widgets.soon import Soon
@@ -74,8 +74,8 @@ class Canvas(QWidget):
     def __init__(
         self,
         document: Document,
-        session: Session,
-        performance: Performance,
+        session: StageSession,
+        performance: StagePerformance,
         thumbnails: Thumbnails,
         parent: QWidget | None = None,
     ):
@@ -83,7 +83,7 @@ class Canvas(QWidget):
         self.document, self.session = document, session
         self.performance, self.thumbnails = performance, thumbnails
         self.acts = GraphActs(document, session, self)
-        self.hand = Hand()
+        self.hand = PointerHand()
         self.first_rows: dict[Kind, int] = {}  # in sight of scrolled nodes
         self.row_actions: list[QAction] = []  # the window's commands that go into an action's menu
         self.hover = Hover(session, lambda: self._drop_hit if self.drop is not None else None, self)
@@ -128,7 +128,7 @@ class Canvas(QWidget):
             names = [s.name for s in project.graphs[place.layer].stances.values()]
             widths = {text: metrics.horizontalAdvance(text) for text in (*names, *HOLES)}
             size, rows = QSizeF(self.size()), self.first_rows
-            self._layout = arrange(project, place.layer, place.stance(), size, rows, widths)
+            self._layout = lay_out_canvas(project, place.layer, place.stance(), size, rows, widths)
         return self._layout
 
     def _stale(self) -> None:
@@ -139,14 +139,16 @@ class Canvas(QWidget):
         """Let what is drawn otherwise than it was painted be painted again."""
         if not self.isVisible():
             return  # when it is shown, all of it is painted
-        region = stale(self._drawn, parts_of(self.layout_now(), self._look(Pictures())))
+        region = find_stale_region(
+            self._drawn, list_graph_parts(self.layout_now(), self._look(GraphPictures()))
+        )
         if region is None:
             self.update()
         elif not region.isEmpty():
             self.update(region)
 
     def resizeEvent(self, event: object) -> None:
-        self.setMinimumHeight(int(least_height(self.width())))
+        self.setMinimumHeight(int(least_canvas_height(self.width())))
         self._stale()
         self._selected()
 
@@ -154,15 +156,15 @@ class Canvas(QWidget):
         begun = time.perf_counter()
         self._soon.now()  # else what an edit changed elsewhere would be taken for painted with this part
         layout, graph = self.layout_now(), self.document.project.graphs[self.session.place.layer]
-        look = self._look(pictures_of(self.thumbnails, layout, graph, self._beat.count))
+        look = self._look(find_graph_pictures(self.thumbnails, layout, graph, self._beat.count))
         painter = QPainter(self)
-        paint(painter, layout, look, self.font(), event.region())
+        paint_graph(painter, layout, look, self.font(), event.region())
         painter.end()
         # Whatever else is drawn otherwise has asked to be painted, too.
-        self._drawn = parts_of(layout, look)
+        self._drawn = list_graph_parts(layout, look)
         self._beat.drawn(time.perf_counter() - begun)
 
-    def _look(self, pictures: Pictures) -> GraphLook:
+    def _look(self, pictures: GraphPictures) -> GraphLook:
         """Return what is drawn besides the layout."""
         return GraphLook(
             theme=theme(self.session.look.name),
@@ -190,7 +192,7 @@ class Canvas(QWidget):
             words = self.drop.words.replace("*", "")
             return words[:1].upper() + words[1:]
         project = self.document.project
-        return self._counted.of((), (project.graphs,), lambda: sentence(project))
+        return self._counted.of((), (project.graphs,), lambda: count_machine(project))
 
     def _playing(self) -> frozenset[str]:
         plan = self.performance.shown.plan
@@ -262,7 +264,7 @@ class Canvas(QWidget):
         elif hit.area == "add":
             self.acts.new_stance()
         elif hit.area == "other":
-            ends_menu(self.acts).exec(event.globalPosition().toPoint())
+            make_ends_menu(self.acts).exec(event.globalPosition().toPoint())
         elif hit.area == "bar" and hit.ident:
             self.hand.take(LikelihoodDrag(self, hit.ident), event.position())
         elif hit.area in ("row", "head") and hit.ident:
@@ -317,7 +319,7 @@ class Canvas(QWidget):
         if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent):
             hit = self.layout_now().hit(QPointF(event.pos()))
             project, other = self.document.project, self.session.place.other()
-            words = tip(project, self.layout_now(), hit, other, self.misfits)
+            words = describe_graph_hit(project, self.layout_now(), hit, other, self.misfits)
             QToolTip.showText(event.globalPos(), words, self)
             return True
         return super().event(event)

@@ -9,12 +9,12 @@ from app.features.graph.graph_drops import Drop
 from app.features.graph.layer_tabs import LAYER_KEYS
 from app.project.importing import Importing
 from app.shell.actions import Command
-from app.shell.command_table import Feature, actions_selected, any_of, clips_selected
+from app.shell.command_table import Feature, any_met, has_actions_selected, has_clips_selected
 from app.shell.context import Shell
-from app.shell.places import Places
+from app.shell.places import PanelPlaces
 from app.stage.problem_watch import ProblemWatch
 from app.translation import tr, tr_noop
-from app.widgets.vocabulary import titled, word
+from app.widgets.vocabulary import vocabulary_title, vocabulary_word
 from metagraph.formats.imports import Imported
 from metagraph.graph.model import KINDS, LAYERS, Kind, Layer, Stance
 
@@ -48,7 +48,7 @@ class GraphFeature(Feature):
         """After a label by key the next clip without one is selected and plays; what was made is in sight."""
         following = self.shell.panel("library").next_unlabelled(clips[-1])
         self.canvas.reveal(made)
-        places = self.shell.services[Places]
+        places = self.shell.services[PanelPlaces]
         if places.belongs("properties", places.workspace) and not places.dock("properties").isHidden():
             places.show("properties")
         if following is not None:
@@ -105,11 +105,11 @@ class GraphFeature(Feature):
 
 
 def _label_text(feature: GraphFeature, number: int, kind: Kind) -> str:
-    return tr("Label as &{number} {kind}", number=number, kind=word(kind))
+    return tr("Label as &{number} {kind}", number=number, kind=vocabulary_word(kind))
 
 
 def _layer_text(feature: GraphFeature, layer: Layer) -> str:
-    return tr("{layer} layer", layer=titled(layer))
+    return tr("{layer} layer", layer=vocabulary_title(layer))
 
 
 COMMANDS = (
@@ -131,7 +131,7 @@ COMMANDS = (
             partial(_label_text, number=number, kind=kind),
             partial(GraphFeature.label, kind=kind),
             (str(number),),
-            enabled=any_of(clips_selected, actions_selected),
+            enabled=any_met(has_clips_selected, has_actions_selected),
             when="meta",
             study=True,
             menus=("clip label",),
@@ -146,7 +146,7 @@ COMMANDS = (
         GraphFeature.list_earlier,
         ("Alt+Up",),
         tip=tr_noop("Move the selected actions a place earlier in their node; what plays does not change"),
-        enabled=actions_selected,
+        enabled=has_actions_selected,
         when="meta",
         menus=("action",),
     ),
@@ -158,7 +158,7 @@ COMMANDS = (
         GraphFeature.list_later,
         ("Alt+Down",),
         tip=tr_noop("Move the selected actions a place later in their node; what plays does not change"),
-        enabled=actions_selected,
+        enabled=has_actions_selected,
         when="meta",
         menus=("action",),
     ),

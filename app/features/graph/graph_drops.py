@@ -10,10 +10,10 @@ from app.features.graph.graph_layout import GraphHit
 from app.look.names import node_names
 from app.project.load import ANNOTATIONS, Load
 from app.translation import tr, tr_error, tr_noop, tr_phrase, tr_plural
-from app.widgets.vocabulary import word
+from app.widgets.vocabulary import vocabulary_word
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.editing.listing import reordered
-from metagraph.graph.edits import move_actions, place, refusal, to_stance
+from metagraph.graph.editing.listing import reorder_actions
+from metagraph.graph.edits import find_placing_refusal, move_actions, place_clips, to_stance
 from metagraph.graph.model import Kind, Layer, Project
 
 ONE: dict[Kind, str] = {
@@ -90,11 +90,14 @@ def drop_at(
     if load.files and not clips:
         # Files are imported first; only what does not depend on the clips can be refused now.
         clips = [next(iter(project.clips))] if project.clips else []
-        why = refusal(project, clips, layer, kind, target, end) if clips else None
+        why = find_placing_refusal(project, clips, layer, kind, target, end) if clips else None
         if not clips and kind != "stance":
-            why = tr("make a stance first: drop a clip on the middle of the {layer} layer", layer=word(layer))
+            why = tr(
+                "make a stance first: drop a clip on the middle of the {layer} layer",
+                layer=vocabulary_word(layer),
+            )
     else:
-        why = refusal(project, clips, layer, kind, target, end)
+        why = find_placing_refusal(project, clips, layer, kind, target, end)
     if why is None and load.actions and target is None and kind == "stance":
         why = tr("drag its clip from the library to make a new stance of it")
     if why is not None:
@@ -117,7 +120,7 @@ def _reorder(project: Project, hit: GraphHit, load: Load) -> Drop:
     rest = [a for a in node if a.id not in load.actions]
     place = next((n for n, a in enumerate(node) if a.id == hit.ident), len(node)) + hit.behind
     before = next((a for a in node[place:] if a.id not in load.actions), None)
-    if reordered(project, load.actions, before.id if before else None) is project:
+    if reorder_actions(project, load.actions, before.id if before else None) is project:
         return Drop(False, tr("already here"), first.kind, first.stance, None, True)
     called = node_names(project, first.layer, first.stance, first.kind)
     words = (
@@ -142,17 +145,17 @@ def _move(project: Project, stance: str, load: Load) -> Drop:
     return Drop(True, tr("move {what} to *{name}*", what=_count(load), name=name), None, stance)
 
 
-def perform(project: Project, layer: Layer, drop: Drop, load: Load) -> Project:
+def perform_drop(project: Project, layer: Layer, drop: Drop, load: Load) -> Project:
     """Do what a possible drop said, for clips or actions. Raises EditError."""
     if drop.reorder:
-        return reordered(project, load.actions, drop.before)
+        return reorder_actions(project, load.actions, drop.before)
     if load.actions:
         assert drop.stance is not None
         if drop.kind is None:
             return to_stance(project, load.actions, drop.stance)
         return move_actions(project, load.actions, drop.kind, drop.stance, drop.end)
     assert drop.kind is not None
-    return place(project, load.clips, layer, drop.kind, drop.stance, drop.end)
+    return place_clips(project, load.clips, layer, drop.kind, drop.stance, drop.end)
 
 
 def _count(load: Load) -> str:

@@ -39,7 +39,9 @@ class Frames:
         )
 
 
-def frames(width: float, top: float, bottom: float, counts: Mapping[Kind, int], name: float = 0.0) -> Frames:
+def place_frames(
+    width: float, top: float, bottom: float, counts: Mapping[Kind, int], name: float = 0.0
+) -> Frames:
     """Share a room of a width between two heights. counts: of the actions of each node. name: pixels that the
     card's name needs.
     """

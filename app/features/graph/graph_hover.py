@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.features.graph.graph_layout import GraphHit
 from app.features.graph.graph_look import NOWHERE
-from app.stage.session import Session
+from app.stage.session import StageSession
 
 PAUSE = 350  # milliseconds over a row before it plays, over a chip during a drag before it becomes current
 ROWS = ("row", "head")
@@ -22,7 +22,7 @@ class Hover:
     hit: what is under the pointer. held: where something is held over the canvas, None where nothing is.
     """
 
-    def __init__(self, session: Session, held: Callable[[], GraphHit | None], widget: QWidget) -> None:
+    def __init__(self, session: StageSession, held: Callable[[], GraphHit | None], widget: QWidget) -> None:
         self.session, self.held, self.widget = session, held, widget
         self.hit = NOWHERE
         self._shown = False  # it plays only as long as the pointer is there

@@ -10,9 +10,9 @@ from typing import Literal
 
 from PySide6.QtCore import QPointF, QRectF, QSizeF
 
-from app.features.graph.graph_frames import GRID, HEADER, LINE, NARROW, PAD, ROW, Frames, frames
+from app.features.graph.graph_frames import GRID, HEADER, LINE, NARROW, PAD, ROW, Frames, place_frames
 from app.look.names import node_names
-from app.translation import tr, translated
+from app.translation import lazy_texts, tr
 from metagraph.graph.model import Action, Kind, Layer, MetaGraph, Project
 
 LEAST_WIDTH, LEAST_HEIGHT = 240.0, 300.0  # pixels; a smaller canvas is laid out as if it was so large
@@ -58,7 +58,7 @@ class GraphRow:
 
 
 @dataclass(frozen=True)
-class Node:
+class NodeLayout:
     """rows: those in sight. count: of all. scroll, most: the first row in sight and the largest it can be."""
 
     kind: Kind
@@ -91,7 +91,7 @@ class Layout:
     chips: tuple[Chip, ...]
     card: QRectF
     loops: QRectF  # the part of the card where a drop adds a loop to the stance, during a drag
-    nodes: Mapping[Kind, Node]
+    nodes: Mapping[Kind, NodeLayout]
     foot: QRectF
     stance: str | None
 
@@ -135,10 +135,10 @@ class Layout:
         )
 
 
-HOLES = translated(lambda: (tr("no loop"), tr("no way out"), tr("no gestures"), tr("no fidgets")))
+HOLES = lazy_texts(lambda: (tr("no loop"), tr("no way out"), tr("no gestures"), tr("no fidgets")))
 
 
-def hole(project: Project, layer: Layer, stance: str) -> str:
+def describe_hole(project: Project, layer: Layer, stance: str) -> str:
     """Return in words what a stance lacks, the worst first, or nothing."""
     graph = project.graphs[layer]
     if not graph.of(stance, "stance"):
@@ -152,14 +152,14 @@ def hole(project: Project, layer: Layer, stance: str) -> str:
     return ""
 
 
-def least_height(width: float) -> float:
+def least_canvas_height(width: float) -> float:
     """Return the least height at which a canvas of a width shows each node with a row: a narrow one needs
     more.
     """
     return LEAST_HEIGHT if width >= LINE else 440.0
 
 
-def arrange(
+def lay_out_canvas(
     project: Project,
     layer: Layer,
     stance: str | None,
@@ -172,7 +172,7 @@ def arrange(
     """
     scroll, widths = scroll or {}, widths or {}
     width = max(size.width(), LEAST_WIDTH)
-    height = max(size.height(), least_height(width))
+    height = max(size.height(), least_canvas_height(width))
     graph = project.graphs[layer]
 
     # Many stances in a low window: narrower chips without words leave room for the nodes.
@@ -192,10 +192,10 @@ def arrange(
     name = widths.get(found.name, 7.2 * len(found.name)) * BOLD + 44 if found is not None else 0.0
     foot = FOOT if width >= NARROW else FOOT_NARROW
     bottom = max(height - foot, top + 200.0)
-    shared = frames(width, top, bottom, counts, name)
+    shared = place_frames(width, top, bottom, counts, name)
     if width < NARROW and not shared.all_seen(counts):  # rows before the sentence
         foot, bottom = 0, max(height - GRID, top + 200.0)
-        shared = frames(width, top, bottom, counts, name)
+        shared = place_frames(width, top, bottom, counts, name)
     card = shared.card
     nodes = {
         kind: _node(
@@ -223,7 +223,7 @@ def _chips(
     x, y, room = 2.0 * GRID, float(CHIP_TOP), width - 4 * GRID
     for ident, s in graph.stances.items():
         count = sum(len(graph.of(ident, k)) for k in ("gesture", "fidget", "transition"))
-        words = hole(project, graph.layer, ident) if widest == CHIP_MAX else ""
+        words = describe_hole(project, graph.layer, ident) if widest == CHIP_MAX else ""
         text = widths.get(s.name, 7.2 * len(s.name)) + widths.get(str(count), 16.0)
         if words:
             told = text + widths.get(words, 7 * len(words)) + 8
@@ -251,7 +251,7 @@ def _told(chip: Chip, widths: Mapping[str, float]) -> float:
 
 def _node(
     kind: Kind, shared: Frames, actions: tuple[Action, ...], names: Mapping[str, str], scroll: int
-) -> Node:
+) -> NodeLayout:
     rect, columns, high = shared.nodes[kind], shared.columns[kind], shared.row
     header = QRectF(rect.left(), rect.top(), rect.width(), HEADER)
     below = kind == "transition" and rect.width() < TITLE + CHOOSER + 42  # the chooser has a line of its own
@@ -284,7 +284,7 @@ def _node(
     elif kind == "transition":  # right of the title, as far as the count
         x = max(rect.right() - CHOOSER, rect.left() + TITLE)
         other = QRectF(x, rect.top() + 7, max(0.0, rect.right() - 42 - x), HEADER - 14)
-    return Node(kind, rect, header, body, tuple(rows), len(actions), first, most, other, columns)
+    return NodeLayout(kind, rect, header, body, tuple(rows), len(actions), first, most, other, columns)
 
 
 def likelihood_at(row: GraphRow, x: float) -> float:

@@ -10,8 +10,8 @@ from PySide6.QtGui import QColor, QFont, QImage, QPainter, QPen
 
 from app.features.graph.graph_drops import Drop
 from app.features.graph.graph_layout import GraphHit
-from app.look.shortening import fitted
-from app.look.theme import Theme
+from app.look.shortening import shorten_to_font
+from app.look.theme import WindowTheme
 from metagraph.graph.model import Kind, Project
 
 RADIUS = 8.0
@@ -26,7 +26,7 @@ NOWHERE = GraphHit("nothing")
 class GraphLook:
     """Everything that is drawn besides the layout."""
 
-    theme: Theme
+    theme: WindowTheme
     project: Project
     selected: Collection[str] = ()
     fresh: Collection[str] = ()  # just made
@@ -45,7 +45,7 @@ class GraphLook:
     sentence: str = ""
 
 
-def bold(font: QFont) -> QFont:
+def make_bold(font: QFont) -> QFont:
     out = QFont(font)
     out.setWeight(QFont.Weight.DemiBold)
     return out
@@ -70,12 +70,12 @@ def draw_box(
     painter.drawRoundedRect(rect.adjusted(width / 2, width / 2, -width / 2, -width / 2), RADIUS, RADIUS)
 
 
-def between(font: QFont, text: str, width: float, others: tuple[str, ...] = ()) -> str:
+def shorten_between(font: QFont, text: str, width: float, others: tuple[str, ...] = ()) -> str:
     """Return as much of a text as there is room for, with what tells it from those beside it."""
-    return fitted(text, int(width), font.toString(), others)
+    return shorten_to_font(text, int(width), font.toString(), others)
 
 
-def upper(picture: QImage) -> QRectF:
+def crop_upper(picture: QImage) -> QRectF:
     """Return the part of a picture in which arms and head are: the upper middle, or all of who lies."""
     key = picture.cacheKey()
     if key not in _UPPER:

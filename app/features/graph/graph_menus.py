@@ -42,7 +42,7 @@ def menu_of(acts: GraphActs, hit: GraphHit, row_actions: Sequence[QAction]) -> Q
         menu.addAction(tr("Rename stance…\tF2"), lambda: acts.rename_stance(stance_id))
         menu.addAction(
             tr("Start here"),
-            lambda: acts.document.edit(tr("Start here"), lambda p: edits.set_start(p, stance_id)),
+            lambda: acts.document.edit(tr("Start here"), lambda p: edits.set_start_stance(p, stance_id)),
         )
         menu.addSeparator()
         menu.addAction(
@@ -54,7 +54,7 @@ def menu_of(acts: GraphActs, hit: GraphHit, row_actions: Sequence[QAction]) -> Q
     return menu
 
 
-def ends_menu(acts: GraphActs) -> QMenu:
+def make_ends_menu(acts: GraphActs) -> QMenu:
     """Return the stances that dropped transitions can end in."""
     menu = QMenu(acts.widget)
     menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)

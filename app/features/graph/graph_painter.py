@@ -8,10 +8,10 @@ from PySide6.QtGui import QColor, QFont, QPainter, QPainterPath, QPen, QRegion
 from app.features.graph.graph_layout import Layout
 from app.features.graph.graph_look import GraphLook, draw_box
 from app.features.graph.paint_nodes import draw_node
-from app.features.graph.paint_stances import draw_card, draw_chip
+from app.features.graph.paint_stances import draw_chip, draw_stance_card
 
 
-def paint(
+def paint_graph(
     painter: QPainter, layout: Layout, look: GraphLook, font: QFont, stale: QRegion | None = None
 ) -> None:
     """Draw a canvas. stale: the part that is to be drawn anew, None for all; while the stance moves that is
@@ -29,7 +29,7 @@ def paint(
         if wanted(chip.rect):
             draw_chip(painter, chip, layout, look, font)
     if wanted(layout.card):
-        draw_card(painter, layout, look, font)
+        draw_stance_card(painter, layout, look, font)
     for node in layout.nodes.values():
         if wanted(node.rect):
             draw_node(painter, node, layout, look, font, wanted)

@@ -19,7 +19,7 @@ EVERYTHING = "everything"
 Parts = Mapping[Hashable, tuple[QRectF, Any]]
 
 
-def parts_of(layout: Layout, look: GraphLook) -> Parts:
+def list_graph_parts(layout: Layout, look: GraphLook) -> Parts:
     """Return what is drawn in each part of a canvas."""
     project, whole = look.project, QRectF(0, 0, layout.size.width(), layout.size.height())
     joined = tuple((node.rect, bool(node.count)) for node in layout.nodes.values())
@@ -64,7 +64,7 @@ def parts_of(layout: Layout, look: GraphLook) -> Parts:
     return out
 
 
-def stale(before: Parts, after: Parts) -> QRegion | None:
+def find_stale_region(before: Parts, after: Parts) -> QRegion | None:
     """Return where something else is drawn than before; None for everywhere."""
     if before.get(EVERYTHING) != after.get(EVERYTHING):
         return None

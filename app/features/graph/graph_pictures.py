@@ -18,7 +18,7 @@ SLOW = 0.015  # seconds of drawing for each of which a picture of it is left out
 
 
 @dataclass(frozen=True)
-class Pictures:
+class GraphPictures:
     """hero: of the stance in the middle. chips: by stance. rows: by clip. None is there that is not drawn
     yet.
     """
@@ -28,7 +28,7 @@ class Pictures:
     rows: dict[str, QImage] = field(default_factory=dict)
 
 
-def pictures_of(thumbnails: Thumbnails, layout: Layout, graph: MetaGraph, beat: int) -> Pictures:
+def find_graph_pictures(thumbnails: Thumbnails, layout: Layout, graph: MetaGraph, beat: int) -> GraphPictures:
     """Return the pictures that a layout has room for; those that are not there yet are drawn."""
     loops = {ident: next(iter(graph.of(ident, "stance")), None) for ident in graph.stances}
     chips = {
@@ -37,7 +37,7 @@ def pictures_of(thumbnails: Thumbnails, layout: Layout, graph: MetaGraph, beat: 
     seen = (row for node in layout.nodes.values() for row in node.rows if not row.picture.isEmpty())
     rows = {clip: thumbnails.picture(clip, bare=True) for clip in {row.action.clip for row in seen}}
     hero = loops.get(layout.stance or "")
-    return Pictures(
+    return GraphPictures(
         thumbnails.moving(hero.clip, beat) if hero is not None else None,
         {ident: picture for ident, picture in chips.items() if picture is not None},
         {clip: picture for clip, picture in rows.items() if picture is not None},

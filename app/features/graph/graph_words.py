@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from app.features.graph.graph_layout import GraphHit, Layout
-from app.look.names import told_names
+from app.look.names import names_in_tooltip
 from app.translation import tr, tr_plural
-from metagraph.graph.expand import size
+from metagraph.graph.expand import count_machine_size
 from metagraph.graph.model import LAYERS, Project
 
 
-def tip(
+def describe_graph_hit(
     project: Project, layout: Layout, hit: GraphHit, other: str | None, misfits: Mapping[str, str]
 ) -> str:
     """Say what is under the pointer. other: the stance that dropped transitions end in. misfits: what is
@@ -22,7 +22,7 @@ def tip(
         return tr("Likelihood {likelihood:g}: drag to change", likelihood=action.likelihood)
     if action is not None:
         row = layout.row(action.id)
-        name = told_names(row.words if row is not None else action.name, action.name)
+        name = names_in_tooltip(row.words if row is not None else action.name, action.name)
         head = tr("Drag the arrow onto another stance to end there")
         plain = head if hit.area == "head" else tr("Click plays it in context, drag moves it")
         note = project.notes.get(action.id, "")
@@ -40,9 +40,9 @@ def tip(
     return "\n".join(x for x in (name, words) if x) if words else ""
 
 
-def sentence(project: Project) -> str:
+def count_machine(project: Project) -> str:
     """Count the machine that was not drawn."""
-    whole = size(project)
+    whole = count_machine_size(project)
     if not whole.clips:
         return tr("Drop clips on the nodes; every connection between them is implied.")
     layers = sum(1 for layer in LAYERS if project.graphs[layer].actions)

@@ -7,7 +7,7 @@ from PySide6.QtWidgets import QWidget
 from app.shell.context import Shell
 from app.translation import tr
 from app.widgets.choice_row import ChoiceRow
-from app.widgets.vocabulary import titled, word
+from app.widgets.vocabulary import vocabulary_title, vocabulary_word
 from metagraph.graph.model import LAYERS, Layer
 
 LAYER_KEYS: dict[Layer, str] = {"body": "Alt+1", "arms": "Alt+2", "head": "Alt+3"}
@@ -18,7 +18,11 @@ class LayerTabs(ChoiceRow):
 
     def __init__(self, shell: Shell, parent: QWidget) -> None:
         tips = (
-            (titled(x), tr("The {layer} layer ({key})", layer=word(x), key=LAYER_KEYS[x])) for x in LAYERS
+            (
+                vocabulary_title(x),
+                tr("The {layer} layer ({key})", layer=vocabulary_word(x), key=LAYER_KEYS[x]),
+            )
+            for x in LAYERS
         )
         super().__init__(parent, tips, least_width=56)
         self.document, self.session = shell.document, shell.stage.session
@@ -33,5 +37,7 @@ class LayerTabs(ChoiceRow):
         """Show the layer and the counts as they are now."""
         for number, layer in enumerate(LAYERS):
             count = len(self.document.project.graphs[layer].actions)
-            self.button(number).setText(f"{titled(layer)}  {count}" if count else titled(layer))
+            self.button(number).setText(
+                f"{vocabulary_title(layer)}  {count}" if count else vocabulary_title(layer)
+            )
         self.show_choice(LAYERS.index(self.session.place.layer))

@@ -8,14 +8,21 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
 
 from app.features.graph.graph_frames import GRID
-from app.features.graph.graph_layout import GraphRow, Layout, Node, bar_part
-from app.features.graph.graph_look import GraphLook, between, bold, draw_box, draw_offer, upper
-from app.look.names import plain
+from app.features.graph.graph_layout import GraphRow, Layout, NodeLayout, bar_part
+from app.features.graph.graph_look import (
+    GraphLook,
+    crop_upper,
+    draw_box,
+    draw_offer,
+    make_bold,
+    shorten_between,
+)
+from app.look.names import plain_action_name
 from app.look.theme import KIND_MARKS, KIND_TITLES
-from app.translation import tr, translated
+from app.translation import lazy_texts, tr
 from metagraph.graph.model import Kind
 
-TEACH = translated(
+TEACH = lazy_texts(
     lambda: {
         "gesture": tr("Drop clips that mean something\nor beat time: a shrug, a point."),
         "fidget": tr("Drop small habits:\na scratch, tapping fingers."),
@@ -26,7 +33,7 @@ TEACH = translated(
 
 def draw_node(
     painter: QPainter,
-    node: Node,
+    node: NodeLayout,
     layout: Layout,
     look: GraphLook,
     font: QFont,
@@ -45,7 +52,7 @@ def draw_node(
     painter.setFont(font)
     painter.setPen(t.kind(node.kind))
     painter.drawText(head, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, KIND_MARKS[node.kind])
-    painter.setFont(bold(font))
+    painter.setFont(make_bold(font))
     painter.setPen(QColor(t.text))
     painter.drawText(
         head.adjusted(20, 0, 0, 0),
@@ -90,7 +97,7 @@ def draw_node(
         draw_offer(painter, free, look, node.kind, font)
 
 
-def _gap(painter: QPainter, node: Node, look: GraphLook) -> None:
+def _gap(painter: QPainter, node: NodeLayout, look: GraphLook) -> None:
     """A line where actions would be listed: before or behind the row pointed at, or after the last."""
     hit, drop = look.drop_hit, look.drop
     row = next((r for r in node.rows if r.action.id == hit.ident), node.rows[-1] if node.rows else None)
@@ -107,7 +114,7 @@ def _gap(painter: QPainter, node: Node, look: GraphLook) -> None:
         painter.drawLine(QPointF(rect.left(), y), QPointF(rect.right(), y))
 
 
-def _other(painter: QPainter, node: Node, look: GraphLook, font: QFont) -> None:
+def _other(painter: QPainter, node: NodeLayout, look: GraphLook, font: QFont) -> None:
     """The chooser of the stance that dropped transitions end in."""
     t, rect = look.theme, node.other
     found = look.project.stance(look.other)
@@ -116,12 +123,14 @@ def _other(painter: QPainter, node: Node, look: GraphLook, font: QFont) -> None:
     painter.setFont(font)
     painter.setPen(QColor(t.text if found is not None else t.warning))
     text, room = (
-        tr("to {name}", name=plain(found.name)) if found is not None else tr("another stance?"),
+        tr("to {name}", name=plain_action_name(found.name)) if found is not None else tr("another stance?"),
         rect.width() - 26,
     )
     if found is not None and QFontMetricsF(font).horizontalAdvance(text) > room:
-        text = plain(found.name)
-    painter.drawText(rect.adjusted(8, 0, -18, 0), Qt.AlignmentFlag.AlignVCenter, between(font, text, room))
+        text = plain_action_name(found.name)
+    painter.drawText(
+        rect.adjusted(8, 0, -18, 0), Qt.AlignmentFlag.AlignVCenter, shorten_between(font, text, room)
+    )
     painter.setPen(QPen(QColor(t.dim), 1.4))
     c = QPointF(rect.right() - 12, rect.center().y())
     painter.drawPolyline([c + QPointF(-3.5, -2), c + QPointF(0, 2), c + QPointF(3.5, -2)])
@@ -161,7 +170,7 @@ def _row(
     if not row.picture.isEmpty():
         left = row.picture.right() + 8
         if picture is not None:
-            painter.drawImage(row.picture, picture, upper(picture))
+            painter.drawImage(row.picture, picture, crop_upper(picture))
     if action.id in look.playing:
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(t.kind(kind))
@@ -179,7 +188,7 @@ def _row(
     painter.drawText(
         QRectF(left, rect.top(), room, rect.height()),
         Qt.AlignmentFlag.AlignVCenter,
-        between(font, row.words, room, beside),
+        shorten_between(font, row.words, room, beside),
     )
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(QColor(t.line))

@@ -6,13 +6,20 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
 
 from app.features.graph.graph_layout import Chip, Layout
-from app.features.graph.graph_look import GraphLook, between, bold, draw_box, draw_offer, upper
-from app.look.names import plain
+from app.features.graph.graph_look import (
+    GraphLook,
+    crop_upper,
+    draw_box,
+    draw_offer,
+    make_bold,
+    shorten_between,
+)
+from app.look.names import plain_action_name
 from app.translation import tr, tr_plural
 
 
 def draw_chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, font: QFont) -> None:
-    t, beside = look.theme, tuple(plain(c.name) for c in layout.chips)
+    t, beside = look.theme, tuple(plain_action_name(c.name) for c in layout.chips)
     target = look.drop is not None and (
         (look.drop_hit.area == "add" and chip.stance is None)
         or (look.drop_hit.area == "chip" and look.drop_hit.ident == chip.stance and chip.stance is not None)
@@ -40,14 +47,14 @@ def draw_chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, fo
     if chip.bare:
         painter.setFont(font)
         painter.setPen(QColor(t.text if current else t.dim))
-        name = between(font, plain(chip.name), inner.width(), beside)
+        name = shorten_between(font, plain_action_name(chip.name), inner.width(), beside)
         painter.drawText(inner, Qt.AlignmentFlag.AlignCenter, name)
         return
     picture = look.chip_pictures.get(chip.stance)
     if picture is not None:
         size = chip.rect.height() - 6
         painter.drawImage(
-            QRectF(chip.rect.left() + 5, chip.rect.top() + 3, size, size), picture, upper(picture)
+            QRectF(chip.rect.left() + 5, chip.rect.top() + 3, size, size), picture, crop_upper(picture)
         )
     else:
         painter.setPen(Qt.PenStyle.NoPen)
@@ -58,9 +65,9 @@ def draw_chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, fo
     right = chip.words or ""
     count = str(chip.count)
     used = metrics.horizontalAdvance(count) + (metrics.horizontalAdvance(right) + 8 if right else 0) + 8
-    painter.setFont(bold(font) if current else font)
+    painter.setFont(make_bold(font) if current else font)
     painter.setPen(QColor(t.text))
-    name = between(painter.font(), plain(chip.name), inner.width() - used + 1, beside)
+    name = shorten_between(painter.font(), plain_action_name(chip.name), inner.width() - used + 1, beside)
     painter.drawText(inner, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, name)
     painter.setFont(font)
     painter.setPen(QColor(t.dim))
@@ -74,7 +81,7 @@ def draw_chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, fo
         )
 
 
-def draw_card(painter: QPainter, layout: Layout, look: GraphLook, font: QFont) -> None:
+def draw_stance_card(painter: QPainter, layout: Layout, look: GraphLook, font: QFont) -> None:
     t, card = look.theme, layout.card
     dragging = look.drop is not None
     stance = look.project.stance(layout.stance)
@@ -97,7 +104,7 @@ def draw_card(painter: QPainter, layout: Layout, look: GraphLook, font: QFont) -
             tr("Drop a resting clip here to make the first stance of this layer: hands at the sides, say."),
         )  # fmt: skip
     else:
-        head = _card_name(painter, card, plain(stance.name), bold(font), look)
+        head = _card_name(painter, card, plain_action_name(stance.name), make_bold(font), look)
         area = QRectF(
             card.left() + 4, head.bottom() + 2, card.width() - 8, card.height() - 24 - head.height() - 14
         )
@@ -117,7 +124,7 @@ def draw_card(painter: QPainter, layout: Layout, look: GraphLook, font: QFont) -
         more = tr("{words}  ·  starts here", words=words)
         if start and QFontMetricsF(font).horizontalAdvance(more) <= foot.width() - 1:
             words = more
-        painter.drawText(foot, Qt.AlignmentFlag.AlignCenter, between(font, words, foot.width()))
+        painter.drawText(foot, Qt.AlignmentFlag.AlignCenter, shorten_between(font, words, foot.width()))
     return _card_drop(painter, layout, look, font)
 
 
@@ -130,7 +137,7 @@ def _card_name(painter: QPainter, card: QRectF, name: str, heavy: QFont, look: G
     if measure.horizontalAdvance(name) > room and card.height() > 96 and len(words) > 1:
         cuts = ((" ".join(words[:n]), " ".join(words[n:])) for n in range(1, len(words)))
         lines = list(min(cuts, key=lambda two: max(map(measure.horizontalAdvance, two))))
-    lines = [between(heavy, line, room) for line in lines]
+    lines = [shorten_between(heavy, line, room) for line in lines]
     head = QRectF(card.left() + 12, card.top() + 8, card.width() - 24, 24.0 + 17 * (len(lines) - 1))
     wide = max(map(measure.horizontalAdvance, lines))
     left = head.center().x() - (wide + 16) / 2

@@ -13,14 +13,14 @@ from PySide6.QtWidgets import QApplication, QMessageBox
 from app.look.theme import KIND_MARKS
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
-from app.shell.places import Places
-from app.translation import tr, translated
+from app.shell.places import PanelPlaces
+from app.translation import lazy_texts, tr
 from metagraph.graph.model import KINDS
 
 if TYPE_CHECKING:
     from app.features.help.command_finder import Entry
 
-TIMELINE = translated(
+TIMELINE = lazy_texts(
     lambda: (  # and what the timeline does
         (tr("Add a marker"), "M"),
         (tr("Move requests or a marker"), tr("arrows, with Shift by a second")),
@@ -34,7 +34,7 @@ TIMELINE = translated(
         (tr("Drag without snapping"), tr("Shift")),
     )
 )
-LANES = translated(
+LANES = lazy_texts(
     lambda: (  # what the lanes take for themselves
         (tr("Label as clause, response, hesitation"), "1, 2, 3"),
         (tr("Split a segment"), "S"),
@@ -69,7 +69,7 @@ def contribute(shell: Shell) -> Contribution:
             yield from (Entry(tr("On the timeline"), words, keys) for words, keys in TIMELINE)
             yield from (Entry(tr("In a conversation"), words, keys) for words, keys in LANES)
             return
-        places = shell.services[Places]
+        places = shell.services[PanelPlaces]
         for ident, dock in places.docks.items():
             yield Entry(tr("Panels"), dock.windowTitle(), also="panel", run=partial(places.show, ident))
 
@@ -98,7 +98,7 @@ def contribute(shell: Shell) -> Contribution:
         return manual.open_page(pages.PAGES.get(panel, pages.FIRST))
 
     def read_of_panel() -> None:
-        read(shell.services[Places].holding(QApplication.focusWidget()))
+        read(shell.services[PanelPlaces].holding(QApplication.focusWidget()))
 
     def about() -> None:
         from metagraph import __version__

@@ -29,7 +29,7 @@ _ABOUT = {  # panels by page
 PAGES = {panel: page for page, panels in _ABOUT.items() for panel in panels.split()}
 
 
-class Entry(NamedTuple):
+class ManualEntry(NamedTuple):
     """A page, or a part of one that begins with a heading; a section of pages has no page. depth: from 0."""
 
     depth: int
@@ -39,19 +39,21 @@ class Entry(NamedTuple):
 
 
 @cache
-def contents() -> tuple[Entry, ...]:
+def contents() -> tuple[ManualEntry, ...]:
     """Return sections and pages in the order of the site's navigation."""
     return tuple(_entries(yaml.safe_load((DOCS / "mkdocs.yml").read_text(encoding="utf-8"))["nav"], 0))
 
 
-def _entries(nav: Any, depth: int) -> Iterator[Entry]:
+def _entries(nav: Any, depth: int) -> Iterator[ManualEntry]:
     for item in nav:
         title, inside = ("", item) if isinstance(item, str) else next(iter(item.items()))
         if isinstance(inside, str):
             text = (DOCS / inside).read_text(encoding="utf-8")
-            yield Entry(depth, title or plain(text.partition("# ")[2].partition("\n")[0]), inside)
+            yield ManualEntry(
+                depth, title or strip_markdown(text.partition("# ")[2].partition("\n")[0]), inside
+            )
         else:
-            yield Entry(depth, title, "")
+            yield ManualEntry(depth, title, "")
             yield from _entries(inside, depth + 1)
 
 
@@ -60,22 +62,22 @@ def anchor(heading: str) -> str:
     return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
 
 
-def plain(text: str) -> str:
+def strip_markdown(text: str) -> str:
     """Return Markdown without its marks."""
     return re.sub(r"!?\[([^\]]*)\]\([^)]*\)|[*`]", lambda m: m[1] or "", text).strip()
 
 
-def found(words: str) -> list[Entry]:
+def search_pages(words: str) -> list[ManualEntry]:
     """Return the parts of pages in which all words occur: first where title or heading have them."""
-    wanted, hits = words.casefold().split(), list[tuple[int, Entry]]()
+    wanted, hits = words.casefold().split(), list[tuple[int, ManualEntry]]()
     for entry in contents() if wanted else ():
-        text = plain((DOCS / entry.page).read_text(encoding="utf-8")) if entry.page else ""
+        text = strip_markdown((DOCS / entry.page).read_text(encoding="utf-8")) if entry.page else ""
         for part in re.split(r"^## ", text, flags=re.M):
             heading = "" if part.startswith("# ") else part.partition("\n")[0]
             named, part = f"{entry.title} {heading}".casefold(), part.casefold()
             if all(word in named or word in part for word in wanted):
                 rank = sum(word not in named for word in wanted)
-                hits.append((rank, Entry(0, entry.title, entry.page, heading)))
+                hits.append((rank, ManualEntry(0, entry.title, entry.page, heading)))
     return [hit for _, hit in sorted(hits, key=lambda ranked: ranked[0])]
 
 

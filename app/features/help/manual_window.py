@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.help.manual_browser import ManualBrowser
-from app.features.help.manual_pages import DOCS, Entry, contents, found
+from app.features.help.manual_pages import DOCS, ManualEntry, contents, search_pages
 from app.translation import tr
 
 ROLE = Qt.ItemDataRole.UserRole
@@ -87,14 +87,14 @@ class ManualWindow(QDialog):
         """List the contents, or what has the words that are searched for."""
         self.tree.clear()
         above: list[QTreeWidget | QTreeWidgetItem] = [self.tree]
-        for entry in found(words) if words.strip() else contents():
+        for entry in search_pages(words) if words.strip() else contents():
             del above[entry.depth + 1 :]
             above.append(self._item(above[-1], entry))
         if words.strip() and not self.tree.topLevelItemCount():
-            self._item(self.tree, Entry(0, tr("No page has these words."), ""))
+            self._item(self.tree, ManualEntry(0, tr("No page has these words."), ""))
         self.tree.expandAll()
 
-    def _item(self, above: QTreeWidget | QTreeWidgetItem, entry: Entry) -> QTreeWidgetItem:
+    def _item(self, above: QTreeWidget | QTreeWidgetItem, entry: ManualEntry) -> QTreeWidgetItem:
         words = f"{entry.heading} – {entry.title}" if entry.heading else entry.title
         item = QTreeWidgetItem(above, [words])
         item.setData(0, ROLE, entry)

@@ -12,17 +12,17 @@ from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelInd
 from PySide6.QtGui import QFont
 from PySide6.QtWidgets import QComboBox, QStyledItemDelegate, QStyleOptionViewItem, QWidget
 
-from app.translation import tr, tr_error, tr_noop, translated
+from app.translation import lazy_texts, tr, tr_error, tr_noop
 from app.widgets.quiet_fields import ComboBox
-from app.widgets.vocabulary import word
+from app.widgets.vocabulary import vocabulary_word
 from metagraph.graph.words import KINDS, LAYERS, LIMBS
 from metagraph.suggest.words.defaults import DEFAULTS, Field
 from metagraph.suggest.words.languages import AFTER_FROM, AFTER_TO, MAYBE_FROM, MAYBE_TO, NOTHING
-from metagraph.suggest.words.patterns import FIELDS, Patterns, PatternsError, forget, remembered
+from metagraph.suggest.words.patterns import FIELDS, Patterns, PatternsError, count_correction, forget_learned
 
 Index = QModelIndex | QPersistentModelIndex
-COLUMNS = translated(lambda: (tr("Words"), tr("About"), tr("Means"), tr("From")))
-ABOUT = translated(
+COLUMNS = lazy_texts(lambda: (tr("Words"), tr("About"), tr("Means"), tr("From")))
+ABOUT = lazy_texts(
     lambda: {
         "kinds": tr("kind"),
         "layers": tr("layer"),
@@ -54,7 +54,7 @@ MEANINGS: dict[str, tuple[str, ...]] = {
     "stance": (),
     "end_stance": (),
 }
-SHOWN = translated(
+SHOWN = lazy_texts(
     lambda: {
         "other": tr("none of the four"),
         "junk": tr("nothing"),
@@ -69,11 +69,11 @@ SHOWN = translated(
 NOBODY, MINE, LEARNED = tr_noop("built in"), tr_noop("you"), tr_noop("corrections")
 
 
-def means(field: str, meaning: str | None) -> str:
+def describe_meaning(field: str, meaning: str | None) -> str:
     """Return in words what a meaning about a field is; free text stays as it is."""
     if meaning in SHOWN:
         return SHOWN[meaning]
-    return word(meaning or "") if MEANINGS.get(field) else meaning or ""
+    return vocabulary_word(meaning or "") if MEANINGS.get(field) else meaning or ""
 
 
 @dataclass(frozen=True)
@@ -105,12 +105,12 @@ class PatternRow:
         return (
             self.phrase,
             ABOUT[self.field],
-            means(self.field, self.meaning),
+            describe_meaning(self.field, self.meaning),
             tr(self.source) + times,
         )
 
 
-def rows_of(patterns: Patterns) -> list[PatternRow]:
+def list_pattern_rows(patterns: Patterns) -> list[PatternRow]:
     """Return all rows: own ones, learned ones, and what is built in and was not changed."""
     out = [
         PatternRow(MINE, name, phrase, meaning)
@@ -133,13 +133,13 @@ def rows_of(patterns: Patterns) -> list[PatternRow]:
     return out
 
 
-def without(patterns: Patterns, row: PatternRow) -> Patterns:
+def remove_pattern(patterns: Patterns, row: PatternRow) -> Patterns:
     """Return patterns without a row: an own one is forgotten, so that the built-in meaning holds again; a
     learned one too; a built-in one is taken away, which is a change of the user's.
     """
     if row.source == LEARNED:
         counts = {v: c for v, c in patterns.learned[row.field][row.phrase].items() if v != row.meaning}
-        bare = forget(patterns, row.field, row.phrase)
+        bare = forget_learned(patterns, row.field, row.phrase)
         for value, count in counts.items():
             words = {**bare.learned.get(row.field, {})}
             words[row.phrase] = {**words.get(row.phrase, {}), value: count}
@@ -150,12 +150,14 @@ def without(patterns: Patterns, row: PatternRow) -> Patterns:
     return patterns.with_pattern(row.pattern, row.phrase, None)
 
 
-def changed(patterns: Patterns, row: PatternRow, phrase: str, meaning: str) -> Patterns:
+def change_pattern(patterns: Patterns, row: PatternRow, phrase: str, meaning: str) -> Patterns:
     """Return patterns in which a row says something else. Raises PatternsError."""
     if row.source == LEARNED:
-        return remembered(without(patterns, row), row.field, phrase.lower().split(), meaning.strip())
+        return count_correction(
+            remove_pattern(patterns, row), row.field, phrase.lower().split(), meaning.strip()
+        )
     if phrase != row.phrase and row.source == MINE:
-        patterns = without(patterns, row)
+        patterns = remove_pattern(patterns, row)
     return patterns.with_pattern(row.pattern, phrase, meaning.strip())
 
 
@@ -180,7 +182,7 @@ class PatternTable(QAbstractTableModel):
     def fill(self, patterns: Patterns) -> None:
         self.beginResetModel()
         self.patterns = patterns
-        self._arrange(rows_of(patterns))
+        self._arrange(list_pattern_rows(patterns))
         self.endResetModel()
 
     def _arrange(self, rows: list[PatternRow]) -> None:
@@ -251,15 +253,15 @@ class PatternTable(QAbstractTableModel):
             return False
         phrase, meaning = (text, row.meaning or "") if index.column() == 0 else (row.phrase, text)
         try:
-            changed(self.patterns, row, phrase, meaning)
+            change_pattern(self.patterns, row, phrase, meaning)
         except PatternsError as error:
             self._refused(tr_error(error))
             return False
-        self._change(lambda p: changed(p, row, phrase, meaning))
+        self._change(lambda p: change_pattern(p, row, phrase, meaning))
         return True
 
 
-class Chosen(QSortFilterProxyModel):
+class ChosenPatterns(QSortFilterProxyModel):
     """The rows that match what is searched for; without the built-in ones unless they are wanted."""
 
     def __init__(self, parent: QWidget) -> None:
@@ -314,4 +316,4 @@ def fill_meanings(box: QComboBox, field: str) -> None:
     few = MEANINGS[field]
     box.setEditable(not few)
     for meaning in few:
-        box.addItem(means(field, meaning), meaning)
+        box.addItem(describe_meaning(field, meaning), meaning)

@@ -31,27 +31,27 @@ from app.features.labelling.pattern_table import (
     ABOUT,
     MINE,
     NOBODY,
-    Chosen,
+    ChosenPatterns,
     MeaningEditor,
     PatternRow,
     PatternTable,
     fill_meanings,
-    without,
+    remove_pattern,
 )
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.project.learned import Learned
 from app.project.pattern_files import read_patterns, write_patterns
-from app.stage.session import Session
-from app.translation import tr, tr_error, tr_noop, tr_phrase, tr_plural, translated
+from app.stage.session import StageSession
+from app.translation import lazy_texts, tr, tr_error, tr_noop, tr_phrase, tr_plural
 from app.widgets.quiet_fields import ComboBox
-from app.widgets.vocabulary import word
+from app.widgets.vocabulary import vocabulary_word
 from metagraph.errors import FileError
-from metagraph.suggest.words.names import NameGuess, Patterns, PatternsError, merged, read_names
+from metagraph.suggest.words.names import NameGuess, Patterns, PatternsError, merge_patterns, read_names
 from metagraph.suggest.words.patterns import FIELDS
 
 FILTER = tr_noop("Name patterns (*.json);;All files (*)")
-PARTS = translated(
+PARTS = lazy_texts(
     lambda: (
         ("kind", tr("Kind")),
         ("layer", tr("Layer")),
@@ -79,7 +79,7 @@ class PatternsDialog(QDialog):
     """Every change is kept at once, for all projects."""
 
     def __init__(
-        self, document: Document, session: Session, learned: Learned, parent: QWidget | None = None
+        self, document: Document, session: StageSession, learned: Learned, parent: QWidget | None = None
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.learned = document, session, learned
@@ -138,7 +138,7 @@ class PatternsDialog(QDialog):
 
     def _table(self) -> _Table:
         self.model = PatternTable(self.learned.edit, self._tell, self)
-        self.chosen = Chosen(self)
+        self.chosen = ChosenPatterns(self)
         self.chosen.setSourceModel(self.model)
         self.table = _Table(self)
         self.table.setAccessibleName(tr("Name patterns"))
@@ -257,7 +257,7 @@ class PatternsDialog(QDialog):
                 continue
             text = escape(", ".join(belief.value) if part == "tags" else str(belief.value))
             if part in ("kind", "layer", "limb"):
-                text = escape(word(str(belief.value)))
+                text = escape(vocabulary_word(str(belief.value)))
             if part == "kind":
                 text = (
                     f"<span style='color:{look.kinds[belief.value]}'>{KIND_MARKS[belief.value]} {text}</span>"
@@ -315,7 +315,7 @@ class PatternsDialog(QDialog):
 
         def change(patterns: Patterns) -> Patterns:
             for row in rows:
-                patterns = without(patterns, row)
+                patterns = remove_pattern(patterns, row)
             return patterns
 
         self.learned.edit(change)
@@ -358,7 +358,7 @@ class PatternsDialog(QDialog):
             except FileError as error:
                 self._tell(tr_error(error))
                 return
-            self.learned.edit(lambda mine: merged(mine, theirs))
+            self.learned.edit(lambda mine: merge_patterns(mine, theirs))
             own = sum(map(len, theirs.changes.values()))
             learned = sum(map(len, theirs.learned.values()))
             self._tell(

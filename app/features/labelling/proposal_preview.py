@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.stage.playback_source import LEAD, Shown, alone, in_context
+from app.stage.playback_source import LEAD, ShownPlayback, play_clip_alone, play_in_context
 from metagraph.graph.model import LAYERS, Project
 from metagraph.suggest.review import Review
 
@@ -22,7 +22,7 @@ class Span:
     stroke: float | None = None
 
 
-def trial(project: Project, review: Review, clip: str) -> tuple[Shown, Span | None]:
+def make_trial(project: Project, review: Review, clip: str) -> tuple[ShownPlayback, Span | None]:
     """Return the clip as it would play if it were accepted: its stance, the clip, the stance it ends in;
     alone where it has no place.
     """
@@ -31,10 +31,10 @@ def trial(project: Project, review: Review, clip: str) -> tuple[Shown, Span | No
         reversed(taken.project.uses.get(clip, ())), None
     )  # before it may stand one that only lends a stance a moment
     if action is None or clip not in taken.placed:
-        return alone(project, clip), None
+        return play_clip_alone(project, clip), None
     placed = taken.project
     stances = {layer: start for layer in LAYERS if (start := placed.graphs[layer].start) is not None}
-    shown = in_context(placed, action.id, action.layer, stances)
+    shown = play_in_context(placed, action.id, action.layer, stances)
     names = {
         s: found.name
         for s in (action.stance, action.end_stance or action.stance)

@@ -27,7 +27,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.labelling import review_words
-from app.features.labelling.proposal_preview import Span, trial
+from app.features.labelling.proposal_preview import Span, make_trial
 from app.features.labelling.review_fields import ReviewFields, ReviewRow
 from app.features.labelling.review_queue import ReviewQueue
 from app.features.labelling.review_session import Reviewing
@@ -38,15 +38,15 @@ from app.project.document import Document
 from app.project.jobs import Jobs
 from app.project.learned import Learned
 from app.stage.figures import Figures
-from app.stage.playback_source import Shown, alone
-from app.stage.session import Session
-from app.translation import tr, tr_error, tr_phrase, translated
-from app.widgets.vocabulary import word
+from app.stage.playback_source import ShownPlayback, play_clip_alone
+from app.stage.session import StageSession
+from app.translation import lazy_texts, tr, tr_error, tr_phrase
+from app.widgets.vocabulary import vocabulary_word
 from metagraph.graph.model import KINDS, Kind
 from metagraph.suggest.proposal import Proposal
 from metagraph.suggest.review import DECIDING, Field, Review
 
-TITLES: dict[str, str] = translated(
+TITLES: dict[str, str] = lazy_texts(
     lambda: {
         "kind": tr("Is a"),
         "layer": tr("Layer"),
@@ -60,12 +60,14 @@ FRAME = 1 / 30  # seconds a step goes
 LEAST = 2 / 30  # seconds a clip keeps at least
 
 
-def shown(name: Field, choices: list[tuple[Any, str]]) -> list[tuple[Any, str]]:
+def name_choices(name: Field, choices: list[tuple[Any, str]]) -> list[tuple[Any, str]]:
     """Return choices in the window's words; stances are called as the user calls them."""
-    return [(v, word(w)) for v, w in choices] if name in ("kind", "layer", "limb") else choices
+    return [(v, vocabulary_word(w)) for v, w in choices] if name in ("kind", "layer", "limb") else choices
 
 
-_Tried = tuple[int, Proposal | None, Shown, Span | None]  # the trial's number, the times found, what plays
+_Tried = tuple[
+    int, Proposal | None, ShownPlayback, Span | None
+]  # the trial's number, the times found, what plays
 
 
 class ReviewDialog(QDialog):
@@ -74,7 +76,7 @@ class ReviewDialog(QDialog):
     def __init__(
         self,
         document: Document,
-        session: Session,
+        session: StageSession,
         jobs: Jobs,
         figures: Figures,
         learned: Learned,
@@ -201,7 +203,7 @@ class ReviewDialog(QDialog):
         return out
 
     def _restyle(self) -> None:
-        self.legend.setText(review_words.legend(theme(self.session.look.name)))
+        self.legend.setText(review_words.format_keys(theme(self.session.look.name)))
         self._refresh()
 
     # --- where it is
@@ -457,7 +459,7 @@ class ReviewDialog(QDialog):
             done = (
                 tr("<b>Every clip is placed.</b>")
                 if not self.work.aside
-                else review_words.rest(self.work.aside)
+                else review_words.describe_skipped(self.work.aside)
             )
             done = self.watching.words(None) if self.watching.on else done
             self.stage.tell(done if self.work.looked else tr("Looking at names and motion…"))
@@ -467,7 +469,7 @@ class ReviewDialog(QDialog):
             kinds = self._choices("kind")
             self.row = "kind"
             self.fields.show_rows(
-                [ReviewRow("kind", TITLES["kind"], shown("kind", kinds), None, 0.0, why)], self.row
+                [ReviewRow("kind", TITLES["kind"], name_choices("kind", kinds), None, 0.0, why)], self.row
             )
             self.timing.setText(review_words.ANYWAY)
             self.tags.setText("")
@@ -486,7 +488,7 @@ class ReviewDialog(QDialog):
                     ReviewRow(
                         name,
                         TITLES[name],
-                        shown(name, choices),
+                        name_choices(name, choices),
                         self.review.value(clip, name),
                         sure,
                         reason,
@@ -514,9 +516,9 @@ class ReviewDialog(QDialog):
             times = review.timed(project, clip) if clip in review.said else None
             ready = review.with_times(times) if times is not None else review
             return (
-                (number, times, *trial(project, ready, clip))
+                (number, times, *make_trial(project, ready, clip))
                 if context and clip in review.found.proposals
-                else (number, times, alone(project, clip), None)
+                else (number, times, play_clip_alone(project, clip), None)
             )
 
         self.jobs.start("trial", work, self._tried, self._failed, quick=True)

@@ -12,8 +12,8 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QMouseEvent, QPainter, QPaintEvent, QPen, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.look.theme import KIND_MARKS, Theme, theme
-from app.stage.session import Session
+from app.look.theme import KIND_MARKS, WindowTheme, theme
+from app.stage.session import StageSession
 from app.translation import tr
 from metagraph.suggest.review import Field
 
@@ -55,7 +55,7 @@ class ReviewFields(QWidget):
     chosen = Signal(str, object)
     picked = Signal(str)
 
-    def __init__(self, session: Session, parent: QWidget | None = None) -> None:
+    def __init__(self, session: StageSession, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.session = session
         self.rows: tuple[ReviewRow, ...] = ()
@@ -154,7 +154,7 @@ class ReviewFields(QWidget):
             self._paint(painter, look, placed)
         painter.end()
 
-    def _paint(self, painter: QPainter, look: Theme, placed: _Placed) -> None:
+    def _paint(self, painter: QPainter, look: WindowTheme, placed: _Placed) -> None:
         row, here = placed.row, placed.row.name == self.current
         if here:
             painter.setPen(QPen(QColor(look.line), 1))
@@ -187,7 +187,7 @@ class ReviewFields(QWidget):
     def _chip(
         self,
         painter: QPainter,
-        look: Theme,
+        look: WindowTheme,
         row: ReviewRow,
         box: QRectF,
         number: int,

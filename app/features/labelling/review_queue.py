@@ -18,14 +18,14 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.labelling.review_words import about
+from app.features.labelling.review_words import describe_length
 from app.look.theme import KIND_MARKS, theme
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr, tr_plural
 from app.widgets.quiet_fields import SpinBox
 from metagraph.graph.model import Project
 from metagraph.suggest.propose import waiting
-from metagraph.suggest.review import Pace, Review
+from metagraph.suggest.review import Review, ReviewPace
 
 CLIP = Qt.ItemDataRole.UserRole
 DOUBT = 0.7  # below it a clip is marked as worth a look
@@ -41,7 +41,7 @@ class ReviewQueue(QWidget):
     limit_changed = Signal()
     bridge_wanted = Signal()
 
-    def __init__(self, session: Session, parent: QWidget | None = None) -> None:
+    def __init__(self, session: StageSession, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.session = session
         self.clips: tuple[str, ...] = ()
@@ -174,7 +174,7 @@ class ReviewQueue(QWidget):
             item.setForeground(0, QColor(look.dim) if placed else look.kind(kind))
             item.setForeground(1, QColor(look.warning if odd else look.dim))
 
-    def count(self, left: int, sure: int, pace: Pace) -> None:
+    def count(self, left: int, sure: int, pace: ReviewPace) -> None:
         """Show how far it is. left: clips that are not placed. sure: those of them that can be accepted at
         once.
         """
@@ -193,7 +193,7 @@ class ReviewQueue(QWidget):
                     "{placed} of {total} placed, {time} left {how}",
                     placed=total - left,
                     total=total,
-                    time=about(pace.left(left)),
+                    time=describe_length(pace.left(left)),
                     how=how,
                 )
             )

@@ -9,16 +9,16 @@ from dataclasses import replace
 from PySide6.QtCore import QElapsedTimer, QObject, QTimer, Signal
 
 from app.project.document import Document
-from app.project.jobs import Job, Jobs
+from app.project.jobs import Jobs, WindowJob
 from app.project.learned import Learned
 from app.translation import tr, tr_error
 from metagraph.graph.model import Kind, Project
-from metagraph.suggest.accept import Taken
-from metagraph.suggest.jumps.bridges import bridged, missing, told
-from metagraph.suggest.left_aside import reasons, taken_up
+from metagraph.suggest.accept import AcceptedProposals
+from metagraph.suggest.jumps.bridges import bridge_all, describe_bridges, find_missing_bridges
+from metagraph.suggest.left_aside import reasons, take_up_skipped
 from metagraph.suggest.proposal import Proposal, Proposals
 from metagraph.suggest.propose import propose, waiting
-from metagraph.suggest.review import Field, Pace, Review
+from metagraph.suggest.review import Field, Review, ReviewPace
 
 REST = 400  # milliseconds of quiet after a correction before the rest is proposed anew
 
@@ -38,7 +38,7 @@ class Reviewing(QObject):
     ) -> None:
         super().__init__(parent)
         self.document, self.jobs, self.learned = document, jobs, learned
-        self.review, self.pace = Review(Proposals({}, {})), Pace()
+        self.review, self.pace = Review(Proposals({}, {})), ReviewPace()
         self.clips: tuple[str, ...] = ()
         self.aside: tuple[str, ...] = ()
         self.parted: tuple[str, ...] = ()
@@ -70,7 +70,7 @@ class Reviewing(QObject):
     def _failed(self, error: Exception) -> None:
         self.failed.emit(tr_error(error))
 
-    def _proposals(self, project: Project, clips: list[str] | None, job: Job) -> Proposals:
+    def _proposals(self, project: Project, clips: list[str] | None, job: WindowJob) -> Proposals:
         """Propose, with what was learned from other projects; on a job's thread."""
         patterns, examples = self.learned.patterns, self.learned.examples_for(self.document)
         return propose(project, clips, patterns, examples, cancelled=lambda: job.cancelled, progress=job.tell)
@@ -138,7 +138,9 @@ class Reviewing(QObject):
 
     def take_up(self, clip: str, kind: Kind) -> None:
         """Make a clip that was left aside one of the review, as a kind."""
-        self.review = Review(taken_up(self.review.found, clip), self.review.said).tell(clip, "kind", kind)
+        self.review = Review(take_up_skipped(self.review.found, clip), self.review.said).tell(
+            clip, "kind", kind
+        )
         self.clips = (*self.clips, clip)
         self.aside = tuple(c for c in self.aside if c != clip)
         self.changed.emit()
@@ -148,7 +150,7 @@ class Reviewing(QObject):
         self.review = self.review.with_times(p)
         self.changed.emit()
 
-    def place(self, clips: list[str], words: str, step: str | None) -> Taken:
+    def place(self, clips: list[str], words: str, step: str | None) -> AcceptedProposals:
         """Place clips as proposed and corrected, as one undo step named so. step: the clip that was looked
         at, None for many at once.
         """
@@ -173,8 +175,8 @@ class Reviewing(QObject):
         project, review, rest = self.document.project, self.review, self.waiting()
 
         def found(_: object) -> list[str]:
-            now = missing(project)
-            then = missing(review.take(project, rest).project) if now and rest else now
+            now = find_missing_bridges(project)
+            then = find_missing_bridges(review.take(project, rest).project) if now and rest else now
             return [stance for stance in now if stance in then]
 
         def done(stances: list[str]) -> None:
@@ -188,11 +190,11 @@ class Reviewing(QObject):
         """Join the stances that no clip leads to or from by blending, as one undo step; return what was made,
         in words.
         """
-        after, made = bridged(self.document.project)
+        after, made = bridge_all(self.document.project)
         if made:
             self._steps.append(None)
-            self.document.edit(tr("Bridge by blending"), lambda p: bridged(p)[0])
-        return tuple(told(after, made))
+            self.document.edit(tr("Bridge by blending"), lambda p: bridge_all(p)[0])
+        return tuple(describe_bridges(after, made))
 
     def _learn(self, clips: list[str]) -> None:
         """Remember what was corrected of clips that are now placed, and look at the rest anew."""

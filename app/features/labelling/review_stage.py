@@ -24,24 +24,24 @@ from app.features.labelling.proposal_preview import Span
 from app.look.theme import theme
 from app.stage.figures import Figures
 from app.stage.gl_view import make_view
-from app.stage.playback_source import Shown
-from app.stage.session import Session
+from app.stage.playback_source import ShownPlayback
+from app.stage.session import StageSession
 from app.translation import tr
-from preview.camera import whole_figure
-from preview.figure import Figure
-from preview.scene import THEMES, Actor, Scene
+from preview.camera import frame_whole_figure
+from preview.figure import MeshFigure
+from preview.scene import THEMES, Scene, SceneActor
 
 FRAME = 16  # milliseconds between frames
 STRAYS = 0.2  # of its height that a figure goes before the camera goes along
 ABOVE = 0.16  # of the figure's height that is left free above it
 
 
-class Strip(QWidget):
+class ReviewStrip(QWidget):
     """What plays, from left to right, and where it is now; press to go there. sought: seconds."""
 
     sought = Signal(float)
 
-    def __init__(self, session: Session, parent: QWidget | None = None) -> None:
+    def __init__(self, session: StageSession, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.session = session
         self.length, self.seconds = 1.0, 0.0
@@ -110,10 +110,10 @@ class ReviewStage(QWidget):
 
     played = Signal()
 
-    def __init__(self, session: Session, figures: Figures, parent: QWidget | None = None) -> None:
+    def __init__(self, session: StageSession, figures: Figures, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.session, self.figures = session, figures
-        self.shown: Shown | None = None
+        self.shown: ShownPlayback | None = None
         self.seconds, self.playing = 0.0, True
         self._framed: object = None
         self._stood, self._tall = np.zeros(2), 1.0  # where the framed figure stands, and how high it is
@@ -121,7 +121,7 @@ class ReviewStage(QWidget):
         self.view.setMinimumSize(320, 240)
         self.view.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # the keys are the review's
         self.view.frame_wanted.connect(self._frame_again)
-        self.strip = Strip(session, self)
+        self.strip = ReviewStrip(session, self)
         self.strip.sought.connect(self._sought)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
@@ -174,7 +174,7 @@ class ReviewStage(QWidget):
 
     # --- playing
 
-    def play(self, shown: Shown | None, span: Span | None, keep: bool = False) -> None:
+    def play(self, shown: ShownPlayback | None, span: Span | None, keep: bool = False) -> None:
         """Play something else, from its beginning, or where it is (keep) when the same was planned
         otherwise.
         """
@@ -230,15 +230,15 @@ class ReviewStage(QWidget):
         elif not self.view.moved_by_hand:
             self._follow(positions[0, [0, 2]])
         morphs = figure.morph_weights(self.shown.morphs(self.seconds)) if figure.morphs else None
-        return Scene((Actor(figure, rotations, positions, morphs, {}, False),))
+        return Scene((SceneActor(figure, rotations, positions, morphs, {}, False),))
 
-    def _frame(self, figure: Figure, positions: np.ndarray) -> None:
+    def _frame(self, figure: MeshFigure, positions: np.ndarray) -> None:
         aspect = self.view.width() / max(1, self.view.height())
         low, high = figure.bounds(positions)
         room = np.array(
             [0.0, ABOVE * (high[1] - low[1]), 0.0]
         )  # what is written over the picture hides no face
-        self.view.camera = whole_figure((low, high + room), aspect)
+        self.view.camera = frame_whole_figure((low, high + room), aspect)
 
         self._stood, self._tall = positions[0, [0, 2]], float(high[1] - low[1])
 

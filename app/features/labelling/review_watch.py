@@ -28,7 +28,7 @@ class Watching:
         """Begin with the first that waits. Clips of one stance and kind follow each other: what does not
         belong is seen.
         """
-        self._order = ordered(review, waiting)
+        self._order = order_similar(review, waiting)
         self.watched, self.skipped, self.on, self.held = [], set(), True, False
         self._go(next(iter(self._order), None))
 
@@ -86,7 +86,7 @@ class Watching:
         )
 
 
-def ordered(review: Review, waiting: Sequence[str]) -> list[str]:
+def order_similar(review: Review, waiting: Sequence[str]) -> list[str]:
     """Return clips so that such as are taken for the same follow each other, stances before all else."""
     found = review.found.proposals
 

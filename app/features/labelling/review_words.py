@@ -7,14 +7,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from html import escape
 
-from app.look.theme import KIND_MARKS, KIND_TITLES, Theme
-from app.translation import tr, tr_noop, tr_phrase, tr_plural, translated
-from app.widgets.vocabulary import titled
+from app.look.theme import KIND_MARKS, KIND_TITLES, WindowTheme
+from app.translation import lazy_texts, tr, tr_noop, tr_phrase, tr_plural
+from app.widgets.vocabulary import vocabulary_title
 from metagraph.graph.model import Project
 from metagraph.suggest.proposal import Proposal
 from metagraph.suggest.review import Review
 
-KEYS = translated(
+KEYS = lazy_texts(
     lambda: (
         (tr("Enter"), tr("accept")),
         ("↑ ↓", tr("field")),
@@ -36,7 +36,7 @@ KEYS = translated(
 ANYWAY = tr_noop("Left aside; choose what it is to label it all the same.")
 
 
-def legend(look: Theme) -> str:
+def format_keys(look: WindowTheme) -> str:
     """Return the keys as rich text; none is parted from its word by a line's end."""
     return " &nbsp; ".join(
         f'<span style="color:{look.text}">{key.replace(" ", "&nbsp;")}</span>&nbsp;'
@@ -45,7 +45,7 @@ def legend(look: Theme) -> str:
     )
 
 
-def headline(review: Review, project: Project, clip: str, look: Theme) -> str:
+def headline(review: Review, project: Project, clip: str, look: WindowTheme) -> str:
     """Return what a clip is taken for as rich text, and what speaks against it."""
     if clip not in review.found.proposals:
         return (
@@ -55,7 +55,7 @@ def headline(review: Review, project: Project, clip: str, look: Theme) -> str:
         )
     p, places = review.found.proposals[clip], review.found.places
     kind = p.kind.value
-    where = [titled(p.layer.value)]
+    where = [vocabulary_title(p.layer.value)]
     if p.stance is not None:
         where.append(places[p.stance.value].name)
     if p.end_stance is not None:
@@ -71,7 +71,7 @@ def headline(review: Review, project: Project, clip: str, look: Theme) -> str:
     return "<br>".join(lines)
 
 
-def rest(aside: Sequence[str]) -> str:
+def describe_skipped(aside: Sequence[str]) -> str:
     """Return what is said when nothing is left but clips that were left aside."""
     if len(aside) == 1:
         return tr("<b>Every clip is placed</b> but one that was left aside.")
@@ -116,11 +116,11 @@ def timing(p: Proposal, duration: float) -> str:
                 if name == "stroke"
                 else tr("some joints")
             )
-            words.append(f"{titled(name)} {value}: {tr_phrase(belief.reason)}")
+            words.append(f"{vocabulary_title(name)} {value}: {tr_phrase(belief.reason)}")
     return "<br>".join(map(escape, words))
 
 
-def about(seconds: float) -> str:
+def describe_length(seconds: float) -> str:
     """Return a length of time in words a person can grasp."""
     return (
         tr("about {minutes} min", minutes=round(seconds / 60))

@@ -14,7 +14,7 @@ from app.features.library.clip_badges import HEART, label_icon
 from app.features.library.clip_columns import stars
 from app.look.domain_words import COLOR_LABELS
 from app.project.document import Document
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr, tr_plural
 from metagraph.graph import edits
 from metagraph.graph.clip_mark import COLORS, STARS
@@ -28,7 +28,7 @@ class ClipActs:
     menu. label_actions: those that say what it is.
     """
 
-    def __init__(self, document: Document, session: Session, widget: QWidget) -> None:
+    def __init__(self, document: Document, session: StageSession, widget: QWidget) -> None:
         self.document, self.session, self.widget = document, session, widget
         self.row_actions: list[QAction] = []
         self.label_actions: list[QAction] = []

@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import QRect, Qt
 from PySide6.QtGui import QColor, QFont, QIcon, QPainter, QPixmap
 
-from app.look.theme import Theme
+from app.look.theme import WindowTheme
 from metagraph.graph.clip_mark import ClipMark, Color
 
 # Areas behind a dark letter, contrast of at least 7:1; the letter tells what the colour does.
@@ -51,7 +51,7 @@ def label_icon(color: Color) -> QIcon:
     return out
 
 
-def draw_badges(painter: QPainter, box: QRect, mark: ClipMark, look: Theme) -> None:
+def draw_badges(painter: QPainter, box: QRect, mark: ClipMark, look: WindowTheme) -> None:
     """Draw what is on a clip over its picture: the label left, heart and pencil right."""
     if mark.color:
         draw_label(painter, QRect(box.left(), box.top(), TAG, TAG), mark.color)

@@ -15,8 +15,8 @@ from app.features.library.clip_facts import ClipFacts
 from app.features.library.clip_names import ClipNames
 from app.features.library.clip_pictures import ClipPictures
 from app.features.library.clip_sizes import picture_of
-from app.look.shortening import fitted, fitting
-from app.look.theme import KIND_MARKS, Theme
+from app.look.shortening import shorten_middle, shorten_to_font
+from app.look.theme import KIND_MARKS, WindowTheme
 from app.translation import tr
 from metagraph.graph.model import ClipEntry, Kind
 
@@ -29,17 +29,19 @@ class ClipInk:
     pictures: ClipPictures
     names: ClipNames
     side: int
-    look: Theme
+    look: WindowTheme
 
 
-def kinds_of(facts: ClipFacts, entry: ClipEntry) -> list[Kind]:
+def list_clip_kinds(facts: ClipFacts, entry: ClipEntry) -> list[Kind]:
     """Return what a clip serves as, each once."""
     return list(dict.fromkeys(a.kind for a in facts.uses(entry)))
 
 
-def draw_stripe(painter: QPainter, rect: QRect, facts: ClipFacts, entry: ClipEntry, look: Theme) -> None:
+def draw_stripe(
+    painter: QPainter, rect: QRect, facts: ClipFacts, entry: ClipEntry, look: WindowTheme
+) -> None:
     """Draw a stripe at the left edge, a part for each kind a clip serves as."""
-    kinds = kinds_of(facts, entry)
+    kinds = list_clip_kinds(facts, entry)
     drawn = entry.id in facts.project.drawn and not kinds  # a state of a machine is of no kind
     marks = [QColor(look.dim)] if drawn else [look.fill(kind) for kind in kinds]
     high = (rect.height() - 12) / max(1, len(marks))
@@ -50,7 +52,7 @@ def draw_stripe(painter: QPainter, rect: QRect, facts: ClipFacts, entry: ClipEnt
         painter.drawRoundedRect(rect.left() + 3, top, 4, round(high - 1), 2, 2)
 
 
-def draw_kinds(painter: QPainter, line: QRect, kinds: list[Kind], look: Theme) -> int:
+def draw_kinds(painter: QPainter, line: QRect, kinds: list[Kind], look: WindowTheme) -> int:
     """Draw the marks of kinds at the right end of a line; return where they begin."""
     right = line.right()
     for kind in reversed(kinds):
@@ -63,7 +65,12 @@ def draw_kinds(painter: QPainter, line: QRect, kinds: list[Kind], look: Theme) -
 
 
 def draw_picture(
-    painter: QPainter, box: QRect, pictures: ClipPictures, entry: ClipEntry, look: Theme, small: bool = False
+    painter: QPainter,
+    box: QRect,
+    pictures: ClipPictures,
+    entry: ClipEntry,
+    look: WindowTheme,
+    small: bool = False,
 ) -> None:
     """Draw a clip's picture, or say that its file is missing."""
     if not pictures.draw(painter, entry.id, box, QColor(look.text)) and entry.motion is None:
@@ -72,7 +79,7 @@ def draw_picture(
         painter.drawText(box, Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap, words)
 
 
-def draw_card(
+def draw_clip_card(
     painter: QPainter, place: QRect, entry: ClipEntry, row: int, ink: ClipInk, lit: bool, chosen: bool
 ) -> None:
     """Draw a clip in its place. lit: selected or pointed at. chosen: selected."""
@@ -91,11 +98,11 @@ def draw_card(
     key, beside = font.toString(), names.beside(row)
     shown = (
         (
-            fitted(front, line.width(), key, names.stances()),
-            fitted(rest, line.width(), key, beside),
+            shorten_to_font(front, line.width(), key, names.stances()),
+            shorten_to_font(rest, line.width(), key, beside),
         )
         if front
-        else two_lines(rest, painter.fontMetrics(), line.width(), beside)
+        else break_in_two_lines(rest, painter.fontMetrics(), line.width(), beside)
     )
     for n, part in enumerate(shown):
         painter.setPen(QColor(look.dim if front and n == 0 else look.text))
@@ -104,7 +111,7 @@ def draw_card(
     mark = facts.mark(entry)
     draw_badges(painter, rect.adjusted(10, 5, -6, 0), mark, look)
     line.moveTop(rect.bottom() - 20)
-    right = draw_kinds(painter, line, kinds_of(facts, entry), look)
+    right = draw_kinds(painter, line, list_clip_kinds(facts, entry), look)
     base = tr("base") if facts.project.base.clip == entry.id else ""
     length = f"{entry.duration:.1f} s"
     stars = f"★{mark.rating}" if mark.rating else ""
@@ -120,7 +127,9 @@ def draw_card(
     painter.drawText(end, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter, base)
 
 
-def two_lines(name: str, metrics: QFontMetrics, width: int, beside: Iterable[str] = ()) -> tuple[str, ...]:
+def break_in_two_lines(
+    name: str, metrics: QFontMetrics, width: int, beside: Iterable[str] = ()
+) -> tuple[str, ...]:
     """Break a name over at most two lines, after a separator where there is one. beside: names of the cards
     round it, from which what is shown is to differ.
     """
@@ -130,11 +139,13 @@ def two_lines(name: str, metrics: QFontMetrics, width: int, beside: Iterable[str
     first, second = _broken(name, metrics, width)
     if measure(second) > width:
         rivals = [o[len(name) - len(second) :] for o in beside if o.startswith(first)]
-        cut = fitting(second, width, measure, rivals, sure=True)
+        cut = shorten_middle(second, width, measure, rivals, sure=True)
         if cut:
             return first, cut
-        first, second = _broken(fitting(name, 2 * width - 16, measure, beside), metrics, width, hard=True)
-    return first, fitting(second, width, measure)
+        first, second = _broken(
+            shorten_middle(name, 2 * width - 16, measure, beside), metrics, width, hard=True
+        )
+    return first, shorten_middle(second, width, measure)
 
 
 def _broken(name: str, metrics: QFontMetrics, width: int, hard: bool = False) -> tuple[str, str]:

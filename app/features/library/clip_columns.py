@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from app.features.library.clip_facts import ClipFacts
 from app.features.library.clip_order import GIVEN, stances
 from app.look.domain_words import COLOR_TITLES
-from app.translation import tr, translated
+from app.translation import lazy_texts, tr
 from metagraph.graph.clip_mark import STARS
 from metagraph.graph.model import KINDS, LAYERS, ClipEntry
 
@@ -52,7 +52,7 @@ def _note(facts: ClipFacts, entry: ClipEntry) -> str:
     return facts.mark(entry).note.replace("\n", " ")
 
 
-COLUMNS: tuple[Column, ...] = translated(
+COLUMNS: tuple[Column, ...] = lazy_texts(
     lambda: (
         Column("name", tr("Name"), lambda f, e: e.name, "name", 250, tr("What the clip is called")),
         Column(

@@ -14,7 +14,7 @@ from app.features.library.library_panel import LibraryPanel
 from app.look.domain_words import COLOR_LABELS
 from app.project.importing import Importing
 from app.shell.actions import Command, Standard
-from app.shell.command_table import Feature, bound, clips_selected
+from app.shell.command_table import Feature, bind_commands, has_clips_selected
 from app.stage.problem_watch import ProblemWatch
 from app.translation import tr, tr_noop, tr_plural
 from metagraph.graph.clip_mark import COLORS, STARS
@@ -109,7 +109,7 @@ COMMANDS = (
         LibraryFeature.favour,
         ("Ctrl+Shift+6",),
         tip=tr_noop("Put a heart on the selected clips, or take it away"),
-        enabled=clips_selected,
+        enabled=has_clips_selected,
     ),
     Command(
         "duplicate_clips",
@@ -119,7 +119,7 @@ COMMANDS = (
         LibraryFeature.duplicate,
         ("Ctrl+Shift+D",),
         tip=tr_noop("List the selected clips once more, each to be timed for itself"),
-        enabled=clips_selected,
+        enabled=has_clips_selected,
     ),
     Command(
         "reveal_clip",
@@ -128,7 +128,7 @@ COMMANDS = (
         tr_noop("&Reveal in folder"),
         LibraryFeature.reveal,
         tip=tr_noop("Show the file of the first selected clip where it lies"),
-        enabled=clips_selected,
+        enabled=has_clips_selected,
     ),
     *(
         Command(
@@ -144,10 +144,10 @@ COMMANDS = (
 )
 
 
-def commands(library: LibraryFeature) -> tuple[Command, ...]:
+def list_clip_commands(library: LibraryFeature) -> tuple[Command, ...]:
     """Return all of them."""
     return (
-        *bound(COMMANDS, library),
+        *bind_commands(COMMANDS, library),
         *(_rating(library, number) for number in range(STARS + 1)),
         *(_label(library, color) for color in (*COLORS, "")),
         *(_view(library, style) for style in BUTTONS),
@@ -165,7 +165,7 @@ def _rating(library: LibraryFeature, number: int) -> Command:
         tip=tr(
             "Give the selected clips {stars}", stars=tr_plural("{count:,} star", "{count:,} stars", number)
         ),
-        enabled=partial(clips_selected, library),
+        enabled=partial(has_clips_selected, library),
     )
 
 
@@ -178,7 +178,7 @@ def _label(library: LibraryFeature, color: str) -> Command:
         COLOR_LABELS[color] if color else tr("No label"),
         partial(library.mark, "color", color),
         tip=on if color else off,
-        enabled=partial(clips_selected, library),
+        enabled=partial(has_clips_selected, library),
     )
 
 

@@ -6,7 +6,7 @@ from PySide6.QtCore import QRect, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 from PySide6.QtWidgets import QStyle, QStyledItemDelegate, QStyleOptionViewItem
 
-from app.features.library.clip_card import ClipInk, draw_card
+from app.features.library.clip_card import ClipInk, draw_clip_card
 from app.features.library.clip_facts import ClipFacts
 from app.features.library.clip_header import ClipHeader
 from app.features.library.clip_layout import Section
@@ -14,8 +14,8 @@ from app.features.library.clip_line import draw_back, draw_columns, draw_line
 from app.features.library.clip_names import ClipNames
 from app.features.library.clip_pictures import ClipPictures
 from app.features.library.clip_rows import ENTRY, Index
-from app.features.library.clip_sizes import USUAL, Style, in_lines
-from app.look.theme import Theme, theme
+from app.features.library.clip_sizes import USUAL, Style, is_in_lines
+from app.look.theme import WindowTheme, theme
 from app.look.theme_choice import ThemeChoice
 from metagraph.graph.model import ClipEntry
 
@@ -35,7 +35,7 @@ class ClipDelegate(QStyledItemDelegate):
         self.style_of, self.side, self._header = style, side, header
 
     @property
-    def _theme(self) -> Theme:
+    def _theme(self) -> WindowTheme:
         return theme(self.look.name)
 
     def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: Index) -> None:
@@ -50,8 +50,8 @@ class ClipDelegate(QStyledItemDelegate):
         painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
         painter.setFont(option.font)
         ink = ClipInk(self.facts, self.pictures, self.names, self.side, look)
-        if not in_lines(self.style_of, self.side):
-            draw_card(painter, option.rect, entry, index.row(), ink, lit, chosen)
+        if not is_in_lines(self.style_of, self.side):
+            draw_clip_card(painter, option.rect, entry, index.row(), ink, lit, chosen)
         else:
             draw_back(painter, option.rect, look, lit, chosen)
             if self.style_of == "columns" and self._header is not None:

@@ -11,7 +11,7 @@ from metagraph.graph.editing.marks import mark_of
 from metagraph.graph.model import Action, ClipEntry, Project
 from metagraph.graph.problem import Problem
 from metagraph.motion.clip import Clip
-from metagraph.motion.moving import moved
+from metagraph.motion.moving import find_moved_parts
 
 
 class ClipFacts:
@@ -36,7 +36,7 @@ class ClipFacts:
             return ()
         found = self._moved.get(entry.id)
         if found is None or found[0] is not motion:
-            found = self._moved[entry.id] = motion, moved(motion)
+            found = self._moved[entry.id] = motion, find_moved_parts(motion)
         return found[1]
 
     def ahead(self, entries: Iterable[ClipEntry]) -> None:

@@ -10,7 +10,7 @@ from app.look.domain_words import COLOR_TITLES, KIND_TITLES, LAYER_TITLES
 from app.translation import tr
 from metagraph.graph.clip_mark import COLORS, STARS
 from metagraph.graph.model import KINDS, LAYERS, ClipEntry, Project
-from metagraph.graph.name_search import fits
+from metagraph.graph.name_search import matches_search
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Filter:
 
     def takes(self, facts: ClipFacts, entry: ClipEntry) -> bool:
         project = facts.project
-        if self.labelled is not None and used(project, entry) != self.labelled:
+        if self.labelled is not None and is_used(project, entry) != self.labelled:
             return False
         if (self.layer or self.kind) and not any(
             (not self.layer or a.layer == self.layer) and (not self.kind or a.kind == self.kind)
@@ -47,7 +47,7 @@ class Filter:
                 return False
         if self.broken and not facts.problems(entry):
             return False
-        return not self.text.strip(" -|") or fits(self.text, f"{entry.name} {entry.path}")
+        return not self.text.strip(" -|") or matches_search(self.text, f"{entry.name} {entry.path}")
 
     @property
     def marked(self) -> bool:
@@ -75,7 +75,7 @@ class Filter:
 _ALLOWED = {"layer": LAYERS, "kind": KINDS, "color": COLORS, "stars": range(STARS + 1)}
 
 
-def from_text(text: str) -> Filter | None:
+def filter_from_text(text: str) -> Filter | None:
     """Return a filter from a line of JSON; None where it is none."""
     try:
         data = json.loads(text)
@@ -97,6 +97,6 @@ def from_text(text: str) -> Filter | None:
     return Filter(**out)
 
 
-def used(project: Project, entry: ClipEntry) -> bool:
+def is_used(project: Project, entry: ClipEntry) -> bool:
     """Return whether a clip serves as something."""
     return entry.id in project.uses or entry.id in project.drawn

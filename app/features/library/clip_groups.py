@@ -7,30 +7,30 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from app.features.library.clip_facts import ClipFacts
-from app.features.library.clip_order import first_use, natural, stances
+from app.features.library.clip_order import first_use, natural_key, stances
 from app.look.domain_words import LAYER_LONG_TITLES, MANY_OF_KIND
-from app.translation import tr, translated
+from app.translation import lazy_texts, tr
 from metagraph.graph.model import KINDS, LAYERS, ClipEntry
 
 NONE = "none"
 Group = tuple[Any, str]  # what it is sorted by, and its title
-UNUSED: Group = translated(lambda: ((1,), tr("Not placed yet")))
+UNUSED: Group = lazy_texts(lambda: ((1,), tr("Not placed yet")))
 
 
 def _folder(facts: ClipFacts, entry: ClipEntry) -> Group:
     path = PurePosixPath(entry.path).parent.as_posix()
-    return natural(path), tr("Beside the project") if path == "." else path
+    return natural_key(path), tr("Beside the project") if path == "." else path
 
 
 def _stance(facts: ClipFacts, entry: ClipEntry) -> Group:
     names = stances(facts, entry)
-    return ((0, natural(names[0])), names[0]) if names else UNUSED
+    return ((0, natural_key(names[0])), names[0]) if names else UNUSED
 
 
 def _tag(facts: ClipFacts, entry: ClipEntry) -> Group:
-    tags = sorted({tag for a in facts.uses(entry) for tag in a.tags}, key=natural)
+    tags = sorted({tag for a in facts.uses(entry) for tag in a.tags}, key=natural_key)
     if tags:
-        return (0, natural(tags[0])), tags[0]
+        return (0, natural_key(tags[0])), tags[0]
     return ((1,), tr("No tag")) if facts.uses(entry) else ((2,), UNUSED[1])
 
 
@@ -44,7 +44,7 @@ def _kind(facts: ClipFacts, entry: ClipEntry) -> Group:
     return ((0, min(kinds)), MANY_OF_KIND[KINDS[min(kinds)]]) if kinds else UNUSED
 
 
-GROUPS: dict[str, tuple[str, Callable[[ClipFacts, ClipEntry], Group] | None]] = translated(
+GROUPS: dict[str, tuple[str, Callable[[ClipFacts, ClipEntry], Group] | None]] = lazy_texts(
     lambda: {
         NONE: (tr("No groups"), None),
         "folder": (tr("Folder"), _folder),

@@ -6,19 +6,19 @@ from PySide6.QtCore import QRect, Qt
 from PySide6.QtGui import QColor, QPainter
 
 from app.features.library.clip_badges import HEART, PENCIL, TAG, draw_label
-from app.features.library.clip_card import ClipInk, draw_kinds, draw_picture, draw_stripe, kinds_of
+from app.features.library.clip_card import ClipInk, draw_kinds, draw_picture, draw_stripe, list_clip_kinds
 from app.features.library.clip_columns import COLUMNS
 from app.features.library.clip_header import PLACES, ClipHeader
 from app.features.library.clip_sizes import picture_of
-from app.look.shortening import fitted
-from app.look.theme import KIND_MARKS, Theme
+from app.look.shortening import shorten_to_font
+from app.look.theme import KIND_MARKS, WindowTheme
 from metagraph.graph.model import ClipEntry
 
 MIDDLE = Qt.AlignmentFlag.AlignVCenter
 NAME = 84  # pixels that a name has at least in a line
 
 
-def draw_back(painter: QPainter, rect: QRect, look: Theme, lit: bool, chosen: bool) -> None:
+def draw_back(painter: QPainter, rect: QRect, look: WindowTheme, lit: bool, chosen: bool) -> None:
     """Draw what is behind a line; a selected one has a frame, too."""
     if lit:
         painter.setPen(QColor(look.text) if chosen else Qt.PenStyle.NoPen)
@@ -36,7 +36,7 @@ def draw_line(painter: QPainter, rect: QRect, entry: ClipEntry, row: int, ink: C
     line = QRect(box.right() + 8, rect.top(), rect.right() - box.right() - 16, rect.height())
     wide = painter.fontMetrics().horizontalAdvance
     front, rest = names.of(entry)
-    right = draw_kinds(painter, line, kinds_of(facts, entry), look)
+    right = draw_kinds(painter, line, list_clip_kinds(facts, entry), look)
     words = HEART * mark.favourite + PENCIL * bool(mark.note) + (f"★{mark.rating}" if mark.rating else "")
     for text, color in ((f"{entry.duration:.1f} s", look.dim), (words, look.text)):
         if text and right - wide(text) - 6 - line.left() > NAME:  # the name goes before them
@@ -50,7 +50,7 @@ def draw_line(painter: QPainter, rect: QRect, entry: ClipEntry, row: int, ink: C
     if room > 12:
         shown = f"{front} {rest}".strip()
         if wide(shown) > room:
-            shown = fitted(rest, room, painter.font().toString(), names.beside(row))
+            shown = shorten_to_font(rest, room, painter.font().toString(), names.beside(row))
         painter.setPen(QColor(look.text))
         painter.drawText(QRect(line.left(), line.top(), room, line.height()), MIDDLE, shown)
 
@@ -79,7 +79,7 @@ def draw_columns(painter: QPainter, rect: QRect, entry: ClipEntry, header: ClipH
             )
             cell.setLeft(cell.left() + TAG + 5)
         if column.id == "kind":
-            kinds = kinds_of(facts, entry)
+            kinds = list_clip_kinds(facts, entry)
             for kind in kinds:
                 painter.setPen(look.kind(kind))
                 painter.drawText(cell, MIDDLE, KIND_MARKS[kind])

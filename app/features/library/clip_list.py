@@ -27,9 +27,9 @@ from app.features.library.clip_layout import ClipLayout
 from app.features.library.clip_rows import ENTRY, ClipRows, Index
 from app.features.library.clip_scrub import ClipScrub
 from app.features.library.clip_sizes import SIZES, Style, cell_of, picture_of
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr, tr_plural
-from app.widgets.mime import drag_picture, load_of, mime
+from app.widgets.mime import drag_picture, load_of, make_mime
 
 Move = QAbstractItemView.CursorAction
 HIT = QAbstractItemView.ScrollHint
@@ -45,7 +45,9 @@ class ClipList(QListView):
     menu_wanted = Signal(object, QPoint)
     zoomed = Signal(int)
 
-    def __init__(self, session: Session, rows: ClipRows, delegate: ClipDelegate, parent: QWidget) -> None:
+    def __init__(
+        self, session: StageSession, rows: ClipRows, delegate: ClipDelegate, parent: QWidget
+    ) -> None:
         super().__init__(parent)
         self.session, self.rows, self.delegate = session, rows, delegate
         self.style_of: Style = "cards"
@@ -332,7 +334,7 @@ class ClipList(QListView):
         if not chosen:
             return
         drag = QDrag(self)
-        drag.setMimeData(mime(clips=[e.id for e in chosen]))
+        drag.setMimeData(make_mime(clips=[e.id for e in chosen]))
         names = self.delegate.names
         words = (
             " ".join(names.of(chosen[0]))

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from app.features.library.clip_rows import ClipRows
-from app.look.names import plain
-from app.look.plural import short
+from app.look.names import plain_action_name
+from app.look.plural import strip_stance
 from app.project.document import Document
 from metagraph.graph.model import LAYERS, ClipEntry
 
@@ -30,8 +30,8 @@ class ClipNames:
         """Return the stance that a clip's name begins with, "" for none, and the rest, as they are read."""
         kept, names = self._names(), self.stances()
         if entry.name not in kept:
-            found = next((n for n in names if short(entry.name, n) != entry.name), "")
-            kept[entry.name] = found, plain(entry.name, found)
+            found = next((n for n in names if strip_stance(entry.name, n) != entry.name), "")
+            kept[entry.name] = found, plain_action_name(entry.name, found)
         return kept[entry.name]
 
     def _names(self) -> dict[str, tuple[str, str]]:

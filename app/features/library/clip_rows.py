@@ -16,7 +16,7 @@ from app.features.library.clip_groups import GROUPS, NONE
 from app.features.library.clip_layout import Section
 from app.features.library.clip_order import GIVEN, ORDERS
 from app.translation import tr
-from app.widgets.mime import mime
+from app.widgets.mime import make_mime
 from metagraph.graph.generated import origin
 from metagraph.graph.model import ClipEntry, Project
 
@@ -26,7 +26,7 @@ EVERYTHING = Filter()
 
 
 @dataclass(frozen=True)
-class Listing:
+class ClipListing:
     """What is shown of the clips, and how: filter, groups (of `GROUPS`), order (of `ORDERS`)."""
 
     filter: Filter = EVERYTHING
@@ -44,13 +44,13 @@ class Listing:
         return self.filter.broken or self.order == "problems"
 
 
-def arranged(facts: ClipFacts, listing: Listing) -> tuple[list[ClipEntry], list[Section]]:
+def arrange_clips(facts: ClipFacts, listing: ClipListing) -> tuple[list[ClipEntry], list[Section]]:
     """Return the clips that a listing shows, in their order, and the groups they are in."""
     rule = listing.filter
     entries = list(facts.project.clips.values())
     if rule != EVERYTHING:
         entries = [e for e in entries if rule.takes(facts, e)]
-    entries = in_order(facts, listing, entries)
+    entries = order_clips(facts, listing, entries)
     group = GROUPS[listing.group][1]
     if group is None:
         return entries, [Section("", 0, len(entries))]
@@ -66,7 +66,7 @@ def arranged(facts: ClipFacts, listing: Listing) -> tuple[list[ClipEntry], list[
     return out, sections
 
 
-def in_order(facts: ClipFacts, listing: Listing, entries: list[ClipEntry]) -> list[ClipEntry]:
+def order_clips(facts: ClipFacts, listing: ClipListing, entries: list[ClipEntry]) -> list[ClipEntry]:
     """Return clips in a listing's order, whatever their groups; those that are alike as the project has
     them.
     """
@@ -84,7 +84,7 @@ class ClipRows(QAbstractListModel):
     def __init__(self, facts: ClipFacts) -> None:
         super().__init__(facts.document)
         self.facts, self.document = facts, facts.document
-        self.listing = Listing()
+        self.listing = ClipListing()
         self.closed: frozenset[str] = frozenset()
         self.entries: list[ClipEntry] = []
         self.sections: list[Section] = []
@@ -96,7 +96,7 @@ class ClipRows(QAbstractListModel):
     def filter(self) -> Filter:
         return self.listing.filter
 
-    def show(self, listing: Listing) -> None:
+    def show(self, listing: ClipListing) -> None:
         """Show what a listing says."""
         if listing != self.listing:
             if listing.group != self.listing.group:
@@ -106,7 +106,7 @@ class ClipRows(QAbstractListModel):
 
     def arrange(self) -> None:
         """Work out what is shown, and tell of it where it is another."""
-        entries, sections = arranged(self.facts, self.listing)
+        entries, sections = arrange_clips(self.facts, self.listing)
         sections = [replace(s, closed=s.title in self.closed) for s in sections]
         if sections == self.sections and [e.id for e in entries] == [e.id for e in self.entries]:
             self.entries = entries
@@ -128,7 +128,7 @@ class ClipRows(QAbstractListModel):
 
     def listed(self) -> list[str]:
         """Return all clips of the project in this order, those that are not shown, too."""
-        return [e.id for e in in_order(self.facts, self.listing, list(self.facts.project.clips.values()))]
+        return [e.id for e in order_clips(self.facts, self.listing, list(self.facts.project.clips.values()))]
 
     def rowCount(self, parent: Index = QModelIndex()) -> int:  # noqa: B008 - Qt's signature
         return 0 if parent.isValid() else len(self.entries)
@@ -187,11 +187,11 @@ class ClipRows(QAbstractListModel):
         return super().flags(index) | Qt.ItemFlag.ItemIsDragEnabled
 
     def mimeData(self, indexes: Sequence[QModelIndex]) -> QMimeData:
-        return mime(clips=[self.entries[i.row()].id for i in indexes])
+        return make_mime(clips=[self.entries[i.row()].id for i in indexes])
 
     def _follow(self, before: Project, after: Project) -> None:
         listing = self.listing
-        rows = changed_rows(before, after, self.entries)
+        rows = find_changed_rows(before, after, self.entries)
         placed = before.graphs is not after.graphs or before.manual is not after.manual
         again = before.clips is not after.clips
         again |= before.marks is not after.marks and listing.follows_marks
@@ -200,12 +200,12 @@ class ClipRows(QAbstractListModel):
             again |= bool(rows) or listing.filter.placed
         if again:
             self.arrange()
-            rows = changed_rows(before, after, self.entries)
+            rows = find_changed_rows(before, after, self.entries)
         for first, last in rows:
             self.dataChanged.emit(self.index(first), self.index(last))
 
 
-def changed_rows(before: Project, after: Project, entries: Sequence[ClipEntry]) -> list[tuple[int, int]]:
+def find_changed_rows(before: Project, after: Project, entries: Sequence[ClipEntry]) -> list[tuple[int, int]]:
     """Return the first and last rows of clips that look otherwise, or are found otherwise, than before."""
     if before is after or not entries:
         return []

@@ -16,7 +16,7 @@ TEXT = 68  # pixels of a card besides its picture
 EDGE = 8
 
 
-def in_lines(style: Style, side: int) -> bool:
+def is_in_lines(style: Style, side: int) -> bool:
     """Return whether clips are lines: a picture, and words beside it."""
     return style == "columns" or side <= LINES
 
@@ -32,11 +32,11 @@ def cell_of(style: Style, side: int, width: int) -> tuple[int, int]:
 
 def picture_of(style: Style, side: int, rect: QRect) -> QRect:
     """Return where the picture is within a clip's place."""
-    if in_lines(style, side):
+    if is_in_lines(style, side):
         return QRect(rect.left() + 12, rect.top() + (rect.height() - side) // 2, side, side)
     return QRect(rect.left() + (rect.width() - side) // 2, rect.top() + 6, side, side)
 
 
-def steps(style: Style) -> tuple[int, ...]:
+def list_sizes(style: Style) -> tuple[int, ...]:
     """Return the sizes there are."""
     return SIZES if style == "cards" else tuple(s for s in SIZES if s <= LARGEST_LINE)

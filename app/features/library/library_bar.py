@@ -5,16 +5,16 @@ from __future__ import annotations
 from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QToolButton, QWidget
 
-from app.features.library.clip_sizes import Style, steps
+from app.features.library.clip_sizes import Style, list_sizes
 from app.look import icons
 from app.look.theme import theme
 from app.look.theme_choice import ThemeChoice
-from app.translation import tr, translated
+from app.translation import lazy_texts, tr
 from app.widgets.making import make_widget
 from app.widgets.one_stop import OneStop
 from app.widgets.quiet_fields import Scrub
 
-BUTTONS: dict[Style, tuple[str, str, str]] = translated(
+BUTTONS: dict[Style, tuple[str, str, str]] = lazy_texts(
     lambda: {
         "cards": ("grid", tr("Cards"), tr("Pictures, as large as the slider says; small ones are lines")),
         "columns": (
@@ -69,7 +69,7 @@ class LibraryBar(QWidget):
         self.style_of = style
         for each, button in self.buttons.items():
             button.setChecked(each == style)
-        sizes = steps(style)
+        sizes = list_sizes(style)
         self.slider.blockSignals(True)
         self.slider.setRange(0, len(sizes) - 1)
         self.slider.setValue(sizes.index(side))
@@ -80,7 +80,7 @@ class LibraryBar(QWidget):
         self.slider.setValue(self.slider.value() + by)
 
     def _slid(self, place: int) -> None:
-        self.changed.emit(self.style_of, steps(self.style_of)[place])
+        self.changed.emit(self.style_of, list_sizes(self.style_of)[place])
 
     def _restyle(self) -> None:
         for style, (name, _, _) in BUTTONS.items():

@@ -36,11 +36,11 @@ from app.features.library.library_menu import LibraryMenu
 from app.features.library.library_settings import LibrarySettings
 from app.features.library.search_field import Search
 from app.project.document import Document
-from app.project.load import readable
-from app.stage.session import Session
+from app.project.load import describe_readable_formats
+from app.stage.session import StageSession
 from app.stage.thumbnails import Thumbnails
 from app.translation import tr, tr_noop, tr_plural
-from app.widgets.flow import Flow
+from app.widgets.flow import FlowLayout
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
 from app.widgets.one_stop import OneStop
@@ -64,7 +64,7 @@ class LibraryPanel(QWidget):
     def __init__(
         self,
         document: Document,
-        session: Session,
+        session: StageSession,
         thumbnails: Thumbnails,
         parent: QWidget | None = None,
         problems: Callable[[], Iterable[Problem]] = tuple,
@@ -119,8 +119,8 @@ class LibraryPanel(QWidget):
         self.restore()
         self._count()
 
-    def _filters(self) -> Flow:
-        row = Flow()
+    def _filters(self) -> FlowLayout:
+        row = FlowLayout()
         self.chips: dict[str, QToolButton] = {}
 
         def chip(key: str, text: str, tip: str) -> None:
@@ -216,7 +216,7 @@ class LibraryPanel(QWidget):
         page = QWidget(self)
         box = QVBoxLayout(page)
         box.addStretch(2)
-        self.empty = QLabel(tr(EMPTY).format(readable()), page)
+        self.empty = QLabel(tr(EMPTY).format(describe_readable_formats()), page)
         self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.empty.setProperty("dim", True)
         self.empty.setWordWrap(True)
@@ -304,7 +304,7 @@ class LibraryPanel(QWidget):
         if hidden:
             self.empty.setText(tr("No clip matches.\nClear the search or the filters."))
         else:
-            self.empty.setText(tr(EMPTY).format(readable()))
+            self.empty.setText(tr(EMPTY).format(describe_readable_formats()))
         self.stack.setCurrentIndex(1 if nothing or hidden else 0)
 
     def next_unlabelled(self, clip: str) -> str | None:

@@ -8,9 +8,9 @@ import json
 
 from PySide6.QtCore import QByteArray, QSettings
 
-from app.features.library.clip_filter import Filter, from_text
+from app.features.library.clip_filter import Filter, filter_from_text
 from app.features.library.clip_groups import GROUPS, NONE
-from app.features.library.clip_sizes import USUAL, Style, steps
+from app.features.library.clip_sizes import USUAL, Style, list_sizes
 
 GROUP = "library"
 COLUMNS_NOW = 1  # to be raised when there are other columns
@@ -25,7 +25,7 @@ class LibrarySettings:
     def side(self, style: Style) -> int:
         """Return how many pixels a picture's side has."""
         value = str(self._value(f"side {style}"))
-        return int(value) if value.isdecimal() and int(value) in steps(style) else USUAL[style]
+        return int(value) if value.isdecimal() and int(value) in list_sizes(style) else USUAL[style]
 
     def keep_size(self, style: Style, side: int) -> None:
         self._keep("style", style)
@@ -52,7 +52,7 @@ class LibrarySettings:
         except ValueError:
             return {}
         found = data.items() if isinstance(data, dict) else ()
-        return {name: rule for name, text in found if (rule := from_text(str(text))) is not None}
+        return {name: rule for name, text in found if (rule := filter_from_text(str(text))) is not None}
 
     def keep_filters(self, filters: dict[str, Filter]) -> None:
         self._keep("filters", json.dumps({name: rule.as_text() for name, rule in filters.items()}))

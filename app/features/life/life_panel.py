@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 
 from app.features.life.dial_words import in_sentence
 from app.project.document import Document
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr, tr_error
 from app.widgets.choice_row import ChoiceRow
 from app.widgets.making import make_widget
@@ -127,7 +127,7 @@ class DialRow:
 class LifePanel(QWidget):
     """Stillness over all; below it every amount, or what a mode makes of them."""
 
-    def __init__(self, document: Document, session: Session, parent: QWidget | None = None) -> None:
+    def __init__(self, document: Document, session: StageSession, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.document, self.session = document, session
         self.mode: Mode | None = None  # whose factors are shown; None for the amounts themselves

@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.project.files import Files
 from app.project.importing import FileDrop
-from app.project.speech_files import SOUNDS, kinds_of
+from app.project.speech_files import SOUNDS, sort_speech_files
 from app.shell.context import Contribution, Panel, Shell
 from app.translation import tr
 
@@ -26,13 +26,13 @@ def contribute(shell: Shell) -> Contribution:
 
     def claim(paths: Sequence[Path]) -> Sequence[Path]:
         """What is said, and the words and phones that lie beside it."""
-        sounds, transcripts = kinds_of(paths)
+        sounds, transcripts = sort_speech_files(paths)
         return (*sounds, *transcripts) if sounds else ()
 
     def take(paths: Sequence[Path]) -> None:
         if not shell.services[Files].refuse():
             shell.show("lines")
-            shell.panel("lines").add_files(list(kinds_of(paths)[0]))
+            shell.panel("lines").add_files(list(sort_speech_files(paths)[0]))
 
     return Contribution(
         panels=(

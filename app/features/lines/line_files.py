@@ -14,11 +14,11 @@ from typing import Any
 
 from app.translation import tr
 from metagraph.common.budgets import LIST_FILE
-from metagraph.common.files import is_file, is_inside, read_file, unforeseen
+from metagraph.common.files import is_file, is_inside, read_file, unforeseen_error
 from metagraph.errors import FileError
-from metagraph.formats.store import kept_path
+from metagraph.formats.store import path_for_project
 from metagraph.graph.editing import performances as performance_edits
-from metagraph.graph.edits import free_name
+from metagraph.graph.edits import find_free_name
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Line
 
@@ -53,10 +53,10 @@ def read_lines(
     for path in paths:
         try:
             if path.suffix.lower() in SOUNDS:
-                lines[free_name(path.stem, lines)] = _beside(path, folder)
+                lines[find_free_name(path.stem, lines)] = _beside(path, folder)
             elif path.suffix.lower() in LISTS:
                 for ident, line in _listed(path, folder):
-                    lines[free_name(ident, lines)] = line
+                    lines[find_free_name(ident, lines)] = line
             else:
                 raise FileError(
                     path,
@@ -64,7 +64,7 @@ def read_lines(
                     remedy=tr("Sounds are {names}, lists are .csv or .tsv.", names=", ".join(SOUNDS)),
                 )
         except Exception as error:  # one bad file spoils no other
-            notes.append(str(unforeseen(path, error)))
+            notes.append(str(unforeseen_error(path, error)))
     voices: dict[str, Any] = {}
     from metagraph.speech.lines import load_voices
 
@@ -88,7 +88,9 @@ def _beside(path: Path, folder: Path | None) -> Line:
     words = " ".join(_text(text).split())[:LONGEST] if is_file(text) else path.stem.replace("_", " ")
     phones = next((p for s in PHONES if is_file(p := path.with_suffix(s))), None)
     return Line(
-        text=words, audio=kept_path(path, folder), phones=kept_path(phones, folder) if phones else None
+        text=words,
+        audio=path_for_project(path, folder),
+        phones=path_for_project(phones, folder) if phones else None,
     )
 
 
@@ -145,7 +147,10 @@ def _listed(path: Path, folder: Path | None) -> list[tuple[str, Line]]:
                 tr("Put it beside the list, or correct its name."),
             )
         out.append(
-            (cells[0][:200], Line(text=cells[1][:LONGEST], audio=kept_path(audio, folder) if audio else None))
+            (
+                cells[0][:200],
+                Line(text=cells[1][:LONGEST], audio=path_for_project(audio, folder) if audio else None),
+            )
         )
     return out
 

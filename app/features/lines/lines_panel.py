@@ -29,22 +29,22 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.lines.line_files import LISTS, SOUNDS, Lines, add_lines, read_lines
-from app.look.theme import Theme, theme
+from app.look.theme import WindowTheme, theme
 from app.project.chosen import keep_chosen
 from app.project.document import Document, Edit
 from app.project.jobs import Jobs
-from app.stage.performance import Performance
-from app.stage.session import Session
-from app.translation import tr, tr_error, tr_noop, tr_phrase, tr_plural, translated
-from app.widgets.flow import Flow
+from app.stage.performance import StagePerformance
+from app.stage.session import StageSession
+from app.translation import lazy_texts, tr, tr_error, tr_noop, tr_phrase, tr_plural
+from app.widgets.flow import FlowLayout
 from app.widgets.making import make_widget
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Line, Say
-from metagraph.playback.planning.line_lengths import spoken_seconds
+from metagraph.playback.planning.line_lengths import find_spoken_seconds
 
-COLUMNS = translated(lambda: (tr("Id"), tr("Words"), tr("Sound"), tr("Length"), tr("With it")))
+COLUMNS = lazy_texts(lambda: (tr("Id"), tr("Words"), tr("Sound"), tr("Length"), tr("With it")))
 ID, WORDS, SOUND, LENGTH, ASKS = range(5)
 WIDEST = 180  # pixels of the ids at most
 EMPTY = tr_noop(
@@ -90,8 +90,8 @@ class LinesPanel(QWidget):
     def __init__(
         self,
         document: Document,
-        session: Session,
-        performance: Performance,
+        session: StageSession,
+        performance: StagePerformance,
         jobs: Jobs,
         parent: QWidget | None = None,
     ) -> None:
@@ -104,7 +104,7 @@ class LinesPanel(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(12, 6, 12, 6)
         layout.setSpacing(6)
-        row = Flow(spacing=6)
+        row = FlowLayout(spacing=6)
         self.search = QLineEdit(self, placeholderText=tr("Search lines"), clearButtonEnabled=True)
         self.search.setAccessibleName(tr("Search lines"))
         self.search.setFixedWidth(170)
@@ -214,11 +214,11 @@ class LinesPanel(QWidget):
         )
         self._search(self.search.text())
 
-    def _row(self, n: int, ident: str, line: Line, look: Theme) -> None:
+    def _row(self, n: int, ident: str, line: Line, look: WindowTheme) -> None:
         """Fill a row of the table."""
         project = self.document.project
         lost = bool(line.audio) and ident not in project.voices
-        seconds = spoken_seconds(project, ident, line.text)
+        seconds = find_spoken_seconds(project, ident, line.text)
         asks = tr_plural("{count:,} request", "{count:,} requests", len(line.asks)) if line.asks else ""
         texts = (ident, line.text, Path(line.audio).name if line.audio else "", f"{seconds:.1f} s", asks)
         for column, text in enumerate(texts):

@@ -6,14 +6,14 @@ from PySide6.QtWidgets import QToolButton, QWidget
 
 from app.shell.actions import Command
 from app.shell.context import Contribution, HeaderItem, Panel, Shell
-from app.shell.places import Places
+from app.shell.places import PanelPlaces
 from app.translation import tr
 from app.widgets.making import make_widget
 
 
 def contribute(shell: Shell) -> Contribution:
     def wanted() -> bool:
-        return shell.services[Places].wanted("machine")
+        return shell.services[PanelPlaces].wanted("machine")
 
     def make() -> QWidget:
         from app.features.machine.machine_panel import MachinePanel

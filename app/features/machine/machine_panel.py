@@ -20,9 +20,9 @@ from PySide6.QtWidgets import QToolTip, QWidget
 
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr
-from metagraph.graph.expand import connections, ends_in, size
+from metagraph.graph.expand import count_machine_size, find_end_stance, list_connections
 from metagraph.graph.model import Action, MetaGraph, Project
 
 MOST = 6000  # connections drawn; more would be one solid disc
@@ -68,7 +68,7 @@ def places(graph: MetaGraph, area: QRectF) -> dict[str, QPointF]:
 class MachinePanel(QWidget):
     """Draws the machine when it is looked at; click a state to go to its action."""
 
-    def __init__(self, document: Document, session: Session, parent: QWidget | None = None) -> None:
+    def __init__(self, document: Document, session: StageSession, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.document, self.session = document, session
         self._picture: QPixmap | None = None
@@ -110,11 +110,11 @@ class MachinePanel(QWidget):
         self._places = places(graph, QRectF(self.rect()))
         chosen = set(self.session.selection.actions)
         line = QColor(t.text)
-        whole = size(self.document.project, self.session.place.layer)
+        whole = count_machine_size(self.document.project, self.session.place.layer)
         line.setAlpha(max(14, min(70, 4200 // max(1, whole.connections))))
         painter.setPen(QPen(line, 0.8))
         strong = []
-        for n, c in enumerate(connections(self.document.project, graph)):
+        for n, c in enumerate(list_connections(self.document.project, graph)):
             if n >= MOST:
                 break
             if c.source in self._places and c.target in self._places:
@@ -213,7 +213,7 @@ class MachinePanel(QWidget):
             action = self._at(QPointF(event.pos()))
             words = ""
             if action is not None:
-                end = self.document.project.stance(ends_in(action))
+                end = self.document.project.stance(find_end_stance(action))
                 words = tr(
                     "{mark} {name}\nleads to {stance}",
                     mark=KIND_MARKS[action.kind],

@@ -5,7 +5,7 @@ properties.
 from __future__ import annotations
 
 from app.features.manual.manual_feature import COMMANDS, ManualFeature
-from app.shell.command_table import bound
+from app.shell.command_table import bind_commands
 from app.shell.context import Contribution, Panel, Shell
 from app.translation import tr
 
@@ -32,5 +32,5 @@ def contribute(shell: Shell) -> Contribution:
                 instead_of="properties",
             ),
         ),
-        commands=bound(COMMANDS, manual),
+        commands=bind_commands(COMMANDS, manual),
     )

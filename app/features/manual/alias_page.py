@@ -19,11 +19,11 @@ from PySide6.QtWidgets import (
 from app.features.manual import manual_many
 from app.features.manual.manual_canvas import ManualCanvas
 from app.translation import tr, tr_noop, tr_plural
-from app.widgets.form_fields import Chooser, Field
+from app.widgets.form_fields import Field, QuietChooser
 from app.widgets.making import make_widget
 from metagraph.graph.manual import groups as manual_groups
 from metagraph.graph.manual.machine import Alias
-from metagraph.graph.name_search import fits
+from metagraph.graph.name_search import matches_search
 
 NO_ENTRY = tr_noop("no entry: nothing leads to it")
 IDENT = Qt.ItemDataRole.UserRole
@@ -48,7 +48,7 @@ class AliasPage(QWidget):
             toolTip=tr("Otherwise its links skip their own target"),
         )
         self.again.clicked.connect(lambda on: self._set(tr("Change alias"), again=on))
-        self.entry = Chooser(
+        self.entry = QuietChooser(
             self, toolTip=tr("The state that links to this alias lead to, which makes it a group")
         )
         self.entry.activated.connect(
@@ -129,14 +129,14 @@ class AliasPage(QWidget):
     def _filter(self, words: str) -> None:
         for n in range(self.list.count()):
             item = self.list.item(n)
-            item.setHidden(bool(words.strip()) and not fits(words, item.text()))
+            item.setHidden(bool(words.strip()) and not matches_search(words, item.text()))
 
     def _ticked(self, item: QListWidgetItem) -> None:
         """A tick counts for all rows that are selected with it."""
         on = item.checkState() == Qt.CheckState.Checked
         rows = self.list.selectedItems() if item.isSelected() else [item]
         states = tuple(r.data(IDENT) for r in rows if not r.isHidden())
-        manual_many.choose(self.canvas, self.alias, states, on)
+        manual_many.choose_for_alias(self.canvas, self.alias, states, on)
 
     def _set(self, text: str, **changes: object) -> None:
         self.canvas.do(text, lambda p: manual_groups.update_aliases(p, [self.alias], **changes))

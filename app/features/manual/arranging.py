@@ -13,7 +13,7 @@ ACROSS, DOWN = 280.0, 92.0  # units from one node to the next
 SWEEPS = 6
 
 
-def arranged(manual: Manual) -> Mapping[str, tuple[float, float]]:
+def arrange_nodes(manual: Manual) -> Mapping[str, tuple[float, float]]:
     """Return where every node goes, ANY among them: x, y of its left upper corner.
 
     A column that would grow tall is broken into several. Within columns nodes stand at the mean height of

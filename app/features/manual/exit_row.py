@@ -7,12 +7,12 @@ from typing import Any, Literal
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
-from app.translation import tr, translated
-from app.widgets.form_fields import MIXED, Chooser, Mixed, Seconds, common
+from app.translation import lazy_texts, tr
+from app.widgets.form_fields import MIXED, Mixed, QuietChooser, Seconds, common_value
 from metagraph.graph.manual.machine import Link
 
 Way = Literal["none", "end", "part", "time"]
-WORDS: dict[Way, str] = translated(
+WORDS: dict[Way, str] = lazy_texts(
     lambda: {
         "none": tr("none"),
         "end": tr("when the source ends"),
@@ -40,7 +40,7 @@ class ExitRow(QWidget):
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
-        self.way = Chooser(
+        self.way = QuietChooser(
             self,
             toolTip=tr("When the source may be left. A loop has no end: asked to leave, it is left at once"),
         )
@@ -59,15 +59,15 @@ class ExitRow(QWidget):
 
     def show_links(self, links: list[Link]) -> None:
         """Show what several links have in common."""
-        ways: Any = common([way_of(x) for x in links])
-        when = common([x.condition.when for x in links])
+        ways: Any = common_value([way_of(x) for x in links])
+        when = common_value([x.condition.when for x in links])
         none = {"request": tr("at once"), "finished": tr("at its end")}.get(str(when), tr("none"))
         entries = [(none if way == "none" else words, way) for way, words in WORDS.items()]
         self.way.show_entries(entries, None if ways is Mixed else ways, tr(MIXED))
         self.time.setVisible(ways == "time")
         self.part.setVisible(ways == "part")
         if ways == "time":
-            self.time.show_value(common([x.exit_time for x in links]))
+            self.time.show_value(common_value([x.exit_time for x in links]))
         elif ways == "part":
-            parts = common([x.exit_part for x in links])
+            parts = common_value([x.exit_part for x in links])
             self.part.show_value(parts if parts is Mixed else parts * 100)

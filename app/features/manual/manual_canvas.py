@@ -30,17 +30,17 @@ from app.features.manual.drags.band import Band
 from app.features.manual.drags.link import DrawLink
 from app.features.manual.drags.move import Move
 from app.features.manual.drags.pan import ManualPan
-from app.features.manual.manual_overlay import Marks, paint_over, plays
-from app.features.manual.manual_pictures import Pictures
-from app.features.manual.manual_scene import NODE, NOTHING, ManualScene, ManualView, fitted
-from app.look.plural import clips_words
+from app.features.manual.manual_overlay import ManualMarks, find_playing_state, paint_over
+from app.features.manual.manual_pictures import ManualPictures
+from app.features.manual.manual_scene import NODE, NOTHING, ManualScene, ManualView, fit_view
+from app.look.plural import count_clips
 from app.look.theme import theme
 from app.project.document import Document
-from app.stage.performance import Performance
-from app.stage.session import Session
+from app.stage.performance import StagePerformance
+from app.stage.session import StageSession
 from app.stage.thumbnails import Thumbnails
 from app.translation import tr, tr_error
-from app.widgets.gesture import Hand
+from app.widgets.gesture import PointerHand
 from app.widgets.mime import load_of
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.manual import edits as manual_edits
@@ -66,16 +66,16 @@ class ManualCanvas(QWidget):
     def __init__(
         self,
         document: Document,
-        session: Session,
-        performance: Performance,
+        session: StageSession,
+        performance: StagePerformance,
         thumbnails: Thumbnails,
         parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.performance = document, session, performance
-        self.pictures = Pictures(thumbnails, session)
+        self.pictures = ManualPictures(thumbnails, session)
         self.view = ManualView()
-        self.hand = Hand()
+        self.hand = PointerHand()
         self.hover = NOTHING
         self.troubles: dict[str, str] = {}
         self.at = QPointF(200, 200)  # where the mouse was last
@@ -116,7 +116,9 @@ class ManualCanvas(QWidget):
     def scene(self) -> ManualScene:
         """Return the geometry of the layer's machine as it is, made when first asked for after a change."""
         if self._scene is None:
-            self._scene = ManualScene(manual_edits.machine(self.document.project, self.session.place.layer))
+            self._scene = ManualScene(
+                manual_edits.get_machine(self.document.project, self.session.place.layer)
+            )
         return self._scene
 
     def look_at(self, view: ManualView) -> None:
@@ -140,7 +142,7 @@ class ManualCanvas(QWidget):
         scene, rect = self.scene(), QRectF()
         for ident in self.session.selection.states:
             rect = rect.united(scene.nodes.get(ident, QRectF()))
-        self.look_at(fitted(rect if not rect.isNull() else scene.bounds, QSizeF(self.size())))
+        self.look_at(fit_view(rect if not rect.isNull() else scene.bounds, QSizeF(self.size())))
         self.settle()
 
     def drag_nodes(self, places: Mapping[str, tuple[float, float]]) -> None:
@@ -248,7 +250,7 @@ class ManualCanvas(QWidget):
         if self._dragged:
             scene = ManualScene(scene.manual, self._dragged)
             look = self._look(scene)
-        marks = Marks(
+        marks = ManualMarks(
             self._dragged,
             self.hover,
             *self._link,
@@ -270,7 +272,9 @@ class ManualCanvas(QWidget):
     def _follow_play(self) -> None:
         """Show which state plays and how far it is."""
         now = (
-            plays(self.performance.shown, self.session.place.layer, self.session.transport.seconds)
+            find_playing_state(
+                self.performance.shown, self.session.place.layer, self.session.transport.seconds
+            )
             if self.isVisible()
             else ("", 0.0)
         )
@@ -381,7 +385,7 @@ class ManualCanvas(QWidget):
         self.at = at
         menu = QMenu(self)
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        commands.fill(menu, self, self.scene().hit(self.view.back(at), self.view.scale))
+        commands.fill_canvas_menu(menu, self, self.scene().hit(self.view.back(at), self.view.scale))
         menu.popup(self.mapToGlobal(at.toPoint()))
 
     # --- edits
@@ -416,7 +420,7 @@ class ManualCanvas(QWidget):
         layer, before = self.session.place.layer, set(self.scene().manual.states)
         corner = self.view.back(at) - QPointF(NODE.width() / 2, NODE.height() / 2)
         x, y = round(corner.x() / 8) * 8, round(corner.y() / 8) * 8
-        words = tr("Place {clips}", clips=clips_words(len(clips)))
+        words = tr("Place {clips}", clips=count_clips(len(clips)))
         self._views.setdefault(layer, self.view)
         if self.do(words, lambda p: manual_edits.add_states(p, clips, layer, x, y)):
             self.session.selection.select_states(
@@ -452,7 +456,7 @@ class ManualCanvas(QWidget):
         event.acceptProposedAction()
         if load.clips:
             self.place(load.clips, QPointF(event.position()))
-        elif load.files and all(manual_many.is_table(Path(f)) for f in load.files):
+        elif load.files and all(manual_many.is_link_table(Path(f)) for f in load.files):
             for file in load.files:
                 manual_many.import_table(self, Path(file))
         elif load.files:
@@ -464,18 +468,18 @@ class ManualCanvas(QWidget):
         if (
             event.type() == QEvent.Type.ShortcutOverride
             and isinstance(event, QKeyEvent)
-            and commands.for_key(self, event) is not None
+            and commands.find_key_command(self, event) is not None
         ):
             event.accept()  # before the window's own shortcuts
             return True
         if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent):
             hit = self.scene().hit(self.view.back(QPointF(event.pos())), self.view.scale)
-            QToolTip.showText(event.globalPos(), commands.tip(self, hit), self)
+            QToolTip.showText(event.globalPos(), commands.describe_canvas_hit(self, hit), self)
             return True
         return super().event(event)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        run = commands.for_key(self, event)
+        run = commands.find_key_command(self, event)
         if run is not None:
             run()
         elif event.matches(QKeySequence.StandardKey.Cancel):

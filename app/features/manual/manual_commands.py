@@ -11,9 +11,9 @@ from PySide6.QtGui import QKeyEvent, QKeySequence
 from PySide6.QtWidgets import QMenu
 
 from app.features.manual import manual_many
-from app.features.manual.arranging import arranged
+from app.features.manual.arranging import arrange_nodes
 from app.features.manual.drags.host import ManualHost
-from app.features.manual.manual_painter import facts, words_of
+from app.features.manual.manual_painter import describe_link, facts
 from app.features.manual.manual_scene import ManualHit
 from app.project.load import Load
 from app.translation import tr, tr_phrase, tr_plural
@@ -43,7 +43,7 @@ class Clipboard:
 kept = Clipboard()
 
 
-def remove(canvas: ManualHost) -> None:
+def remove_selected(canvas: ManualHost) -> None:
     s = canvas.session
     count = len(s.selection.states) + len(s.selection.links)
     if count == 1:
@@ -54,33 +54,33 @@ def remove(canvas: ManualHost) -> None:
         text = tr("Remove {count} states", count=count)
     else:
         text = tr("Remove {count} links", count=count)
-    canvas.do(text, lambda p: manual_edits.remove(p, s.selection.states, s.selection.links))
+    canvas.do(text, lambda p: manual_edits.remove_states(p, s.selection.states, s.selection.links))
 
 
 def copy(canvas: ManualHost) -> None:
     """Keep the selected states, or the selected links."""
     s, project = canvas.session, canvas.document.project
     if s.selection.states:
-        kept.piece, kept.links = manual_edits.copied(project, s.selection.states), ()
+        kept.piece, kept.links = manual_edits.copy_states(project, s.selection.states), ()
     elif s.selection.links:
         found = (project.link(i) for i in s.selection.links)
         kept.piece, kept.links = None, tuple(x for x in found if x is not None)
 
 
-def paste(canvas: ManualHost) -> None:
+def paste_here(canvas: ManualHost) -> None:
     """Paste states where the mouse is, settings onto the selected links, or links for the selected states."""
     links, settings = canvas.session.selection.links, kept.settings
     if settings is not None and links:
         canvas.do(tr("Paste link settings"), lambda p: manual_edits.paste_settings(p, links, settings))
     elif kept.links and canvas.session.selection.states:
-        manual_many.paste_links(canvas, kept.links)
+        manual_many.paste_links_on_selected(canvas, kept.links)
     elif kept.piece is not None:
         at = canvas.view.back(canvas.at)
         _paste(canvas, kept.piece, at.x(), at.y(), tr("Paste {states}", states=_states(kept.piece)))
 
 
 def duplicate(canvas: ManualHost) -> None:
-    piece = manual_edits.copied(canvas.document.project, canvas.session.selection.states)
+    piece = manual_edits.copy_states(canvas.document.project, canvas.session.selection.states)
     if piece.states:
         x, y = min(s.x for s in piece.states), min(s.y for s in piece.states)
         _paste(canvas, piece, x + SHIFT, y + SHIFT, tr("Duplicate {states}", states=_states(piece)))
@@ -96,7 +96,7 @@ def _paste(canvas: ManualHost, piece: manual_edits.CopiedPiece, x: float, y: flo
 
     def edit(project: Project) -> Project:
         nonlocal made
-        after, made = manual_edits.paste(project, layer, piece, round(x / 8) * 8, round(y / 8) * 8)
+        after, made = manual_edits.paste_states(project, layer, piece, round(x / 8) * 8, round(y / 8) * 8)
         return after
 
     if canvas.do(words, edit):
@@ -107,16 +107,16 @@ def select_all(canvas: ManualHost) -> None:
     canvas.session.selection.select_states(tuple(canvas.scene().manual.states))
 
 
-def arrange(canvas: ManualHost) -> None:
+def arrange_canvas(canvas: ManualHost) -> None:
     """Put every node where the automatic layout has it, and show all."""
-    layer, places = canvas.session.place.layer, arranged(canvas.scene().manual)
+    layer, places = canvas.session.place.layer, arrange_nodes(canvas.scene().manual)
     canvas.do(tr("Arrange nodes"), lambda p: manual_edits.move_nodes(p, layer, places))
     canvas.session.selection.select_states()
     canvas.fit()
 
 
 def start_here(canvas: ManualHost, state: str) -> None:
-    canvas.do(tr("Start here"), lambda p: manual_edits.set_start(p, state))
+    canvas.do(tr("Start here"), lambda p: manual_edits.set_start_state(p, state))
 
 
 def nudge(canvas: ManualHost, x: float, y: float) -> None:
@@ -135,7 +135,7 @@ def can_paste(canvas: ManualHost) -> bool:
     return kept.piece is not None or links or (bool(kept.links) and bool(canvas.session.selection.states))
 
 
-def for_key(canvas: ManualHost, event: QKeyEvent) -> Run | None:
+def find_key_command(canvas: ManualHost, event: QKeyEvent) -> Run | None:
     """Return what a key does here, None where it is the window's."""
     s = canvas.session
     control = event.modifiers() == Qt.KeyboardModifier.ControlModifier
@@ -151,9 +151,9 @@ def for_key(canvas: ManualHost, event: QKeyEvent) -> Run | None:
     if event.key() == Qt.Key.Key_D and control:  # on X11 also a key to delete
         return lambda: duplicate(canvas)
     for standard, run in (
-        (Standard.Delete, remove),
+        (Standard.Delete, remove_selected),
         (Standard.Copy, copy),
-        (Standard.Paste, paste),
+        (Standard.Paste, paste_here),
         (Standard.SelectAll, select_all),
     ):
         if event.matches(standard):
@@ -162,7 +162,7 @@ def for_key(canvas: ManualHost, event: QKeyEvent) -> Run | None:
     if event.key() == Qt.Key.Key_F and plain:
         return canvas.fit
     if event.key() == Qt.Key.Key_Backspace and plain:
-        return lambda: remove(canvas)
+        return lambda: remove_selected(canvas)
     arrow = {
         Qt.Key.Key_Left: (-1, 0),
         Qt.Key.Key_Right: (1, 0),
@@ -176,7 +176,7 @@ def for_key(canvas: ManualHost, event: QKeyEvent) -> Run | None:
     return None
 
 
-def fill(out: QMenu, canvas: ManualHost, hit: ManualHit) -> None:
+def fill_canvas_menu(out: QMenu, canvas: ManualHost, hit: ManualHit) -> None:
     """Fill a menu with what can be done with what is under the mouse; it is selected, unless it is
     already.
     """
@@ -212,18 +212,18 @@ def fill(out: QMenu, canvas: ManualHost, hit: ManualHit) -> None:
         add(tr("Select links to here"), lambda: manual_many.select_links(canvas, True), "I")
         out.addSeparator()
         if kept.links:
-            add(tr("Paste links"), lambda: paste(canvas), "Ctrl+V")
+            add(tr("Paste links"), lambda: paste_here(canvas), "Ctrl+V")
         add(tr("Copy"), lambda: copy(canvas), "Ctrl+C")
         add(tr("Duplicate"), lambda: duplicate(canvas), "Ctrl+D")
-        add(tr("Remove"), lambda: remove(canvas), "Del")
+        add(tr("Remove"), lambda: remove_selected(canvas), "Del")
     elif hit.area == "link":
         add(tr("Play link"), lambda: s.show_context(hit.ident))
         out.addSeparator()
         add(tr("Copy"), lambda: copy(canvas), "Ctrl+C")
-        add(tr("Paste settings"), lambda: paste(canvas), "Ctrl+V", kept.settings is not None)
-        add(tr("Remove"), lambda: remove(canvas), "Del")
+        add(tr("Paste settings"), lambda: paste_here(canvas), "Ctrl+V", kept.settings is not None)
+        add(tr("Remove"), lambda: remove_selected(canvas), "Del")
     elif not node:
-        add(tr("Paste"), lambda: paste(canvas), "Ctrl+V", kept.piece is not None)
+        add(tr("Paste"), lambda: paste_here(canvas), "Ctrl+V", kept.piece is not None)
         add(tr("Select all"), lambda: select_all(canvas), "Ctrl+A")
         out.addSeparator()
         chosen = bool(s.selection.states)
@@ -238,7 +238,7 @@ def fill(out: QMenu, canvas: ManualHost, hit: ManualHit) -> None:
         )
         add(tr("Copy links as a table"), lambda: manual_many.copy_table(canvas), enabled=there)
         out.addSeparator()
-        add(tr("Arrange nodes"), lambda: arrange(canvas), enabled=bool(canvas.scene().manual.states))
+        add(tr("Arrange nodes"), lambda: arrange_canvas(canvas), enabled=bool(canvas.scene().manual.states))
         add(tr("Show all"), lambda: _show_all(canvas), "F")
 
 
@@ -247,8 +247,11 @@ def _fill_alias(canvas: ManualHost, add: Callable[..., None], alias: str, chosen
     add(tr("Select its states"), lambda: manual_many.select_members(canvas, alias))
     if chosen:
         count = tr_plural("{count:,} selected state", "{count:,} selected states", len(chosen))
-        add(tr("Add {count}", count=count), lambda: manual_many.choose(canvas, alias, chosen))
-        add(tr("Take away {count}", count=count), lambda: manual_many.choose(canvas, alias, chosen, False))
+        add(tr("Add {count}", count=count), lambda: manual_many.choose_for_alias(canvas, alias, chosen))
+        add(
+            tr("Take away {count}", count=count),
+            lambda: manual_many.choose_for_alias(canvas, alias, chosen, False),
+        )
 
 
 def _show_all(canvas: ManualHost) -> None:
@@ -258,7 +261,7 @@ def _show_all(canvas: ManualHost) -> None:
 
 def drop_words(project: Project, load: Load) -> tuple[bool, str]:
     """Return whether a drop makes states, and what it does or why not."""
-    why = manual_edits.refusal(project, load.clips) if load.clips else None
+    why = manual_edits.find_state_refusal(project, load.clips) if load.clips else None
     words = tr_phrase(why or "") or (
         tr("drop to make {count} states here", count=load.count)
         if load.count > 1
@@ -267,7 +270,7 @@ def drop_words(project: Project, load: Load) -> tuple[bool, str]:
     return why is None, words[:1].upper() + words[1:]
 
 
-def tip(canvas: ManualHost, hit: ManualHit) -> str:
+def describe_canvas_hit(canvas: ManualHost, hit: ManualHit) -> str:
     """Return what to say about what is under the mouse."""
     manual = canvas.scene().manual
     trouble = canvas.troubles.get(hit.ident, "")
@@ -294,20 +297,20 @@ def tip(canvas: ManualHost, hit: ManualHit) -> str:
         return "\n".join(x for x in (state.name, facts(canvas.document.project, state), trouble, help_) if x)
     if hit.area == "link" and hit.ident in manual.links:
         link = manual.links[hit.ident]
-        begins = tr("Any state") if link.source == ANY else manual_edits.name_of(manual, link.source)
-        ends = f"{begins} → {manual_edits.name_of(manual, link.target)}"
+        begins = tr("Any state") if link.source == ANY else manual_edits.manual_name(manual, link.source)
+        ends = f"{begins} → {manual_edits.manual_name(manual, link.target)}"
         when = (
             tr("on request: ")
             if link.condition.when == "request"
             else tr("when finished ")
-            if not words_of(link)
+            if not describe_link(link)
             else tr("at ")
         )
         return "\n".join(
             x
             for x in (
                 ends,
-                f"{when}{words_of(link)}".strip(),
+                f"{when}{describe_link(link)}".strip(),
                 tr("blends for {blend:g} s", blend=link.blend),
                 trouble,
             )

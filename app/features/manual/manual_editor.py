@@ -12,10 +12,10 @@ from app.features.manual import manual_many
 from app.features.manual.manual_canvas import ManualCanvas
 from app.features.manual.manual_inspector import Inspector
 from app.translation import tr, tr_noop, tr_phrase, tr_plural
-from app.widgets.form_fields import Chooser
+from app.widgets.form_fields import QuietChooser
 from app.widgets.making import make_widget
 from metagraph.graph.model import Project
-from metagraph.graph.name_search import fits
+from metagraph.graph.name_search import matches_search
 from metagraph.graph.problem import Problem
 
 FIND = tr_noop("Select the states whose names hold these words (/): sit wave, sit -wave, sit | stand")
@@ -43,14 +43,14 @@ class ManualEditor(QWidget):
             tr("Draw links from a spreadsheet: from, to, when, trigger, weight, exit, blend"),
         )
         self.table.clicked.connect(self._choose_table)
-        self.trigger = Chooser(self, toolTip=tr("A trigger that links of this layer wait for"))
+        self.trigger = QuietChooser(self, toolTip=tr("A trigger that links of this layer wait for"))
         self.trigger.setMinimumWidth(110)
         self.fire = _button(
             self, tr("Fire"), tr("Fire it now: the machine goes there over the shortest way of links")
         )
         self.fire.clicked.connect(self._fire)
         self.arrange = _button(self, tr("Arrange"), tr("Put the nodes in columns, from the start on"))
-        self.arrange.clicked.connect(lambda: commands.arrange(canvas))
+        self.arrange.clicked.connect(lambda: commands.arrange_canvas(canvas))
         self.fit = _button(self, tr("Show all"), tr("Show what is selected, or all (F)"))
         self.fit.clicked.connect(canvas.fit)
         layout = QVBoxLayout(self)
@@ -108,8 +108,8 @@ class ManualEditor(QWidget):
     def _find(self, text: str) -> None:
         """Select the states whose names fit, or where none does the aliases."""
         manual = self.canvas.scene().manual
-        states = tuple(i for i, s in manual.states.items() if fits(text, s.name))
-        aliases = tuple(i for i, a in manual.aliases.items() if fits(text, a.name))
+        states = tuple(i for i, s in manual.states.items() if matches_search(text, s.name))
+        aliases = tuple(i for i, a in manual.aliases.items() if matches_search(text, a.name))
         self.session.selection.select_states(states or aliases)
 
     def _begin_finding(self) -> None:

@@ -9,7 +9,7 @@ from PySide6.QtCore import QPointF
 
 from app.project.importing import Importing
 from app.shell.actions import Command
-from app.shell.command_table import Condition, Feature, all_of, any_of, clips_selected, not_
+from app.shell.command_table import Condition, Feature, all_met, any_met, has_clips_selected, not_met
 from app.shell.context import Shell
 from app.shell.verbs import Verb, Verbs
 from app.stage.problem_watch import ProblemWatch
@@ -49,7 +49,7 @@ class ManualFeature(Feature):
         return editor
 
     def tell_scrolled(self) -> None:
-        if manual_shown(self):  # hidden, it follows the layer, too
+        if is_manual_shown(self):  # hidden, it follows the layer, too
             self.shell.stage.scrolled.emit()
 
     def place_imported(self, result: Imported, place: object) -> None:
@@ -59,11 +59,11 @@ class ManualFeature(Feature):
             self.editor.canvas.place(load.clips, place)
 
     def take_focus(self) -> None:
-        if manual_shown(self):
+        if is_manual_shown(self):
             self.editor.canvas.setFocus()
 
     def toggle(self) -> None:
-        self.session.set_mode("meta" if manual_shown(self) else "manual")
+        self.session.set_mode("meta" if is_manual_shown(self) else "manual")
 
     def rename(self) -> None:
         self.shell.show("inspector")
@@ -83,29 +83,29 @@ class ManualFeature(Feature):
             self.shell.services[Verbs].offer(verb, partial(applies, self), do, rank=1)
 
 
-def manual_shown(feature: Feature) -> bool:
+def is_manual_shown(feature: Feature) -> bool:
     return feature.session.onstage.mode == "manual"
 
 
-def states_selected(feature: Feature) -> bool:
+def has_states_selected(feature: Feature) -> bool:
     return bool(feature.session.selection.states)
 
 
-def one_state_selected(feature: Feature) -> bool:
+def has_one_state_selected(feature: Feature) -> bool:
     return len(feature.session.selection.states) == 1
 
 
-def links_selected(feature: Feature) -> bool:
+def has_links_selected(feature: Feature) -> bool:
     return bool(feature.session.selection.links)
 
 
-drawn = all_of(manual_shown, any_of(states_selected, links_selected))
+drawn = all_met(is_manual_shown, any_met(has_states_selected, has_links_selected))
 VERBS: dict[Verb, Condition] = {
-    "remove": all_of(drawn, not_(clips_selected)),  # a clip of the library is the library's to remove
+    "remove": all_met(drawn, not_met(has_clips_selected)),  # a clip of the library is the library's to remove
     "copy": drawn,
-    "paste": manual_shown,
-    "select_all": manual_shown,
-    "rename": all_of(manual_shown, one_state_selected),
+    "paste": is_manual_shown,
+    "select_all": is_manual_shown,
+    "rename": all_met(is_manual_shown, has_one_state_selected),
 }
 COMMANDS = (
     Command(
@@ -114,7 +114,7 @@ COMMANDS = (
         "author",
         tr_noop("&Manual state machine"),
         ManualFeature.toggle,
-        checked=manual_shown,
+        checked=is_manual_shown,
         tip=tr_noop("Draw states and links one by one, as in the engines' editors"),
     ),
 )

@@ -29,10 +29,10 @@ from app.features.manual.manual_canvas import ManualCanvas
 from app.features.manual.manual_mask import StateMask
 from app.look.domain_words import LAYER_LONG_TITLES
 from app.look.theme import theme
-from app.stage.performance import Performance
-from app.translation import tr, tr_plural, translated
+from app.stage.performance import StagePerformance
+from app.translation import lazy_texts, tr, tr_plural
 from app.widgets.choice_row import LimbRow
-from app.widgets.form_fields import MIXED, Chooser, Field, Mixed, Seconds, common
+from app.widgets.form_fields import MIXED, Field, Mixed, QuietChooser, Seconds, common_value
 from app.widgets.making import make_widget
 from app.widgets.restyling import set_sheet
 from metagraph.graph.manual import edits as manual_edits
@@ -40,13 +40,15 @@ from metagraph.graph.manual.machine import Link, State
 from metagraph.graph.model import LIMBS, Project
 from metagraph.playback.manual_playback import action_of
 
-WHEN = translated(lambda: ((tr("when its source has finished"), "finished"), (tr("on request"), "request")))
+WHEN = lazy_texts(lambda: ((tr("when its source has finished"), "finished"), (tr("on request"), "request")))
 
 
 class Inspector(QScrollArea):
     """Every control writes through one edit; what is shown is read back from the project."""
 
-    def __init__(self, canvas: ManualCanvas, performance: Performance, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, canvas: ManualCanvas, performance: StagePerformance, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
         self.canvas, self.performance = canvas, performance
         self.document, self.session = canvas.document, canvas.session
@@ -88,9 +90,11 @@ class Inspector(QScrollArea):
         self.words.setProperty("dim", True)
         box.addWidget(self.title)
         box.addWidget(self.words)
-        self.start = Chooser(page, toolTip=tr("The state this layer begins in"))
+        self.start = QuietChooser(page, toolTip=tr("The state this layer begins in"))
         self.start.activated.connect(
-            lambda n: self._try(tr("Start here"), lambda p: manual_edits.set_start(p, self.start.itemData(n)))
+            lambda n: self._try(
+                tr("Start here"), lambda p: manual_edits.set_start_state(p, self.start.itemData(n))
+            )
         )
         form.addRow(tr("Begins in"), self.start)
         box.addLayout(form)
@@ -158,7 +162,7 @@ class Inspector(QScrollArea):
         self.ends.setProperty("title", True)
         box.addWidget(self.ends)
         box.addLayout(form)
-        self.when = Chooser(page, toolTip=tr("When the link is taken"))
+        self.when = QuietChooser(page, toolTip=tr("When the link is taken"))
         self.when.activated.connect(
             lambda n: self._link(tr("Change condition"), condition={"when": WHEN[n][1]})
         )
@@ -202,7 +206,7 @@ class Inspector(QScrollArea):
         )
         self.copy.clicked.connect(self._copy)
         self.paste = QPushButton(tr("Paste settings"), page)
-        self.paste.clicked.connect(lambda: commands.paste(self.canvas))
+        self.paste.clicked.connect(lambda: commands.paste_here(self.canvas))
         box.addWidget(_row(page, self.copy, self.paste))
         self.group.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         for button in (self.fire, self.play, self.copy, self.paste, self.begin, self.alone):
@@ -292,14 +296,14 @@ class Inspector(QScrollArea):
             if len(clips) == 1
             else tr("play {clips}", clips=tr_plural("{count:,} clip", "{count:,} clips", len(clips)))
         )
-        loop = common([s.loop for s in states])
+        loop = common_value([s.loop for s in states])
         self.loop.setTristate(loop is Mixed)
         self.loop.setCheckState(_check(loop))
         spans = [project.span(action_of(s)) for s in states]
-        self.first.show_value(common([round(a, 4) for a, _ in spans]))
-        self.last.show_value(common([round(b, 4) for _, b in spans]))
-        self.limb.show_limb(common([s.limb for s in states]))
-        masks = common([(s.joints, s.joint_weights) for s in states])
+        self.first.show_value(common_value([round(a, 4) for a, _ in spans]))
+        self.last.show_value(common_value([round(b, 4) for _, b in spans]))
+        self.limb.show_limb(common_value([s.limb for s in states]))
+        masks = common_value([(s.joints, s.joint_weights) for s in states])
         self.joints.setText(tr(MIXED) if masks is Mixed else _moved(*masks))
         self.joints.setEnabled(project.skeleton is not None)
         self.layer.setText(tr(first.layer))
@@ -315,15 +319,15 @@ class Inspector(QScrollArea):
         begins = escape(source.name) if source else tr("Any state")
         names = f"{begins} → {escape(target.name) if target else '?'}"
         self.ends.setText(names if one else tr_plural("{count:,} link", "{count:,} links", len(links)))
-        when = common([x.condition.when for x in links])
+        when = common_value([x.condition.when for x in links])
         self.when.show_entries(WHEN, None if when is Mixed else when, tr(MIXED))
-        trigger = common([x.condition.trigger for x in links])
+        trigger = common_value([x.condition.trigger for x in links])
         self.trigger.show_text(tr(MIXED) if trigger is Mixed else trigger, tuple(x.id for x in links))
         self.form.setRowVisible(self.trigger, when != "finished")
         self.form.setRowVisible(self.weight, when != "request")
-        self.weight.show_value(common([x.condition.weight for x in links]))
+        self.weight.show_value(common_value([x.condition.weight for x in links]))
         self.exit.show_links(links)
-        self.blend.show_value(common([x.blend for x in links]))
+        self.blend.show_value(common_value([x.blend for x in links]))
         self.fire.setVisible(one and when == "request")
         self.play.setEnabled(one)
         self.paste.setEnabled(len(commands.kept.links) == 1)
@@ -380,7 +384,7 @@ class Inspector(QScrollArea):
 
     def _retrigger(self) -> None:
         links, words = self.links(), self.trigger.text()
-        mixed = bool(links) and common([x.condition.trigger for x in links]) is Mixed
+        mixed = bool(links) and common_value([x.condition.trigger for x in links]) is Mixed
         if links and not (mixed and words == tr(MIXED)) and any(x.condition.trigger != words for x in links):
             self._link(tr("Change trigger"), condition={"trigger": words})
 

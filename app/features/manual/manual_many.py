@@ -19,7 +19,7 @@ TABLES = tr_noop("Tables (*.csv *.tsv *.txt)")
 SUFFIXES = (".csv", ".tsv")
 
 
-def is_table(path: Path) -> bool:
+def is_link_table(path: Path) -> bool:
     """Whether a file is a table of a machine's links, by its name; recordings of faces are none."""
     return path.suffix.lower() in SUFFIXES and not is_face_recording(path)
 
@@ -40,18 +40,18 @@ def select_members(canvas: ManualHost, alias: str) -> None:
     canvas.session.selection.select_states(manual.members(manual.aliases[alias]))
 
 
-def choose(canvas: ManualHost, alias: str, states: tuple[str, ...], on: bool = True) -> None:
+def choose_for_alias(canvas: ManualHost, alias: str, states: tuple[str, ...], on: bool = True) -> None:
     """Let an alias stand for states as well, or no longer; they stay selected."""
     kept = canvas.session.selection.states
     words = tr("Add to alias") if on else tr("Take from alias")
-    if canvas.do(words, lambda p: manual_groups.choose(p, alias, states, on)):
+    if canvas.do(words, lambda p: manual_groups.set_alias_states(p, alias, states, on)):
         canvas.session.selection.select_states(kept)
 
 
 def select_links(canvas: ManualHost, into: bool) -> None:
     """Select the links that leave the selected nodes, or lead to them."""
     manual, chosen = canvas.scene().manual, canvas.session.selection.states
-    found = manual_groups.links_of(manual, chosen, into)
+    found = manual_groups.find_links(manual, chosen, into)
     if found:
         canvas.session.selection.select_states((), found)
     else:
@@ -60,10 +60,10 @@ def select_links(canvas: ManualHost, into: bool) -> None:
         )
 
 
-def paste_links(canvas: ManualHost, links: tuple[Link, ...]) -> None:
+def paste_links_on_selected(canvas: ManualHost, links: tuple[Link, ...]) -> None:
     """Draw copied links for the selected states instead."""
     layer, nodes = canvas.session.place.layer, canvas.session.selection.states
-    canvas.do_links(tr("Paste links"), lambda p: manual_groups.paste_links(p, layer, links, nodes))
+    canvas.do_links(tr("Paste links"), lambda p: manual_groups.paste_copied_links(p, layer, links, nodes))
 
 
 # --- tables
@@ -72,7 +72,7 @@ def paste_links(canvas: ManualHost, links: tuple[Link, ...]) -> None:
 def import_table(canvas: ManualHost, path: Path) -> None:
     """Draw the links of a table; say what could not be read."""
     try:
-        rows = manual_table.read_table(path)
+        rows = manual_table.read_manual_table(path)
     except FileError as error:
         canvas.refuse(tr_error(error))
         return
@@ -82,7 +82,7 @@ def import_table(canvas: ManualHost, path: Path) -> None:
 def paste_table(canvas: ManualHost) -> None:
     """Draw the links of the table that was copied in a spreadsheet."""
     try:
-        rows = manual_table.rows_of(QApplication.clipboard().text())
+        rows = manual_table.parse_manual_table(QApplication.clipboard().text())
     except ValueError as error:
         canvas.refuse(
             tr(
@@ -103,7 +103,7 @@ def has_table() -> bool:
 
 def copy_table(canvas: ManualHost) -> None:
     """Copy every link of the layer as a table."""
-    QApplication.clipboard().setText(manual_table.table_of(canvas.scene().manual))
+    QApplication.clipboard().setText(manual_table.machine_as_table(canvas.scene().manual))
 
 
 def choose_table(canvas: ManualHost, parent: QWidget, start: str) -> None:
@@ -112,20 +112,20 @@ def choose_table(canvas: ManualHost, parent: QWidget, start: str) -> None:
         import_table(canvas, Path(name))
 
 
-def _fill(canvas: ManualHost, rows: list[manual_table.Row], name: str) -> None:
+def _fill(canvas: ManualHost, rows: list[manual_table.TableRow], name: str) -> None:
     layer = canvas.session.place.layer
     told: list[manual_table.Filled] = []
 
     def edit(project: Project) -> Project:
-        told[:] = [manual_table.filled(project, layer, rows)]
+        told[:] = [manual_table.fill_machine(project, layer, rows)]
         return told[0].project
 
     canvas.do_links(tr("Import links from {name}", name=name), edit)
     for out in told:
-        canvas.refuse(words(out, name))
+        canvas.refuse(describe_table_result(out, name))
 
 
-def words(out: manual_table.Filled, name: str) -> str:
+def describe_table_result(out: manual_table.Filled, name: str) -> str:
     """Say what came of a table, and of its rows that could not be read the first."""
     said = tr(
         "{links} drawn from {name}",

@@ -10,7 +10,7 @@ from PySide6.QtGui import QColor, QPainter, QPen
 
 from app.features.manual import manual_painter as painter
 from app.features.manual.manual_scene import ManualHit
-from app.stage.playback_source import Shown
+from app.stage.playback_source import ShownPlayback
 from app.translation import tr, tr_noop
 from metagraph.graph.model import Layer
 from metagraph.playback.manual_playback import clip_seconds
@@ -20,7 +20,7 @@ EMPTY = tr_noop("Drop clips here to make states. Drag from a state's border to d
 
 
 @dataclass(frozen=True)
-class Marks:
+class ManualMarks:
     """dragged: nodes that are, and where they stand now. source, end, target: of a link that is being drawn,
     no source for none. sources: all that it is drawn from.
 
@@ -42,7 +42,7 @@ class Marks:
     map_place: QRectF
 
 
-def plays(shown: Shown, layer: Layer, seconds: float) -> tuple[str, float]:
+def find_playing_state(shown: ShownPlayback, layer: Layer, seconds: float) -> tuple[str, float]:
     """Return which state of a layer plays, "" for none, and how far it is, 0..1."""
     of = shown.manual.layers.get(layer) if shown.manual is not None else None
     turn = of.at(seconds) if of is not None else None
@@ -54,7 +54,7 @@ def plays(shown: Shown, layer: Layer, seconds: float) -> tuple[str, float]:
     )
 
 
-def paint_over(p: QPainter, look: painter.ManualLook, marks: Marks, rect: QRectF) -> None:
+def paint_over(p: QPainter, look: painter.ManualLook, marks: ManualMarks, rect: QRectF) -> None:
     """Paint what changes under the mouse. rect: the widget."""
     links = look.scene.manual.links
     dim, strong = QColor(look.theme.dim), QColor(look.theme.text)
@@ -86,7 +86,7 @@ def paint_over(p: QPainter, look: painter.ManualLook, marks: Marks, rect: QRectF
         p.drawText(rect.adjusted(20, 20, -20, -20), where, marks.dropping or tr(EMPTY))
 
 
-def _nodes(p: QPainter, look: painter.ManualLook, marks: Marks) -> None:
+def _nodes(p: QPainter, look: painter.ManualLook, marks: ManualMarks) -> None:
     over = {marks.hover.ident} if marks.hover.area in ("node", "edge") else set()
     for ident in dict.fromkeys((*marks.dragged, *look.states, *over, marks.source, marks.target)):
         if ident in look.scene.nodes:

@@ -14,7 +14,7 @@ from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPen, QPixmap, QPolygonF
 
 from app.features.manual.manual_scene import LOOP, ManualScene, ManualView
-from app.look.theme import Theme
+from app.look.theme import WindowTheme
 from app.translation import tr, tr_plural
 from metagraph.graph.manual.machine import ANY, Alias, Link, State
 from metagraph.graph.model import Project
@@ -31,7 +31,7 @@ class ManualLook:
     -> words.
     """
 
-    theme: Theme
+    theme: WindowTheme
     project: Project
     scene: ManualScene
     view: ManualView
@@ -59,7 +59,7 @@ def paint_still(
 
 
 @lru_cache(maxsize=256)
-def mixed(a: str, b: str, part: float) -> QColor:
+def mix_colors(a: str, b: str, part: float) -> QColor:
     """Return a colour on the way from one to another."""
     x, y = QColor(a), QColor(b)
     return QColor(
@@ -76,7 +76,7 @@ def _grid(painter: QPainter, look: ManualLook, rect: QRectF) -> None:
         step *= 4
     if step < 9:
         return
-    painter.setPen(QPen(mixed(look.theme.ground, look.theme.line, 0.28), 0))
+    painter.setPen(QPen(mix_colors(look.theme.ground, look.theme.line, 0.28), 0))
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, False)
     origin = look.view.to(QPointF(0, 0))
     lines = [
@@ -97,7 +97,7 @@ def _arrows(painter: QPainter, look: ManualLook, rect: QRectF, gone: Collection[
     count = int(keep.sum())
     smooth = not fast or count < 300
     # Not see-through: lines that are mixed with what is under them take twenty times as long.
-    color = mixed(look.theme.ground, look.theme.dim, max(0.36, min(0.92, 130 / max(1, count))))
+    color = mix_colors(look.theme.ground, look.theme.dim, max(0.36, min(0.92, 130 / max(1, count))))
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, smooth)
     for waits in (False, True):
         some = lines[keep & (scene.requests == waits)]
@@ -111,7 +111,7 @@ def _arrows(painter: QPainter, look: ManualLook, rect: QRectF, gone: Collection[
         if ident not in gone:
             _loop(painter, view, circle, color, 1.3)
     if view.scale >= HEADS and not (fast and count > 300):
-        color = mixed(look.theme.ground, look.theme.dim, max(0.5, min(0.92, 130 / max(1, count))))
+        color = mix_colors(look.theme.ground, look.theme.dim, max(0.5, min(0.92, 130 / max(1, count))))
         _heads(painter, lines[keep], color, min(1.0, max(0.55, view.scale)) * 9)
     if count <= LABELS and view.scale >= SMALL:
         for link, row in zip(scene.straight, lines, strict=True):
@@ -179,7 +179,7 @@ def paint_arrow(painter: QPainter, a: QPointF, b: QPointF, color: QColor, width:
     _heads(painter, np.array([[a.x(), a.y(), b.x(), b.y()]]), color, min(1.0, max(0.7, scale)) * 11)
 
 
-def words_of(link: Link) -> str:
+def describe_link(link: Link) -> str:
     """Say in a few words when a link is taken."""
     at = f"{link.exit_time:g} s" if link.exit_time is not None else ""
     if not at and link.exit_part is not None and (link.exit_part < 1 or link.condition.when == "request"):
@@ -188,7 +188,7 @@ def words_of(link: Link) -> str:
 
 
 def _label(painter: QPainter, look: ManualLook, link: Link, color: QColor | None = None) -> None:
-    words = words_of(link)
+    words = describe_link(link)
     trouble = link.id in look.troubles
     if not words and not trouble:
         return

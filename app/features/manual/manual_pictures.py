@@ -7,16 +7,16 @@ from PySide6.QtGui import QPixmap
 
 from app.features.manual.manual_painter import SMALL
 from app.features.manual.manual_scene import NODE, ManualScene, ManualView
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.stage.thumbnails import Thumbnails
 
 
-class Pictures:
+class ManualPictures:
     """count: how many were forgotten or come so far, so that whoever keeps a painting knows when it is
     old.
     """
 
-    def __init__(self, thumbnails: Thumbnails, session: Session) -> None:
+    def __init__(self, thumbnails: Thumbnails, session: StageSession) -> None:
         self.thumbnails, self.session = thumbnails, session
         self.count = 0
         self._kept: dict[tuple[str, str, int], QPixmap] = {}

@@ -58,7 +58,7 @@ class ManualView:
         return ManualView(self.scale, self.x - by.x() / self.scale, self.y - by.y() / self.scale)
 
 
-def fitted(rect: QRectF, size: QSizeF, most: float = 1.0) -> ManualView:
+def fit_view(rect: QRectF, size: QSizeF, most: float = 1.0) -> ManualView:
     """Return the view that shows all of `rect`, as large as it goes but `most`."""
     wide, high = rect.width() + 2 * MARGIN, rect.height() + 2 * MARGIN
     scale = min(most, max(0.08, min(size.width() / max(wide, 1), size.height() / max(high, 1))))
@@ -109,7 +109,7 @@ class ManualScene:
         """Return what is seen of a machine not looked at yet: all of it, or where the first clips go."""
         if not self.manual.states:
             return ManualView(1.0, self.manual.any_x - 50, self.manual.any_y - 120)
-        return fitted(self.bounds, size)
+        return fit_view(self.bounds, size)
 
     @cached_property
     def straight(self) -> tuple[Link, ...]:

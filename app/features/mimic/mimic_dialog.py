@@ -24,14 +24,14 @@ from PySide6.QtWidgets import (
 )
 
 from app.look.theme import strengthen
-from app.project.jobs import Job
+from app.project.jobs import WindowJob
 from app.translation import tr, tr_error, tr_noop, tr_plural
 from metagraph.formats.keypoints.reader import read_keypoints
 from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.requests import Performance
-from metagraph.mimicry.keypoint_layouts import Keypoints
-from metagraph.mimicry.performing import REST, Mimicry, mimic_performance, placed
+from metagraph.mimicry.keypoint_layouts import KeypointTrack
+from metagraph.mimicry.performing import REST, Mimicry, mimic_performance, place_requests
 
 if TYPE_CHECKING:
     from app.shell.context import Shell
@@ -46,7 +46,7 @@ class MimicDialog(QDialog):
     one.
     """
 
-    def __init__(self, shell: Shell, keypoints: Keypoints, name: str) -> None:
+    def __init__(self, shell: Shell, keypoints: KeypointTrack, name: str) -> None:
         super().__init__(shell.widget)
         self.shell, self.keypoints, self.name = shell, keypoints, name
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
@@ -135,7 +135,7 @@ class MimicDialog(QDialog):
         mirror, gaze = self.mirror.isChecked(), self.gaze.isChecked()
         layers = [layer for layer, box in self.layers.items() if box.isChecked()]
 
-        def work(job: Job) -> Mimicry:
+        def work(job: WindowJob) -> Mimicry:
             def tell(done: int, total: int) -> None:
                 job.tell(done, total, name)
                 if job.cancelled:
@@ -162,7 +162,7 @@ def _taken(shell: Shell, found: Mimicry, stage: str | None) -> None:
 
     def edit(project: Project) -> Project:
         nonlocal made
-        timed = placed(project, found.performance)
+        timed = place_requests(project, found.performance)
         if stage is not None and stage in project.performances:
             there = {ask.id for ask in project.performances[stage].asks}
             asks = (*project.performances[stage].asks, *(ask for ask in timed.asks if ask.id not in there))
@@ -206,7 +206,7 @@ def open_keypoints(shell: Shell, path: str | Path | None = None) -> None:
         QSettings().setValue("mimic/folder", str(Path(path).parent))
     file = recording_of(Path(path))
 
-    def show(keypoints: Keypoints) -> None:
+    def show(keypoints: KeypointTrack) -> None:
         MimicDialog(shell, keypoints, file.name).open()
 
     def failed(error: Exception) -> None:

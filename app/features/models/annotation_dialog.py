@@ -29,18 +29,31 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.models.meaning_choices import ChoiceTable, Entries, MeaningRow
-from app.look.plural import listed
+from app.look.plural import list_in_words
 from app.look.theme import KIND_MARKS, strengthen, theme
-from app.project.annotation_reading import Reading, begin, into, told
+from app.project.annotation_reading import (
+    AnnotationReading,
+    begin_reading,
+    describe_doubts,
+    work_into_project,
+)
 from app.project.document import Document
-from app.stage.session import Session
-from app.translation import group_thousands, tr, tr_error, tr_noop, tr_plural, translated
-from app.widgets.act_strip import Strip, clock
+from app.stage.session import StageSession
+from app.translation import group_thousands, lazy_texts, tr, tr_error, tr_noop, tr_plural
+from app.widgets.act_strip import ActStrip, format_clock
 from app.widgets.form_fields import Seconds
 from app.widgets.making import make_widget
 from metagraph.formats.elan import read_elan
 from metagraph.graph.model import LAYERS, Layer
-from metagraph.playback.learning.annotation import IGNORE, PHASES, ROLES, SPEECH, Annotation, Label, parted
+from metagraph.playback.learning.annotation import (
+    IGNORE,
+    PHASES,
+    ROLES,
+    SPEECH,
+    Annotation,
+    Label,
+    split_meaning,
+)
 from metagraph.playback.learning.learn import Act
 
 if TYPE_CHECKING:
@@ -52,10 +65,10 @@ MOST = 1000  # labels that can be said otherwise; those beyond are rare
 REMEMBERED = 400  # tiers and labels that are kept for the next project
 WORTH = 10  # acts from which a model is learned unless said otherwise
 OTHER = "other"
-LEGEND = translated(
+LEGEND = lazy_texts(
     lambda: (("gesture", tr("gesture")), ("fidget", tr("fidget")), ("transition", tr("change of stance")))
 )
-ROLE_TIPS = translated(
+ROLE_TIPS = lazy_texts(
     lambda: {
         "left arm": tr("What the left arm does: gestures, fidgets, changes of stance"),
         "right arm": tr("What the right arm does: gestures, fidgets, changes of stance"),
@@ -77,10 +90,10 @@ ROLE_TITLES = (
     tr_noop("Partner's speech"),
     tr_noop("Ignore"),
 )  # beside layers, as they are shown
-ROLE_ENTRIES: Entries = translated(
+ROLE_ENTRIES: Entries = lazy_texts(
     lambda: [(tr(role.capitalize()), role, ROLE_TIPS.get(role, "")) for role in (*ROLES, *SPEECH, IGNORE)]
 )
-MEANING_TIPS = translated(
+MEANING_TIPS = lazy_texts(
     lambda: {
         "stance": tr("The label names the stance that is held: where another begins, the stance changes"),
         **dict.fromkeys(PHASES, tr("A phase of a gesture: phases that follow each other are one gesture")),
@@ -103,7 +116,7 @@ def meaning_entries(meaning: str) -> list[tuple[str, object, str]]:
     if meaning not in known:
         known.insert(3, meaning)
     out: list[tuple[str, object, str]] = [
-        (meaning_words(m), m, MEANING_TIPS.get(parted(m)[0], "")) for m in known
+        (meaning_words(m), m, MEANING_TIPS.get(split_meaning(m)[0], "")) for m in known
     ]
     out.insert(
         -1,
@@ -117,7 +130,7 @@ def meaning_entries(meaning: str) -> list[tuple[str, object, str]]:
 
 
 def meaning_words(meaning: str) -> str:
-    first, tags = parted(meaning)
+    first, tags = split_meaning(meaning)
     if first == IGNORE:
         return tr("Ignore")
     mark = KIND_MARKS["gesture" if first in PHASES else first]
@@ -131,7 +144,12 @@ class AnnotateDialog(QDialog):
     imported = Signal(object, object)
 
     def __init__(
-        self, document: Document, session: Session, reading: Reading, name: str, parent: QWidget | None = None
+        self,
+        document: Document,
+        session: StageSession,
+        reading: AnnotationReading,
+        name: str,
+        parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.name, self.reading = document, session, name, reading
@@ -157,7 +175,7 @@ class AnnotateDialog(QDialog):
         read = sorted({t.whose for t in annotation.tiers if t.whose and self.reading.roles[t.name] != IGNORE})
         count = sum(len(t.intervals) for t in annotation.tiers)
         facts = [
-            clock(round(annotation.end, 1)),
+            format_clock(round(annotation.end, 1)),
             tr_plural("{count:,} tier", "{count:,} tiers", len(annotation.tiers)),
             tr_plural("{count:,} interval", "{count:,} intervals", count),
         ]
@@ -166,7 +184,7 @@ class AnnotateDialog(QDialog):
                 tr(
                     "{people} people, {names} of them read: another's tiers can be chosen instead",
                     people=len(people),
-                    names=listed(read) or tr("none"),
+                    names=list_in_words(read) or tr("none"),
                 )
             )
         title = QLabel(self.name, self)
@@ -203,7 +221,7 @@ class AnnotateDialog(QDialog):
         row.addWidget(legend)
         row.addStretch(1)
         layout.addLayout(row)
-        self.strip = Strip(self.session, self)
+        self.strip = ActStrip(self.session, self)
         self.strip.setToolTipDuration(20000)
         layout.addWidget(self.strip, 1)
         self.doubts = QLabel(self, wordWrap=True)
@@ -350,7 +368,7 @@ class AnnotateDialog(QDialog):
         tagged = any(act.tags for acts in seen.values() for act in acts)
         for button in (self.as_shares, self.as_states):
             button.setEnabled(tagged)
-        doubts = told(self.reading)
+        doubts = describe_doubts(self.reading)
         self.doubts.setText("\n".join(doubts[:4]))
         self.doubts.setVisible(bool(doubts))
         self.doubts.setStyleSheet(f"color: {theme(self.session.look.name).warning}")
@@ -376,7 +394,7 @@ class AnnotateDialog(QDialog):
                 self,
                 tr("Tags"),
                 tr("'{label}' is a gesture that is", label=label.text),
-                text=" ".join(parted(label.meaning)[1]),
+                text=" ".join(split_meaning(label.meaning)[1]),
             )
             meaning = (
                 f"gesture {' '.join(words.replace(',', ' ').casefold().split())}".strip()
@@ -391,12 +409,12 @@ class AnnotateDialog(QDialog):
         learned = [layer for layer, box in self.learn.items() if box.isChecked()]
         name = " ".join(self.called.text().split()) if self.keep.isChecked() else None
         tagged = self.as_states.isChecked() and self.as_states.isEnabled()
-        made = into(
+        made = work_into_project(
             self.document.project, self.reading, learned, tagged, name, max(0.0, self.smoothing.value())
         )
         self.document.edit(tr("Import annotation"), lambda _: made.project)
-        keep("tiers", self.reading.roles)
-        keep("labels", made.project.labels)
+        remember_roles("tiers", self.reading.roles)
+        remember_roles("labels", made.project.labels)
         if made.performance is not None:
             self.session.onstage.set_performance(made.performance)
             self.session.transport.show_plan()
@@ -405,7 +423,7 @@ class AnnotateDialog(QDialog):
         super().accept()
 
 
-def recall(what: str) -> dict[str, str]:
+def recall_roles(what: str) -> dict[str, str]:
     """Return what tiers (or labels) were taken for when last an annotation was imported, in any project."""
     try:
         found = json.loads(str(QSettings().value(f"annotation/{what}") or "{}"))
@@ -414,9 +432,9 @@ def recall(what: str) -> dict[str, str]:
     return {str(k): str(v) for k, v in found.items()} if isinstance(found, dict) else {}
 
 
-def keep(what: str, said: Mapping[str, str]) -> None:
+def remember_roles(what: str, said: Mapping[str, str]) -> None:
     """Remember that for the next project; the latest first to stay."""
-    both = {k: v for k, v in recall(what).items() if k not in said} | dict(said)
+    both = {k: v for k, v in recall_roles(what).items() if k not in said} | dict(said)
     QSettings().setValue(f"annotation/{what}", json.dumps(dict(list(both.items())[-REMEMBERED:])))
 
 
@@ -434,14 +452,14 @@ def open_annotation(
     file = SAMPLE if str(path) == "sample" else Path(path)
 
     project = shell.document.project
-    tiers, labels = (project.tiers, recall("tiers")), (project.labels, recall("labels"))
+    tiers, labels = (project.tiers, recall_roles("tiers")), (project.labels, recall_roles("labels"))
 
-    def work(_: object) -> Reading:
-        reading = begin(read_elan(file), *tiers, labels=labels)
+    def work(_: object) -> AnnotationReading:
+        reading = begin_reading(read_elan(file), *tiers, labels=labels)
         _ = reading.observed  # worked out here, not on the window's thread
         return reading
 
-    def show(reading: Reading) -> None:
+    def show(reading: AnnotationReading) -> None:
         dialog = AnnotateDialog(shell.document, shell.stage.session, reading, file.name, shell.widget)
         dialog.imported.connect(lambda observed, kept: _taken(shell, observed, kept))
         dialog.open()

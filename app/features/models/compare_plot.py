@@ -15,10 +15,10 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 from app.features.models.heatmap import SIDES
 from app.features.models.state_names import state_name
 from app.look.theme import KIND_MARKS, theme
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr
 from app.widgets.still_plot import empty_plot, still_plot
-from metagraph.playback.learning.compare import SURE, Comparison, quantiles
+from metagraph.playback.learning.compare import SURE, ModelComparison, quantiles
 from metagraph.playback.learning.learn import State
 
 WIDTH = 0.34  # of a bar; two stand side by side
@@ -26,7 +26,7 @@ TOP = 6.0  # pixels, so that a number at the upper end is whole
 APART = 4.0  # pixels between the words under bars, at least
 
 
-def short(state: State, layer: str) -> str:
+def shorten_state(state: State, layer: str) -> str:
     """Return a state as it stands under a bar: "▲L", "◆LR", "▲+"."""
     limb, kind, tags = state
     return (
@@ -36,7 +36,7 @@ def short(state: State, layer: str) -> str:
     )
 
 
-def verdict(found: Comparison) -> str:
+def describe_model_fit(found: ModelComparison) -> str:
     """Say in a sentence how well a model makes what was seen."""
     layer = found.model.layer
     if found.observed is None:
@@ -59,10 +59,10 @@ def verdict(found: Comparison) -> str:
 
 
 class ComparePlot(QWidget):
-    def __init__(self, session: Session, parent: QWidget | None = None) -> None:
+    def __init__(self, session: StageSession, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.session = session
-        self.found: Comparison | None = None
+        self.found: ModelComparison | None = None
         self.often, self.long = self._plot(), self._plot()
         self.words = QLabel(self, wordWrap=True)
         self.words.setProperty("dim", True)
@@ -97,7 +97,7 @@ class ComparePlot(QWidget):
         plot.scene().sigMouseMoved.connect(lambda at, p=plot: self._hover(p, at))
         return plot
 
-    def show_comparison(self, found: Comparison) -> None:
+    def show_comparison(self, found: ModelComparison) -> None:
         self.found = found
         self._draw()
 
@@ -134,7 +134,7 @@ class ComparePlot(QWidget):
         tallies = [x for x in (found.observed, found.generated) if x is not None]
         tops = [quantiles(x)[-1] for tally in tallies for x in (*tally.lengths, tally.rests) if len(x)]
         self.long.setYRange(0, 1.08 * max(tops, default=1.0), padding=0)
-        self.words.setText(verdict(found))
+        self.words.setText(describe_model_fit(found))
 
     def _name_bars(self) -> None:
         """Write states under their bars; where these stand close without marks, as bars have their
@@ -145,7 +145,7 @@ class ComparePlot(QWidget):
         states, layer = self.found.generated.states, self.found.model.layer
         metrics, rest = QFontMetricsF(self.font()), tr("rest")
         for plot, more in ((self.often, []), (self.long, [rest])):
-            names = [short(state, layer) for state in states]
+            names = [shorten_state(state, layer) for state in states]
             room = plot.plotItem.vb.width() / (1.04 * (len(names) + len(more))) - APART
             if layer == "arms" and max(map(metrics.horizontalAdvance, names)) > room:
                 names = [name[1:] for name in names]
@@ -180,16 +180,16 @@ class ComparePlot(QWidget):
         n = round(plot.plotItem.vb.mapSceneToView(at).x())
         states = self.found.generated.states
         if plot is self.often and 0 <= n < len(states):
-            self.words.setText(often_words(self.found, n))
+            self.words.setText(describe_often(self.found, n))
         elif plot is self.long and 0 <= n <= len(states):
-            self.words.setText(long_words(self.found, n))
+            self.words.setText(describe_long(self.found, n))
 
     def leaveEvent(self, event: object) -> None:
         if self.found is not None:
-            self.words.setText(verdict(self.found))
+            self.words.setText(describe_model_fit(self.found))
 
 
-def often_words(found: Comparison, n: int) -> str:
+def describe_often(found: ModelComparison, n: int) -> str:
     """Say how often a state was seen and made."""
     name = state_name(found.generated.states[n], found.model.layer)
     made = tr(
@@ -206,7 +206,7 @@ def often_words(found: Comparison, n: int) -> str:
     ).replace("%", " %")
 
 
-def long_words(found: Comparison, n: int) -> str:
+def describe_long(found: ModelComparison, n: int) -> str:
     """Say how long a state, or the rest between, lasts: the median, and what four of five lie between."""
     states = found.generated.states
     name = state_name(states[n], found.model.layer) if n < len(states) else tr("rest between actions")

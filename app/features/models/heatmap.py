@@ -20,11 +20,11 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QLineEdit, QWidget
 
-from app.features.models.state_names import a_state, tag_words
-from app.look.theme import KIND_MARKS, Theme, theme
+from app.features.models.state_names import a_state, describe_tag
+from app.look.theme import KIND_MARKS, WindowTheme, theme
 from app.translation import tr
 from metagraph.graph.model import Layer, Markov
-from metagraph.playback.learning.learn import State, states_of
+from metagraph.playback.learning.learn import State, model_states
 
 HEAD = 38.0  # pixels above the columns
 SIDE = 104.0  # left of the rows
@@ -38,7 +38,7 @@ _CORNER = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignBottom
 
 
 @dataclass(frozen=True)
-class Grid:
+class HeatmapGrid:
     """Where the cells are: n rows and columns of `wide` x `high` pixels."""
 
     count: int
@@ -62,11 +62,11 @@ class Grid:
         return row, column
 
 
-def grid(count: int, width: float, height: float) -> Grid:
+def grid(count: int, width: float, height: float) -> HeatmapGrid:
     """Return cells that fill a widget, within what is pleasant to look at."""
     wide = min(92.0, max(40.0, (width - SIDE - 4) / max(1, count)))
     high = min(44.0, max(19.0, (height - HEAD - 4) / max(1, count)))
-    return Grid(count, wide, high)
+    return HeatmapGrid(count, wide, high)
 
 
 def shade(color: QColor, ground: QColor, probability: float) -> QColor:
@@ -112,9 +112,9 @@ def percent(probability: float) -> str:
     return "<1" if probability < 0.005 else f"{probability * 100:.0f}"
 
 
-def sentence(model: Markov, layer: Layer, row: int, column: int) -> str:
+def describe_matrix_cell(model: Markov, layer: Layer, row: int, column: int) -> str:
     """Say a cell: "After a left gesture, a right fidget follows in 13 % of cases."."""
-    states = states_of(model)
+    states = model_states(model)
     p = model.matrix[row][column]
     before = a_state(states[row], layer)
     what = tr("the same") if row == column else a_state(states[column], layer)
@@ -189,7 +189,7 @@ class HeatMap(QWidget):
         n = len(self.model.states) if self.model else 3
         return QSize(round(SIDE + 40 * n + 4), round(HEAD + 19 * n + 4))
 
-    def grid(self) -> Grid:
+    def grid(self) -> HeatmapGrid:
         return grid(len(self.model.states) if self.model else 0, self.width(), self.height())
 
     # --- painting
@@ -197,7 +197,7 @@ class HeatMap(QWidget):
     def paintEvent(self, event: QPaintEvent) -> None:
         if self.model is None:
             return
-        t, cells, states = theme(self.look), self.grid(), states_of(self.model)
+        t, cells, states = theme(self.look), self.grid(), model_states(self.model)
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         lit = self.hovered or (self.current if self.hasFocus() else (-2, -2))
@@ -251,14 +251,16 @@ class HeatMap(QWidget):
         return tr(state[0] if self.layer == "arms" else state[1])
 
     def _row_words(self, state: State, high: float) -> str:
-        tags = tag_words(state) if high >= _TWO_LINES or state[2] not in _SHORT else _SHORT[state[2]]
+        tags = describe_tag(state) if high >= _TWO_LINES or state[2] not in _SHORT else _SHORT[state[2]]
         return (
             f"{self._name(state)} {tags}".strip()
             if high < _TWO_LINES
             else max(self._name(state), tags, key=len)
         )
 
-    def _row_head(self, painter: QPainter, t: Theme, box: QRectF, state: State, n: int, lit: bool) -> None:
+    def _row_head(
+        self, painter: QPainter, t: WindowTheme, box: QRectF, state: State, n: int, lit: bool
+    ) -> None:
         """Paint a state left of its row: its kind's mark in its colour, what tells it from others, tags below
         or behind it.
         """
@@ -279,7 +281,9 @@ class HeatMap(QWidget):
             below = QRectF(box.left() + _GAP, box.center().y() - 3, box.width() - _GAP, box.height() / 2)
             self._tags(painter, t, below, state, n, Qt.AlignmentFlag.AlignLeft)
 
-    def _column_head(self, painter: QPainter, t: Theme, box: QRectF, state: State, n: int, lit: bool) -> None:
+    def _column_head(
+        self, painter: QPainter, t: WindowTheme, box: QRectF, state: State, n: int, lit: bool
+    ) -> None:
         metrics, name = QFontMetricsF(self.font()), self._name(state)
         room = box.width() - _GAP - 2
         if self.layer == "arms":  # all sides short where one has no room
@@ -301,7 +305,7 @@ class HeatMap(QWidget):
             )
 
     def _words(
-        self, painter: QPainter, t: Theme, line: QRectF, state: State, n: int, lit: bool, words: str
+        self, painter: QPainter, t: WindowTheme, line: QRectF, state: State, n: int, lit: bool, words: str
     ) -> None:
         painter.setOpacity(0.45 if n in self.closed else 1.0)
         painter.setFont(self.font())
@@ -312,14 +316,14 @@ class HeatMap(QWidget):
         painter.setOpacity(1.0)
 
     def _tags(
-        self, painter: QPainter, t: Theme, line: QRectF, state: State, n: int, side: Qt.AlignmentFlag
+        self, painter: QPainter, t: WindowTheme, line: QRectF, state: State, n: int, side: Qt.AlignmentFlag
     ) -> None:
         small = QFont(self.font())
         small.setPixelSize(11)
         painter.setOpacity(0.45 if n in self.closed else 1.0)
         painter.setFont(small)
         painter.setPen(QColor(t.dim))
-        told = QFontMetricsF(small).elidedText(tag_words(state), Qt.TextElideMode.ElideRight, line.width())
+        told = QFontMetricsF(small).elidedText(describe_tag(state), Qt.TextElideMode.ElideRight, line.width())
         painter.drawText(line, side | Qt.AlignmentFlag.AlignVCenter, told)
         painter.setOpacity(1.0)
 
@@ -489,12 +493,14 @@ class HeatMap(QWidget):
         if self.model is not None:
             at = self.hovered if self.hovered is not None and self._from is None else self.current
             self.pointed.emit(
-                sentence(self.model, self.layer, *at) if min(at) >= 0 else self._state_sentence(max(at))
+                describe_matrix_cell(self.model, self.layer, *at)
+                if min(at) >= 0
+                else self._state_sentence(max(at))
             )
 
     def _state_sentence(self, n: int) -> str:
         assert self.model is not None
-        words = a_state(states_of(self.model)[n], self.layer)
+        words = a_state(model_states(self.model)[n], self.layer)
         out = words[:1].upper() + words[1:]
         if self.model.lengths:
             mean, deviation = self.model.lengths[n]

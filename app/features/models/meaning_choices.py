@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.look.theme import theme
-from app.stage.session import Session
+from app.stage.session import StageSession
 
 HIGH = 34  # pixels of a row
 _OPENING = (Qt.Key.Key_Return, Qt.Key.Key_Enter, Qt.Key.Key_Space, Qt.Key.Key_F4)
@@ -80,7 +80,7 @@ class ChoiceTable(QTreeWidget):
 
     def __init__(
         self,
-        session: Session,
+        session: StageSession,
         title: str,
         heads: Sequence[str],
         wide: int,

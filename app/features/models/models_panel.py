@@ -30,22 +30,22 @@ from app.features.models.state_names import state_name
 from app.look.theme import KIND_MARKS
 from app.project.document import Document
 from app.project.jobs import Jobs
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr, tr_noop, tr_plural
-from app.widgets.act_strip import Strip
-from app.widgets.form_fields import Chooser, Seconds
+from app.widgets.act_strip import ActStrip
+from app.widgets.form_fields import QuietChooser, Seconds
 from app.widgets.making import make_widget
 from metagraph.graph import edits
 from metagraph.graph.model import LIMBS, Kind, Layer, Limb, Markov, Project
-from metagraph.playback.learning.compare import Comparison, compare, generate
+from metagraph.playback.learning.compare import ModelComparison, compare_model, generate
 from metagraph.playback.learning.learn import (
     Act,
     State,
     acts_of_asks,
-    states_of,
+    model_states,
+    remove_state,
     with_cell,
     with_state,
-    without_state,
 )
 from metagraph.playback.planning.markov import model
 
@@ -68,7 +68,7 @@ class ModelsPanel(QWidget):
     learn_wanted = Signal(str)
 
     def __init__(
-        self, document: Document, session: Session, jobs: Jobs, parent: QWidget | None = None
+        self, document: Document, session: StageSession, jobs: Jobs, parent: QWidget | None = None
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.jobs = document, session, jobs
@@ -109,7 +109,7 @@ class ModelsPanel(QWidget):
             toolTip=tr("Let chance draw other actions from the same model"),
         )
         self.again.clicked.connect(self._another)
-        self.strip = Strip(self.session, self, titles=False)
+        self.strip = ActStrip(self.session, self, titles=False)
         self.strip.setFixedHeight(60)
         bottom.addWidget(self.again)
         bottom.addWidget(self.strip, 1)
@@ -190,7 +190,7 @@ class ModelsPanel(QWidget):
         fields.addStretch(1)
         self.against = QLabel(tr("Compared with"), self)
         fields.addWidget(self.against)
-        self.chooser = Chooser(self, tr("What was seen, beside which the model's making stands"))
+        self.chooser = QuietChooser(self, tr("What was seen, beside which the model's making stands"))
         self.chooser.activated.connect(self._choose)
         fields.addWidget(self.chooser)
         right.addLayout(fields)
@@ -310,10 +310,10 @@ class ModelsPanel(QWidget):
         key = self.chooser.currentData()
         acts = [sources[key][1]] if key in sources else None
         self.jobs.start(
-            "compare", lambda _: compare(shown, acts, HOUR), self._compared, self._failed, quick=True
+            "compare", lambda _: compare_model(shown, acts, HOUR), self._compared, self._failed, quick=True
         )
 
-    def _compared(self, found: Comparison) -> None:
+    def _compared(self, found: ModelComparison) -> None:
         self._busy = False
         if found.model == self.model():
             self.plot.show_comparison(found)
@@ -396,7 +396,7 @@ class ModelsPanel(QWidget):
     def state_menu(self, row: int) -> QMenu:
         """Return the menu of a state: another one, or away with this one. row: -1 for none."""
         menu, shown, layer = QMenu(self), self.model(), self.session.place.layer
-        there = set(states_of(shown))
+        there = set(model_states(shown))
         tags = dict.fromkeys(
             ("", *(tag for _, _, tag in there), *(("positive", "negative") if shown.tags else ()))
         )
@@ -412,10 +412,10 @@ class ModelsPanel(QWidget):
                         add.addAction(words, partial(self._add_state, state))
         add.setEnabled(not add.isEmpty())
         if 0 <= row < len(shown.states) and len(shown.states) > 1:
-            words = state_name(states_of(shown)[row], layer)
+            words = state_name(model_states(shown)[row], layer)
             menu.addAction(
                 tr("Remove {words}", words=words),
-                lambda: self._edit(tr("Remove a state"), lambda m: without_state(m, row)),
+                lambda: self._edit(tr("Remove a state"), lambda m: remove_state(m, row)),
             )
         return menu
 

@@ -22,7 +22,7 @@ STATES = (
 )  # of the arms, which have sides
 
 
-def tag_words(state: State) -> str:
+def describe_tag(state: State) -> str:
     """Return a state's tags: "positive, big"."""
     return ", ".join(tr(tag) for tag in state[2].split())
 
@@ -31,7 +31,7 @@ def state_name(state: State, layer: Layer) -> str:
     """Return a state for people, as `learn.state_words` has it in English."""
     limb, kind, _ = state
     words = tr(f"{limb} {kind}") if layer == "arms" else tr(kind)
-    return ", ".join(filter(None, (words, tag_words(state))))
+    return ", ".join(filter(None, (words, describe_tag(state))))
 
 
 def a_state(state: State, layer: Layer) -> str:

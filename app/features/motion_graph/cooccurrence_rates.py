@@ -22,12 +22,12 @@ from PySide6.QtWidgets import (
 
 from app.look.theme import strengthen
 from app.project.document import Document
-from app.translation import group_thousands, tr, tr_noop, translated
+from app.translation import group_thousands, lazy_texts, tr, tr_noop
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph.conversation.edits import set_rates
 from metagraph.graph.conversation.model import Rates
 
-HEADS = translated(
+HEADS = lazy_texts(
     lambda: (
         tr("What goes together"),
         tr("Matched"),
@@ -55,7 +55,7 @@ def rates_of(rows: Sequence[Any], before: Rates) -> dict[str, float]:
     }
 
 
-class RatesDialog(QDialog):
+class CooccurrenceDialog(QDialog):
     """Shows what was counted, and sets it as the rates of a side of a conversation."""
 
     def __init__(self, document: Document, rows: Sequence[Any], parent: QWidget | None = None) -> None:

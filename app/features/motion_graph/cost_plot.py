@@ -12,7 +12,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.look.theme import theme
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr
 from app.widgets.still_plot import empty_plot, still_plot
 
@@ -23,7 +23,7 @@ BEYOND = 0.995  # share of all costs that the plot shows
 class CostPlot(QWidget):
     """Shows a `synthesis.graph.Threshold`."""
 
-    def __init__(self, session: Session, parent: QWidget | None = None) -> None:
+    def __init__(self, session: StageSession, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.session = session
         self.shown: Any = None

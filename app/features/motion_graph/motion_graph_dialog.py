@@ -20,28 +20,28 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.motion_graph.cooccurrence_rates import RatesDialog
+from app.features.motion_graph.cooccurrence_rates import CooccurrenceDialog
 from app.features.motion_graph.cost_plot import CostPlot
 from app.features.motion_graph.search_options import Wishes
 from app.features.motion_graph.synthesis_jobs import (
     FOLDER,
     LEAST,
     MOST,
+    ChosenTakes,
     FoundMotion,
-    Takes,
+    count_graph_states,
     synthesise,
-    table,
     takes_of,
 )
 from app.features.motion_graph.takes_list import TakesList
 from app.project.document import Document
-from app.project.jobs import Job, Jobs
-from app.project.new_clips import pieces, save
-from app.stage.session import Session
+from app.project.jobs import Jobs, WindowJob
+from app.project.new_clips import cut_into_pieces, save
+from app.stage.session import StageSession
 from app.translation import group_thousands, tr, tr_error, tr_noop, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import DoubleSpinBox, SpinBox
-from metagraph.common.compiling import there
+from metagraph.common.compiling import is_numba_installed
 from metagraph.graph import edits
 from metagraph.graph.conversation.edits import change_side
 from metagraph.graph.model import Project
@@ -57,11 +57,11 @@ LOADING = tr_noop(
 )
 
 
-def fits_words(limit: Any) -> str:
+def describe_fits(limit: Any) -> str:
     """Return what distributions say a transition may cost, the nearest first, and how far off each is."""
-    from metagraph.suggest.jumps.fits import fits
+    from metagraph.suggest.jumps.fits import fit_distributions
 
-    found = fits(limit.costs, limit.level)
+    found = fit_distributions(limit.costs, limit.level)
     rows = "\n".join(
         tr(
             "{name}: {limit:.3g} m, off by {share:.1f} % at most",
@@ -82,7 +82,7 @@ class MotionGraphDialog(QDialog):
     """Stays open beside the window."""
 
     def __init__(
-        self, document: Document, session: Session, jobs: Jobs, parent: QWidget | None = None
+        self, document: Document, session: StageSession, jobs: Jobs, parent: QWidget | None = None
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.jobs = document, session, jobs
@@ -92,8 +92,8 @@ class MotionGraphDialog(QDialog):
         self.states: Any = None  # synthesis.states.States of the chosen takes
         self.limit: Any = None  # synthesis.graph.Threshold
         self.graph: Any = None  # synthesis.graph.MotionGraph, None until it is built for what is chosen now
-        self.takes = Takes((), (), ())
-        self._job: Job | None = None
+        self.takes = ChosenTakes((), (), ())
+        self._job: WindowJob | None = None
         self._for: tuple[str, int] | None = None  # the side that is to move with what is found
         self._counted: Any = None  # the takes and the level that the table is of
         self._long = QTimer(self, singleShot=True, interval=LONG)
@@ -244,11 +244,11 @@ class MotionGraphDialog(QDialog):
             self._show_limit(None)
             return
 
-        def work(_: Job) -> Any:
+        def work(_: WindowJob) -> Any:
             from metagraph.synthesis.graph import threshold
-            from metagraph.synthesis.states import states_of
+            from metagraph.synthesis.states import read_states
 
-            states = known[1] if known is not None else states_of(takes.clips)
+            states = known[1] if known is not None else read_states(takes.clips)
             return takes.clips, states, threshold(states, k, level)
 
         self.jobs.start(tr("Comparing frames"), work, self._compared, self._incomparable, quick=True)
@@ -287,7 +287,7 @@ class MotionGraphDialog(QDialog):
         )
         off = abs(limit.limit - limit.observed) / max(limit.observed, 1e-9)
         beside = tr(" ({off:.0%} off)", off=off).replace("%", " %") if off > 0.05 else ""
-        self.words.setToolTip(fits_words(limit))
+        self.words.setToolTip(describe_fits(limit))
         self.words.setText(
             tr(
                 "{fitted} {limit:.3g} m, summed over joints. Dotted: the costs themselves say "
@@ -322,7 +322,7 @@ class MotionGraphDialog(QDialog):
     def _explain(self) -> None:
         """Say why it takes so long, if it does."""
         if self._job is not None and not self.said.text():
-            self.said.setText(tr(WAIT) if there() else tr(LOADING))
+            self.said.setText(tr(WAIT) if is_numba_installed() else tr(LOADING))
 
     def _ended(self) -> None:
         self._job = None
@@ -356,7 +356,7 @@ class MotionGraphDialog(QDialog):
         self._counted = (takes.clips, self.level.value())
         self._start(
             tr("Motion graphs"),
-            lambda job: table(takes, KS, level, job.tell, lambda: job.cancelled),
+            lambda job: count_graph_states(takes, KS, level, job.tell, lambda: job.cancelled),
             self._show_table,
         )
 
@@ -382,8 +382,8 @@ class MotionGraphDialog(QDialog):
             )
             return
 
-        def work(_: Job) -> Any:
-            from metagraph.synthesis.cooccurrence import table as counted
+        def work(_: WindowJob) -> Any:
+            from metagraph.synthesis.cooccurrence import count_cooccurrence as counted
 
             told = [n for n, speech in enumerate(takes.speech) if speech]
             return counted([takes.clips[n] for n in told], [takes.speech[n] for n in told])
@@ -391,7 +391,7 @@ class MotionGraphDialog(QDialog):
         self._start(tr("Counting movements"), work, self._show_rates)
 
     def _show_rates(self, rows: Any) -> None:
-        RatesDialog(self.document, rows, self).open()
+        CooccurrenceDialog(self.document, rows, self).open()
 
     # --- new motion
 
@@ -421,15 +421,15 @@ class MotionGraphDialog(QDialog):
             {e.name for e in self.document.project.clips.values()},
         )
 
-        def work(job: Job) -> Any:
-            from metagraph.synthesis.constraints import changes
-            from metagraph.synthesis.graph import build
+        def work(job: WindowJob) -> Any:
+            from metagraph.synthesis.constraints import find_change_states
+            from metagraph.synthesis.graph import build_graph
             from metagraph.synthesis.states import key_states
 
             made = graph
             if made is None:
-                keys = key_states(states, changes=changes(states, takes.speech))
-                made = build(states, limit, keys, progress=job.tell, cancelled=lambda: job.cancelled)
+                keys = key_states(states, changes=find_change_states(states, takes.speech))
+                made = build_graph(states, limit, keys, progress=job.tell, cancelled=lambda: job.cancelled)
             found = synthesise(made, takes, wish, name, lambda: job.cancelled, folder)
             return made, found, () if job.cancelled else save([found.clip], folder, FOLDER, taken)
 
@@ -493,16 +493,18 @@ class MotionGraphDialog(QDialog):
             return
         taken = {e.name for e in project.clips.values()}
 
-        def work(job: Job) -> Any:
+        def work(job: WindowJob) -> Any:
             from metagraph.synthesis.cut import candidates
             from metagraph.synthesis.graph import threshold
-            from metagraph.synthesis.states import states_of
+            from metagraph.synthesis.states import read_states
 
-            limit = threshold(states_of(clips), k, level).limit
+            limit = threshold(read_states(clips), k, level).limit
             cuts = []
             for n, clip in enumerate(clips):
                 job.tell(n, len(clips))
-                cuts += pieces(clip, [(start, end) for start, end, _ in candidates(clip, limit, LEAST, MOST)])
+                cuts += cut_into_pieces(
+                    clip, [(start, end) for start, end, _ in candidates(clip, limit, LEAST, MOST)]
+                )
             return save(cuts, folder, FOLDER, taken) if cuts and not job.cancelled else ()
 
         self._start(tr("Cutting takes"), work, self._cut)

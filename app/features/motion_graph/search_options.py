@@ -18,16 +18,16 @@ from PySide6.QtWidgets import (
 
 from app.features.motion_graph.soft_wishes import SoftWishes
 from app.features.motion_graph.synthesis_jobs import Wish
-from app.features.motion_graph.takes_list import side_words
+from app.features.motion_graph.takes_list import describe_side
 from app.look.theme import strengthen
 from app.project.document import Document
-from app.translation import tr, translated
+from app.translation import lazy_texts, tr
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
-from metagraph.graph.conversation.model import SOUNDS, Segment, Side, Sound, heard_by
+from metagraph.graph.conversation.model import SOUNDS, Segment, Side, Sound, segments_heard_by
 
 WINDOW = 15.0  # seconds, as in the paper's evaluation
-KINDS: tuple[tuple[Sound, str], ...] = translated(
+KINDS: tuple[tuple[Sound, str], ...] = lazy_texts(
     lambda: (
         ("clause", tr("Clauses")),
         ("response", tr("Responses")),
@@ -151,7 +151,7 @@ class Wishes(QFrame):
         self.speech.addItem(tr("no speech"), None)
         for ident, talk in self.document.project.conversations.items():
             for n in range(2):
-                self.speech.addItem(side_words(talk, n), (ident, n))
+                self.speech.addItem(describe_side(talk, n), (ident, n))
                 if chosen == (ident, n) or (first and self.speech.count() == 2):
                     self.speech.setCurrentIndex(self.speech.count() - 1)
         self._limits()
@@ -189,10 +189,10 @@ class Wishes(QFrame):
         if chosen is not None:
             talk = self.document.project.conversations[chosen[0]]
             seconds = min(seconds, max(1.0, talk.length - start))
-            from metagraph.research.motion_graph.search_evaluation import cut
+            from metagraph.research.motion_graph.search_evaluation import cut_segments
 
-            whole, side = heard_by(talk, chosen[1]), talk.sides[chosen[1]]
-            segments = tuple(cut(whole, start, seconds))
+            whole, side = segments_heard_by(talk, chosen[1]), talk.sides[chosen[1]]
+            segments = tuple(cut_segments(whole, start, seconds))
         return Wish(
             seconds,
             segments,

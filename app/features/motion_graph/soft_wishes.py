@@ -104,7 +104,9 @@ class SoftWishes(QWidget):
         )
 
 
-def spoken(side: Side | None, segments: Sequence[Segment], folder: Path | None, wish: SoftWish) -> SpokenTake:
+def read_side_prosody(
+    side: Side | None, segments: Sequence[Segment], folder: Path | None, wish: SoftWish
+) -> SpokenTake:
     """Return what is known of the speech a side moves with, and of its sound where the wish needs that. side:
     None where nobody knows. folder: of the project. Raises FileError.
     """

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from app.features.motion_graph.soft_wishes import spoken
+from app.features.motion_graph.soft_wishes import read_side_prosody
 from app.translation import tr, tr_plural
-from metagraph.graph.conversation.model import SOUNDS, Segment, Side, Sound, heard_by
+from metagraph.graph.conversation.model import SOUNDS, Segment, Side, Sound, segments_heard_by
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 
@@ -30,7 +30,7 @@ LEAST, MOST = 1.0, 8.0  # seconds of clips cut from takes
 
 
 @dataclass(frozen=True, eq=False)
-class Takes:
+class ChosenTakes:
     """clips: those with motion, of one skeleton. ids: theirs. speech: what was heard during each, none where
     nobody knows. sides: of the conversation each was recorded along with.
     """
@@ -50,7 +50,7 @@ class Takes:
         return any(self.speech)
 
 
-def usable(project: Project) -> list[str]:
+def list_usable_clips(project: Project) -> list[str]:
     """Return the clips that can be takes: with motion, of the project's skeleton, more than one frame; the
     longest first.
     """
@@ -62,7 +62,7 @@ def usable(project: Project) -> list[str]:
     return [e.id for e in sorted(fitting, key=lambda e: (-e.duration, e.name))]
 
 
-def speech_of(project: Project, clip: str) -> tuple[str, int] | None:
+def find_recorded_side(project: Project, clip: str) -> tuple[str, int] | None:
     """Return the conversation and side that were recorded along with a clip."""
     return next(
         ((i, n) for i, c in project.conversations.items() for n, s in enumerate(c.sides) if s.take == clip),
@@ -70,7 +70,7 @@ def speech_of(project: Project, clip: str) -> tuple[str, int] | None:
     )
 
 
-def left_out(project: Project) -> str:
+def describe_unusable_clips(project: Project) -> str:
     """Return which clips cannot be takes, and why, in words; "" where all can."""
     moving = [e for e in project.clips.values() if e.motion is not None]
     alike = [e for e in moving if e.motion is not None and e.motion.skeleton == project.skeleton]
@@ -86,7 +86,7 @@ def left_out(project: Project) -> str:
     return tr("Left out: {told}.", told=", ".join(told)) if told else ""
 
 
-def during(heard: Sequence[Segment], seconds: float) -> tuple[Segment, ...]:
+def cut_to_take(heard: Sequence[Segment], seconds: float) -> tuple[Segment, ...]:
     """Return what was heard while a take lasted: what goes on after its end is cut there."""
     out = []
     for s in heard:
@@ -96,16 +96,18 @@ def during(heard: Sequence[Segment], seconds: float) -> tuple[Segment, ...]:
     return tuple(out)
 
 
-def takes_of(project: Project, ids: Collection[str]) -> Takes:
+def takes_of(project: Project, ids: Collection[str]) -> ChosenTakes:
     """Return the chosen clips as takes; those without motion are left out."""
-    found = [i for i in usable(project) if i in ids]
+    found = [i for i in list_usable_clips(project) if i in ids]
     speech, sides = [], []
     for ident in found:
-        recorded = speech_of(project, ident)
-        heard = heard_by(project.conversations[recorded[0]], recorded[1]) if recorded is not None else ()
-        speech.append(during(heard, project.clips[ident].duration))
+        recorded = find_recorded_side(project, ident)
+        heard = (
+            segments_heard_by(project.conversations[recorded[0]], recorded[1]) if recorded is not None else ()
+        )
+        speech.append(cut_to_take(heard, project.clips[ident].duration))
         sides.append(project.conversations[recorded[0]].sides[recorded[1]] if recorded is not None else None)
-    return Takes(
+    return ChosenTakes(
         tuple(found),
         tuple(m for i in found if (m := project.clips[i].motion) is not None),
         tuple(speech),
@@ -178,7 +180,7 @@ class FoundMotion:
 
 def synthesise(
     graph: Any,
-    takes: Takes,
+    takes: ChosenTakes,
     wish: Wish,
     name: str,
     cancelled: Callable[[], bool] | None = None,
@@ -189,12 +191,12 @@ def synthesise(
     FileError where a sound that is needed cannot be read.
     """
     from metagraph.synthesis.assemble import assemble
-    from metagraph.synthesis.constraints import heard
+    from metagraph.synthesis.constraints import find_heard_at
     from metagraph.synthesis.search.path_quality import quality
-    from metagraph.synthesis.search.relaxing import Constraints, Searching, answer
+    from metagraph.synthesis.search.relaxing import Constraints, Searching, answer_speech
     from metagraph.synthesis.soft_constraints import NOTHING, SoftMaterial, soft_report
 
-    said = heard(graph.states, takes.speech)
+    said = find_heard_at(graph.states, takes.speech)
     # Takes nobody annotated went with anything.
     use = wish.use if takes.told else ()
     asked = Constraints(wish.tolerance, use, wish.peaks and takes.told, wish.edges)
@@ -203,13 +205,13 @@ def synthesise(
     soft = NOTHING
     if wish.soft is not None and wish.soft.asks and wish.side is not None:
         theirs = [
-            spoken(side, speech, folder, wish.soft)
+            read_side_prosody(side, speech, folder, wish.soft)
             for side, speech in zip(takes.sides, takes.speech, strict=True)
         ]
         material = SoftMaterial(wish.soft, graph.states, takes.clips, theirs, graph.threshold.limit)
-        new = spoken(wish.side, wish.whole, folder, wish.soft)
+        new = read_side_prosody(wish.side, wish.whole, folder, wish.soft)
         soft = material.constraints(new, wish.start, wish.seconds, wish.tolerance)
-    found = answer(graph, said, wish.segments, wish.seconds, asked, searching, cancelled, soft)
+    found = answer_speech(graph, said, wish.segments, wish.seconds, asked, searching, cancelled, soft)
     took, path = time.perf_counter() - began, found.path
     made = assemble(graph.states, takes.clips, path, name, retiming=found.retiming)
     beside = soft_report(soft, graph.states, path, found.retiming).told()
@@ -217,8 +219,8 @@ def synthesise(
     return FoundMotion(made, path.cost, len(path.jumps), took, looks, found.words(), beside)
 
 
-def table(
-    takes: Takes,
+def count_graph_states(
+    takes: ChosenTakes,
     ks: Sequence[int],
     level: float,
     progress: Callable[[int, int], None],
@@ -227,19 +229,19 @@ def table(
     """Return for each k: states, transitions, then both after the states were removed that lead nowhere (the
     paper's table 2).
     """
-    from metagraph.synthesis.constraints import changes
-    from metagraph.synthesis.graph import build, threshold
-    from metagraph.synthesis.states import key_states, states_of
+    from metagraph.synthesis.constraints import find_change_states
+    from metagraph.synthesis.graph import build_graph, threshold
+    from metagraph.synthesis.states import key_states, read_states
 
-    states = states_of(takes.clips)
-    keys = key_states(states, changes=changes(states, takes.speech))
+    states = read_states(takes.clips)
+    keys = key_states(states, changes=find_change_states(states, takes.speech))
     out = {}
     for n, k in enumerate(ks):
         progress(n, len(ks))
         limit = threshold(states, k, level)
-        whole = build(states, limit, keys, connected=False, cancelled=cancelled)
+        whole = build_graph(states, limit, keys, connected=False, cancelled=cancelled)
         try:
-            kept = build(states, limit, keys, cancelled=cancelled).size
+            kept = build_graph(states, limit, keys, cancelled=cancelled).size
         except ValueError:  # nothing is left of it
             kept = (0, 0)
         out[k] = (*whole.size, *kept)

@@ -17,7 +17,13 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.motion_graph.synthesis_jobs import FOLDER, LONG, left_out, speech_of, usable
+from app.features.motion_graph.synthesis_jobs import (
+    FOLDER,
+    LONG,
+    describe_unusable_clips,
+    find_recorded_side,
+    list_usable_clips,
+)
 from app.project.document import Document
 from app.translation import tr, tr_noop
 from metagraph.graph.conversation.edits import change_side
@@ -90,8 +96,8 @@ class TakesList(QWidget):
     def fill(self) -> None:
         """List the clips that can be takes; the long ones are chosen, all where none is long."""
         project, chosen = self.document.project, set(self.chosen())
-        found = usable(project)
-        self.note.setText(left_out(project))
+        found = list_usable_clips(project)
+        self.note.setText(describe_unusable_clips(project))
         self.note.setVisible(bool(self.note.text()))
         if not self.list.rowCount():
             recorded = [i for i in found if not project.clips[i].path.startswith(f"{FOLDER}/")]
@@ -117,11 +123,11 @@ class TakesList(QWidget):
 
     def _heard(self, project: Project, clip: str) -> QTableWidgetItem:
         """Say which side of which conversation was recorded along with a clip; a click asks for another."""
-        recorded = speech_of(project, clip)
+        recorded = find_recorded_side(project, clip)
         words = tr(NONE)
         if recorded is not None:
             talk = project.conversations[recorded[0]]
-            words = side_words(talk, recorded[1])
+            words = describe_side(talk, recorded[1])
         item = QTableWidgetItem(f"{words}  ▾" if project.conversations else words)
         tip = tr("Click to say whose side of which conversation was recorded along with it")
         item.setToolTip(f"{item.text()}\n{tip}")
@@ -133,10 +139,10 @@ class TakesList(QWidget):
         if column != HEARD or not project.conversations:
             return
         clip = self._clip(row)
-        now = speech_of(project, clip)
+        now = find_recorded_side(project, clip)
         self.menu.clear()
         sides = [
-            ((ident, n), side_words(talk, n))
+            ((ident, n), describe_side(talk, n))
             for ident, talk in project.conversations.items()
             for n in range(len(talk.sides))
         ]
@@ -179,6 +185,6 @@ class TakesList(QWidget):
         return [self._clip(row) for row in rows] or self.chosen()
 
 
-def side_words(talk: Conversation, side: int) -> str:
+def describe_side(talk: Conversation, side: int) -> str:
     """Return a side of a conversation in words."""
     return f"{talk.name}: {talk.sides[side].name or tr('speaker {number}', number=side + 1)}"

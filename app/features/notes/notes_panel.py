@@ -5,9 +5,9 @@ from __future__ import annotations
 from PySide6.QtGui import QFocusEvent
 from PySide6.QtWidgets import QPlainTextEdit, QVBoxLayout, QWidget
 
-from app.look.names import plain
+from app.look.names import plain_action_name
 from app.project.document import Document
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr
 from app.widgets.sentence import OneLine
 from metagraph.graph.editing.marks import mark, mark_of
@@ -34,7 +34,7 @@ class NotesPanel(QWidget):
     the action or the clip whose note is shown, or `PROJECT`.
     """
 
-    def __init__(self, document: Document, session: Session, parent: QWidget | None = None) -> None:
+    def __init__(self, document: Document, session: StageSession, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.document, self.session = document, session
         self.about = PROJECT
@@ -61,7 +61,9 @@ class NotesPanel(QWidget):
         if about != self.about:
             self.finish()
             self.about = about
-        self.title.say(tr("On {name}", name=plain(found.name)) if found is not None else tr("On the project"))
+        self.title.say(
+            tr("On {name}", name=plain_action_name(found.name)) if found is not None else tr("On the project")
+        )
         self.text.setPlaceholderText(
             tr("What is to be done, or to be known, about this character")
             if found is None

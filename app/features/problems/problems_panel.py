@@ -40,7 +40,7 @@ from PySide6.QtWidgets import (
 from app.look import icons
 from app.look.theme import theme
 from app.stage.fixes import Fix
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr, tr_noop, tr_phrase, tr_plural
 from metagraph.graph.problem import Problem
 
@@ -140,7 +140,7 @@ class ProblemsPanel(QWidget):
 
     mend_wanted = Signal(object)
 
-    def __init__(self, session: Session, parent: QWidget | None = None) -> None:
+    def __init__(self, session: StageSession, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.session = session
         self.problems: tuple[Problem, ...] = ()

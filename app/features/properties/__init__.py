@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.shell.actions import Command
 from app.shell.context import Contribution, Panel, Shell
-from app.shell.places import Places
+from app.shell.places import PanelPlaces
 from app.shell.verbs import Verbs
 from app.stage.compatibility_state import Compatibility
 from app.stage.problem_watch import ProblemWatch
@@ -28,7 +28,7 @@ def contribute(shell: Shell) -> Contribution:
     def make() -> QWidget:
         from app.features.properties.properties_panel import PropertiesPanel
 
-        places = shell.services[Places]
+        places = shell.services[PanelPlaces]
 
         def furnish(page: ActionPage) -> None:
             problems.changed.connect(lambda: page.set_misfits(problems.misfits))

@@ -21,17 +21,17 @@ from app.features.properties.timing_plot import TimingPlot
 from app.features.properties.variation_rows import ActionRows
 from app.look.theme import KIND_MARKS, KIND_TITLES, theme
 from app.project.document import Document
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr, tr_plural
 from app.widgets.choice_row import LimbRow
-from app.widgets.form_fields import MIXED, Chooser, Field, Mixed, Seconds, common
+from app.widgets.form_fields import MIXED, Field, Mixed, QuietChooser, Seconds, common_value
 from app.widgets.halves import Halves
 from app.widgets.making import make_widget
 from app.widgets.restyling import set_sheet
-from app.widgets.vocabulary import titled
+from app.widgets.vocabulary import vocabulary_title
 from metagraph.graph import edits
 from metagraph.graph.model import LIMBS, Action
-from metagraph.playback.timing.handles import retimed
+from metagraph.playback.timing.handles import set_timing_field
 
 
 class ActionPage(Halves):
@@ -39,7 +39,7 @@ class ActionPage(Halves):
 
     time_wanted = Signal()
 
-    def __init__(self, document: Document, session: Session, edit: Edit, parent: QWidget) -> None:
+    def __init__(self, document: Document, session: StageSession, edit: Edit, parent: QWidget) -> None:
         first, second = QWidget(parent), QWidget(parent)
         super().__init__(first, second, parent)
         self.document, self.session, self.edit = document, session, edit
@@ -125,10 +125,10 @@ class ActionPage(Halves):
         self.form.addRow(tr("Likelihood"), self.likelihood)
         self.variation = ActionRows(self.form, page)
         self.variation.changed.connect(lambda text, fields: self._set(text, **fields))
-        self.stance = Chooser(page, toolTip=tr("The stance it starts from"))
+        self.stance = QuietChooser(page, toolTip=tr("The stance it starts from"))
         self.stance.activated.connect(self._restance)
         self.form.addRow(tr("Stance"), self.stance)
-        self.ends = Chooser(page, toolTip=tr("The stance it ends in"))
+        self.ends = QuietChooser(page, toolTip=tr("The stance it ends in"))
         self.ends.activated.connect(self._reend)
         self.form.addRow(tr("Ends in"), self.ends)
         self.joints = make_widget(QPushButton, page, toolTip=tr("Let it move only some joints"))
@@ -142,14 +142,14 @@ class ActionPage(Halves):
             return
         project, t = self.document.project, theme(self.session.look.name)
         one = len(actions) == 1
-        kind, layer = common([a.kind for a in actions]), common([a.layer for a in actions])
+        kind, layer = common_value([a.kind for a in actions]), common_value([a.layer for a in actions])
         self.name.setReadOnly(not one)
         of = tuple(a.id for a in actions)
         self.name.show_text(
             actions[0].name if one else tr_plural("{count:,} action", "{count:,} actions", len(actions)), of
         )
         title = f"{KIND_MARKS[kind]} {tr(KIND_TITLES[kind])}" if kind is not Mixed else tr("Mixed kinds")
-        self.kind.setText(f"{title} · {titled(layer) if layer is not Mixed else tr('layers')}")
+        self.kind.setText(f"{title} · {vocabulary_title(layer) if layer is not Mixed else tr('layers')}")
         set_sheet(self.kind, f"color: {t.kinds[kind]}" if kind is not Mixed else "")
         self.plot.setVisible(one)
         self.plot.set_curves(not self.low)
@@ -157,18 +157,18 @@ class ActionPage(Halves):
         if one:
             self.plot.show_action(actions[0])
         spans = [project.span(a) for a in actions]
-        self.start.show_value(common([s for s, _ in spans]))
-        self.end.show_value(common([e for _, e in spans]))
-        self.blend_in.show_value(common([a.timing.blend_in for a in actions]))
-        self.blend_out.show_value(common([a.timing.blend_out for a in actions]))
+        self.start.show_value(common_value([s for s, _ in spans]))
+        self.end.show_value(common_value([e for _, e in spans]))
+        self.blend_in.show_value(common_value([a.timing.blend_in for a in actions]))
+        self.blend_out.show_value(common_value([a.timing.blend_out for a in actions]))
         stance = kind == "stance"
         blend_title = self.form.labelForField(self.blend_row)
         if isinstance(blend_title, QLabel):
             blend_title.setText(tr("Blend at seam") if stance else tr("Blend in, out"))
         self.blend_out.setVisible(not stance)
         self.form.setRowVisible(self.leave_row, not stance)
-        exits = common([a.timing.earliest_exit for a in actions])
-        leaves = common([a.timing.earliest_exit is not None for a in actions])
+        exits = common_value([a.timing.earliest_exit for a in actions])
+        leaves = common_value([a.timing.earliest_exit is not None for a in actions])
         self.leave.blockSignals(True)
         self.leave.setTristate(leaves is Mixed)
         state = Qt.CheckState
@@ -180,14 +180,14 @@ class ActionPage(Halves):
         self.earliest.show_value(0.0 if exits is None else exits)
         arms = layer == "arms" and not stance
         self.form.setRowVisible(self.limb, arms)
-        self.limb.show_limb(common([a.limb for a in actions]))
-        tags = common([a.tags for a in actions])
+        self.limb.show_limb(common_value([a.limb for a in actions]))
+        tags = common_value([a.tags for a in actions])
         self.tags.show_text("" if tags is Mixed else ", ".join(tags), of)
         self.tags.setPlaceholderText(tr(MIXED) if tags is Mixed else tr("positive, greeting, …"))
-        self.likelihood.show_value(common([a.likelihood for a in actions]))
+        self.likelihood.show_value(common_value([a.likelihood for a in actions]))
         self.variation.show_actions(project, actions)
         self._fill_stances(actions, kind)
-        masks = common([(a.joints, a.joint_weights) for a in actions])
+        masks = common_value([(a.joints, a.joint_weights) for a in actions])
         self.joints.setText(tr(MIXED) if masks is Mixed else _moved(*masks))
         self.joints.setEnabled(project.skeleton is not None)
         self._show_trouble()
@@ -206,13 +206,13 @@ class ActionPage(Halves):
 
     def _fill_stances(self, actions: Sequence[Action], kind: Any) -> None:
         project = self.document.project
-        layer = common([a.layer for a in actions])
+        layer = common_value([a.layer for a in actions])
         stances = project.graphs[layer].stances.values() if layer is not Mixed else ()
         for box, values in (
             (self.stance, [a.stance for a in actions]),
             (self.ends, [a.end_stance for a in actions]),
         ):
-            shared = common(values)
+            shared = common_value(values)
             box.show_entries(
                 [(s.name, s.id) for s in stances], shared, tr(MIXED) if shared is Mixed else tr("choose one")
             )
@@ -228,7 +228,7 @@ class ActionPage(Halves):
             self.show_actions(self.session.selection.selected_actions())
             return
         chosen = self.session.selection.actions
-        self.edit(tr("Change timing"), lambda p: retimed(p, chosen, field, value))
+        self.edit(tr("Change timing"), lambda p: set_timing_field(p, chosen, field, value))
         self.show_actions(self.session.selection.selected_actions())  # what was out of the clip was clamped
 
     def _leave(self) -> None:
@@ -257,7 +257,7 @@ class ActionPage(Halves):
     def _retag(self) -> None:
         actions = self.session.selection.selected_actions()
         tags = tuple(dict.fromkeys(w.strip().lower() for w in self.tags.text().split(",") if w.strip()))
-        mixed = actions and common([a.tags for a in actions]) is Mixed
+        mixed = actions and common_value([a.tags for a in actions]) is Mixed
         if actions and not (mixed and not tags) and any(a.tags != tags for a in actions):
             self._set(tr("Change tags"), tags=tags)
 

@@ -11,13 +11,13 @@ from PySide6.QtWidgets import QLabel, QWidget
 from app.features.properties.page_form import page_box
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr, tr_plural
-from app.widgets.vocabulary import word
+from app.widgets.vocabulary import vocabulary_word
 
 
 class ClipPage(QWidget):
-    def __init__(self, document: Document, session: Session, parent: QWidget) -> None:
+    def __init__(self, document: Document, session: StageSession, parent: QWidget) -> None:
         super().__init__(parent)
         self.document, self.session = document, session
         box = page_box(self)
@@ -66,9 +66,9 @@ class ClipPage(QWidget):
             where = escape(
                 tr(
                     "{kind} of {stance}, {layer}",
-                    kind=word(action.kind),
+                    kind=vocabulary_word(action.kind),
                     stance=stance.name if stance else "?",
-                    layer=word(action.layer),
+                    layer=vocabulary_word(action.layer),
                 )
             )
             lines.append(

@@ -12,12 +12,12 @@ from PySide6.QtCore import QEvent, QPointF, Qt
 from PySide6.QtGui import QColor, QHelpEvent
 from PySide6.QtWidgets import QToolTip, QWidget
 
-from app.look.theme import Theme
+from app.look.theme import WindowTheme
 from app.translation import tr, tr_phrase
 from metagraph.graph.model import Action, Project
 
 if TYPE_CHECKING:
-    from metagraph.suggest.jumps.seen_jumps import Seen
+    from metagraph.suggest.jumps.seen_jumps import SeenJumps
 
 HEIGHT = 58
 TOP = 2.4  # of what shows as a jump; more is cut off
@@ -29,7 +29,7 @@ class JumpStrip(pg.PlotWidget):
 
     def __init__(self, parent: QWidget, above: pg.PlotWidget) -> None:
         super().__init__(parent)
-        self.seen: Seen | None = None
+        self.seen: SeenJumps | None = None
         self.subject: tuple[Project, Action] | None = None
         self.setMenuEnabled(False)
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
@@ -56,7 +56,7 @@ class JumpStrip(pg.PlotWidget):
         self.plotItem.vb.sigResized.connect(lambda _: self._put_words())
         self.plotItem.vb.sigXRangeChanged.connect(lambda *_: self._put_words())
 
-    def restyle(self, t: Theme, color: QColor) -> None:
+    def restyle(self, t: WindowTheme, color: QColor) -> None:
         if self._look == (t.name, color):
             return
         self._look = t.name, QColor(color)
@@ -75,7 +75,7 @@ class JumpStrip(pg.PlotWidget):
         for edge in self.edges:
             edge.setPen(pg.mkPen(t.text, width=1.4))
 
-    def show_seen(self, project: Project, action: Action, seen: Seen | None) -> None:
+    def show_seen(self, project: Project, action: Action, seen: SeenJumps | None) -> None:
         """Show an action's curves, or nothing."""
         self.seen, self.subject = seen, (project, action)
         if seen is None:

@@ -9,17 +9,17 @@ from PySide6.QtWidgets import QFrame, QLabel, QWidget
 from app.features.properties.page_form import Edit, form_in, page_box
 from app.features.properties.variation_rows import PlannerRows
 from app.project.document import Document
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr
-from app.widgets.form_fields import Chooser, Seconds
-from app.widgets.vocabulary import titled, word
+from app.widgets.form_fields import QuietChooser, Seconds
+from app.widgets.vocabulary import vocabulary_title, vocabulary_word
 from metagraph.graph import edits
 from metagraph.graph.model import PARTS, REACH
 from metagraph.graph.words import Part
 
 
 class LayerPage(QWidget):
-    def __init__(self, document: Document, session: Session, edit: Edit, parent: QWidget) -> None:
+    def __init__(self, document: Document, session: StageSession, edit: Edit, parent: QWidget) -> None:
         super().__init__(parent)
         self.document, self.session, self.edit = document, session, edit
         box = page_box(self)
@@ -41,14 +41,17 @@ class LayerPage(QWidget):
         for part in PARTS:
             field = Seconds(
                 self,
-                tr("Weight on the {part}: 0 not at all, 1 as in the clip, 2 twice as much", part=word(part)),
+                tr(
+                    "Weight on the {part}: 0 not at all, 1 as in the clip, 2 twice as much",
+                    part=vocabulary_word(part),
+                ),
                 2,
                 "",
                 0.1,
             )
             field.valueChanged.connect(lambda v, p=part: self._weigh(p, v))
             self.weights[part] = field
-            form.addRow(titled(part), field)
+            form.addRow(vocabulary_title(part), field)
         line = QFrame(self, frameShape=QFrame.Shape.HLine)
         line.setStyleSheet("color: palette(mid)")
         box.addWidget(line)
@@ -58,7 +61,7 @@ class LayerPage(QWidget):
         )
         self.gap.valueChanged.connect(self._set_gap)
         form.addRow(tr("Rest between"), self.gap)
-        self.base = Chooser(
+        self.base = QuietChooser(
             self, toolTip=tr("The pose all layers are added to; a neutral one, hands at the sides")
         )
         self.base.activated.connect(self._set_base)
@@ -79,7 +82,7 @@ class LayerPage(QWidget):
         """Show the current layer's."""
         project, layer = self.document.project, self.session.place.layer
         graph = project.graphs[layer]
-        self.title.setText(tr("{layer} layer", layer=titled(layer)))
+        self.title.setText(tr("{layer} layer", layer=vocabulary_title(layer)))
         for part in PARTS:
             self.weights[part].show_value(graph.weights.get(part, REACH[layer][part]))
         from metagraph.playback.planning.markov import model

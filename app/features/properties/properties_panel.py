@@ -14,7 +14,7 @@ from app.features.properties.clip_page import ClipPage
 from app.features.properties.layer_page import LayerPage
 from app.features.properties.page_form import ANY
 from app.project.document import Document
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr_error
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import Action, Project
@@ -36,7 +36,7 @@ class PropertiesPanel(QScrollArea):
     def __init__(
         self,
         document: Document,
-        session: Session,
+        session: StageSession,
         fetch: Callable[[Iterable[str], Callable[[], object]], object],
         furnish: Callable[[ActionPage], object],
         parent: QWidget | None = None,

@@ -21,18 +21,18 @@ from PySide6.QtWidgets import (
 
 from app.features.properties.jump_strip import JumpStrip
 from app.features.properties.page_form import ANY
-from app.look.theme import Theme, theme
+from app.look.theme import WindowTheme, theme
 from app.project.document import Document
-from app.stage.compatibility_state import Compatibility, proposed_fields
-from app.stage.session import Session
-from app.translation import tr, tr_phrase, translated
+from app.stage.compatibility_state import Compatibility, compare_proposed_timing
+from app.stage.session import StageSession
+from app.translation import lazy_texts, tr, tr_phrase
 from app.widgets.restyling import set_sheet
 from metagraph.graph.model import Action, Project
 from metagraph.motion.clip import Clip
-from metagraph.playback.timing.handles import BANDS, HANDLES, PHASES, moved, times_of
+from metagraph.playback.timing.handles import BANDS, HANDLES, PHASES, handle_times, move_handle
 from metagraph.playback.timing.speed_curves import speed_of
 
-WORDS = translated(
+WORDS = lazy_texts(
     lambda: {
         "start": tr("start"),
         "end": tr("end"),
@@ -56,7 +56,7 @@ class TimingPlot(QWidget):
     changed = Signal(object)
     finished = Signal()
 
-    def __init__(self, document: Document, session: Session, parent: QWidget | None = None) -> None:
+    def __init__(self, document: Document, session: StageSession, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.document, self.session = document, session
         self.action: Action | None = None
@@ -142,9 +142,9 @@ class TimingPlot(QWidget):
         )
         if action is None or project.action(action.id) is None:
             return
-        from metagraph.suggest.jumps.seen_jumps import Seen, far_ends, times_words, verdict
+        from metagraph.suggest.jumps.seen_jumps import SeenJumps, describe_ends, describe_times, far_ends
 
-        seen = Seen(action, curves) if curves is not None else None
+        seen = SeenJumps(action, curves) if curves is not None else None
         self.strip.show_seen(project, action, seen)
         self.use.setEnabled(seen is not None and bool(self._proposed()))
         if seen is None:
@@ -154,10 +154,10 @@ class TimingPlot(QWidget):
         first, last = seen.cost("start", start), seen.cost("end", end)
         costs = {"Repeats": last} if seen.loops else {"Begins": first, "ends": last}
         far = far_ends(project, action)
-        self.verdict.setText(tr_phrase(verdict(costs, far)))
+        self.verdict.setText(tr_phrase(describe_ends(costs, far)))
         fine = max(costs.values()) <= 1 and not far
         set_sheet(self.verdict, f"color: {t.dim if fine else t.warning}")
-        times, reason = times_words(seen), seen.proposed.reason
+        times, reason = describe_times(seen), seen.proposed.reason
         self.use.setToolTip(tr("{times}: it {reason}", times=times, reason=reason))
 
     def _proposed(self) -> dict[str, Any]:
@@ -165,7 +165,7 @@ class TimingPlot(QWidget):
         project, action, seen = self.document.project, self.action, self.strip.seen
         if action is None or seen is None or action.clip not in project.clips:
             return {}
-        fields = proposed_fields(action, seen.proposed, project.clips[action.clip].duration)
+        fields = compare_proposed_timing(action, seen.proposed, project.clips[action.clip].duration)
         return {name: value for name, value in fields.items() if getattr(action.timing, name) != value}
 
     def use_proposed(self) -> None:
@@ -218,12 +218,12 @@ class TimingPlot(QWidget):
         self._place(project, action, t, color)
         self._show_seen()
 
-    def _place(self, project: Project, action: Action, t: Theme, color: QColor) -> None:
+    def _place(self, project: Project, action: Action, t: WindowTheme, color: QColor) -> None:
         """Put lines and shades where the action's times are. What stays as it is is not touched: whatever is
         lets all of the plot be painted again.
         """
         self._setting = True
-        at = times_of(project, action)
+        at = handle_times(project, action)
         self._color(action, t, color)
         for name, line in self.lines.items():
             value = at[name]
@@ -241,7 +241,7 @@ class TimingPlot(QWidget):
     _colors: tuple[str, str] = ("", "")  # theme and kind they are of
     _owns: tuple[object, ...] = ()  # and which phases are the action's own
 
-    def _color(self, action: Action, t: Theme, color: QColor) -> None:
+    def _color(self, action: Action, t: WindowTheme, color: QColor) -> None:
         """Give lines and shades their colours, where others are wanted than they have."""
         timing = action.timing
         own = dict(zip(PHASES, (timing.ready, timing.stroke_end, timing.relax), strict=True))
@@ -283,7 +283,7 @@ class TimingPlot(QWidget):
 
     def _line_up_soon(self) -> None:
         if self.action is not None and self.action.clip in self.document.project.clips:
-            self._bands(times_of(self.document.project, self.action))
+            self._bands(handle_times(self.document.project, self.action))
             self._line_up()
 
     def _line_up(self) -> None:
@@ -331,7 +331,7 @@ class TimingPlot(QWidget):
         if self._setting or self.action is None:
             return
         seconds = self._snapped(name, seconds)
-        fields = moved(self.document.project, self.action, name, seconds)
+        fields = move_handle(self.document.project, self.action, name, seconds)
         # The character follows the handle.
         self.session.transport.show_clip(self.action.clip)
         self.session.transport.set_playing(False)

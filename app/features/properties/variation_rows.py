@@ -11,8 +11,8 @@ from typing import Any
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QCheckBox, QFormLayout, QHBoxLayout, QToolButton, QWidget
 
-from app.translation import tr, translated
-from app.widgets.form_fields import MIXED, Mixed, Seconds, common
+from app.translation import lazy_texts, tr
+from app.widgets.form_fields import MIXED, Mixed, Seconds, common_value
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import SpinBox
 from metagraph.graph import edits
@@ -20,7 +20,7 @@ from metagraph.graph.model import Action, Project, Settings
 from metagraph.playback.timing.phases import phases
 
 PHASE_FIELDS = ("ready", "stroke_end", "relax")
-PHASE_WORDS = translated(
+PHASE_WORDS = lazy_texts(
     lambda: {
         "ready": tr("The preparation ends"),
         "stroke_end": tr("The hold begins"),
@@ -83,14 +83,14 @@ class ActionRows(QWidget):
         self.form.setRowVisible(self.rest_row, all(a.kind in ("gesture", "fidget") for a in actions))
         if gestures:
             found = [phases(project, a) for a in actions]
-            self.ready.show_value(common([p.ready for p in found]))
-            self.stroke_end.show_value(common([p.stroke_end for p in found]))
-            self.relax.show_value(common([p.relax for p in found]))
+            self.ready.show_value(common_value([p.ready for p in found]))
+            self.stroke_end.show_value(common_value([p.stroke_end for p in found]))
+            self.relax.show_value(common_value([p.relax for p in found]))
             self.found.setEnabled(
                 any(getattr(a.timing, f) is not None for a in actions for f in PHASE_FIELDS)
             )
-        self.cooldown.show_value(common([a.cooldown for a in actions]))
-        spacing = common([a.spacing for a in actions])
+        self.cooldown.show_value(common_value([a.cooldown for a in actions]))
+        spacing = common_value([a.spacing for a in actions])
         self.spacing.blockSignals(True)
         least = -2 if spacing is Mixed else AS_THE_GRAPH
         if self.spacing.minimum() != least:  # which lays the form out anew

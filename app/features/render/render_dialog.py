@@ -21,16 +21,16 @@ from PySide6.QtWidgets import (
 )
 
 from app.look.theme import strengthen
-from app.project.jobs import Job, Jobs
+from app.project.jobs import Jobs, WindowJob
 from app.project.reveal import open_folder
-from app.stage.performance import Performance
-from app.stage.render_process import SUFFIXES, RenderOrder, write
-from app.stage.session import Session
+from app.stage.performance import StagePerformance
+from app.stage.render_process import SUFFIXES, RenderOrder, write_rendering
+from app.stage.session import StageSession
 from app.translation import tr, tr_error, tr_noop
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.graph import requests
 from metagraph.graph.conversation.model import Conversation
-from preview.looks import BACKDROPS, LIGHTS, words_of
+from preview.looks import BACKDROPS, LIGHTS, look_name
 
 LOOKS = (  # what the preview calls its lights and backgrounds
     tr_noop("Studio"),
@@ -56,7 +56,7 @@ class RenderDialog(QDialog):
     written = Signal(str)
 
     def __init__(
-        self, performance: Performance, session: Session, jobs: Jobs, parent: QWidget | None = None
+        self, performance: StagePerformance, session: StageSession, jobs: Jobs, parent: QWidget | None = None
     ) -> None:
         super().__init__(parent)
         self.performance, self.session, self.jobs = performance, session, jobs
@@ -134,7 +134,7 @@ class RenderDialog(QDialog):
             (self.background, BACKDROPS, watched.background),
         ):
             for name in choices:
-                box.addItem(tr(words_of(name)), name)
+                box.addItem(tr(look_name(name)), name)
             box.setCurrentIndex(box.findData(now))
         self.form.addRow(tr("Light"), self.light)
         self.form.addRow(tr("Background"), self.background)
@@ -213,8 +213,8 @@ class RenderDialog(QDialog):
         self.progress.setRange(0, 0)
         self.progress.show()
 
-        def work(job: Job) -> Path:
-            return write(project, folder, wanted, job)
+        def work(job: WindowJob) -> Path:
+            return write_rendering(project, folder, wanted, job)
 
         job = self.jobs.start(tr("Writing the performance"), work, self._done, self._failed, stands=True)
         job.progress.connect(self._tell)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from app.look.plural import clips_words
+from app.look.plural import count_clips
 from app.project.importing import Importing
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
@@ -30,7 +30,7 @@ def contribute(shell: Shell) -> Contribution:
             or tuple(a.clip for a in session.selection.selected_actions())
             or tuple(document.project.clips)
         )
-        words = title or tr("Repairs of {clips}", clips=clips_words(len(set(chosen))))
+        words = title or tr("Repairs of {clips}", clips=count_clips(len(set(chosen))))
         RepairsDialog(document, shell.jobs, words, dict.fromkeys(chosen), lines, shell.widget).show()
 
     def noticed(title: str, clips: Sequence[str], lines: Sequence[str]) -> None:

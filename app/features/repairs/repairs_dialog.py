@@ -19,8 +19,8 @@ from PySide6.QtWidgets import (
 
 from app.look.theme import strengthen
 from app.project.document import Document
-from app.project.jobs import Job, Jobs
-from app.translation import tr, tr_error, tr_plural, translated
+from app.project.jobs import Jobs, WindowJob
+from app.translation import lazy_texts, tr, tr_error, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.tree_items import items_below, top_items
 from metagraph.formats.repairs import Repaired, Reread, repairs_of, reread
@@ -28,7 +28,7 @@ from metagraph.formats.takes import BIND_POSE, LONE_FRAME, NAME, ONE_FRAME, UNIT
 from metagraph.graph.edit_error import EditError
 
 PLACE = Qt.ItemDataRole.UserRole
-TITLES = translated(
+TITLES = lazy_texts(
     lambda: {
         BIND_POSE: tr("Drop bind poses at the ends"),
         LONE_FRAME: tr("Mend frames unlike both their neighbours"),
@@ -150,7 +150,7 @@ class RepairsDialog(QDialog):
         self.go.setEnabled(False)
         self.trouble.hide()
 
-        def work(job: Job) -> Reread:
+        def work(job: WindowJob) -> Reread:
             return reread(project, folder, changes, job.tell)
 
         document, failures = self.document, list[str]()

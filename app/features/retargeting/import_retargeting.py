@@ -10,13 +10,13 @@ from dataclasses import replace
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QWidget
 
-from app.look.plural import clips_words
+from app.look.plural import count_clips
 from app.project.document import Document
-from app.project.jobs import Job, Jobs
+from app.project.jobs import Jobs, WindowJob
 from app.project.kept_maps import keep_map
 from app.translation import tr
 from metagraph.errors import FileError
-from metagraph.formats.imports import Imported, Strangers, bring_over, strangers_of
+from metagraph.formats.imports import Imported, Strangers, bring_over, find_strangers
 from metagraph.graph.editing.retargeting import Bringing
 from metagraph.motion.joint_map import JointMap
 
@@ -61,7 +61,7 @@ class Retargeting(QObject):
         def then(result: Imported) -> None:
             if result.loaded:
                 self.document.edit(tr("Change joint map"), result.into)
-                self.told.emit(tr("Retargeted {loaded} again.", loaded=clips_words(len(result.loaded))))
+                self.told.emit(tr("Retargeted {loaded} again.", loaded=count_clips(len(result.loaded))))
 
         def done(groups: tuple[Strangers, ...]) -> None:
             if not groups:
@@ -71,7 +71,7 @@ class Retargeting(QObject):
 
         self.jobs.start(
             tr("Reading retargeted clips"),
-            lambda _: strangers_of(project, folder, chosen),
+            lambda _: find_strangers(project, folder, chosen),
             done,
             self.failed.emit,
         )
@@ -117,14 +117,14 @@ class Retargeting(QObject):
             self._end(lambda: then(Imported(())))
 
         self.jobs.start(
-            tr("Retargeting {clips}", clips=clips_words(len(group.clips))),
+            tr("Retargeting {clips}", clips=count_clips(len(group.clips))),
             lambda job: self._work(job, bringing, group, joint_map),
             done,
             failed,
         )
 
     @staticmethod
-    def _work(job: Job, bringing: Bringing, group: Strangers, joint_map: JointMap) -> Imported:
+    def _work(job: WindowJob, bringing: Bringing, group: Strangers, joint_map: JointMap) -> Imported:
         return bring_over(bringing, group, joint_map, job.tell, lambda: job.cancelled)
 
     def _end(self, then: Callable[[], None]) -> None:

@@ -33,7 +33,7 @@ from app.widgets.stick_figures import StickFigures
 from metagraph.formats.imports import Strangers
 from metagraph.graph.editing.retargeting import Bringing
 from metagraph.motion.clip import Clip
-from metagraph.motion.joint_map import JointMap, known_roles
+from metagraph.motion.joint_map import JointMap, find_known_roles
 
 JOINT = Qt.ItemDataRole.UserRole
 NONE = tr_noop("– none –")
@@ -60,7 +60,7 @@ class JointMapDialog(QDialog):
         )  # the joint that was changed last, and the map before that
         self._asked = 0  # previews, so that a late one of an older map is not shown
         self._roles = {
-            self.target.names[j]: role for role, j in known_roles(self.target, bringing.roles).items()
+            self.target.names[j]: role for role, j in find_known_roles(self.target, bringing.roles).items()
         }
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle(tr("Another skeleton"))

@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.project.document import Document
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr
 from app.widgets.joint_mask import JOINT, joint_tree
 from app.widgets.quiet_fields import ComboBox
@@ -33,7 +33,7 @@ ROW = 36  # pixels of a row, with a choice in it
 class SkeletonDialog(QDialog):
     """Shows what was found and corrects it; each choice is an edit that can be undone."""
 
-    def __init__(self, document: Document, session: Session, parent: QWidget | None = None) -> None:
+    def __init__(self, document: Document, session: StageSession, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.document, self.session = document, session
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
@@ -87,9 +87,9 @@ class SkeletonDialog(QDialog):
         if project.skeleton is None:
             self.reject()
             return
-        found = anatomy.roles(project)
+        found = anatomy.project_roles(project)
         by_joint = {project.skeleton.names[j]: role for role, j in found.items()}
-        parts = dict(zip(project.skeleton.names, anatomy.parts(project), strict=True))
+        parts = dict(zip(project.skeleton.names, anatomy.project_parts(project), strict=True))
         for name in self.items:
             if name not in parts:
                 continue

@@ -42,9 +42,9 @@ class Counting(QObject):
     def show(self) -> None:
         """Show what there was so far."""
         self.total.update(self.hands.operators.take(monotonic()).operators)
-        from metagraph.research.study.machines.klm import predicted
+        from metagraph.research.study.machines.klm import predict_seconds
 
-        seconds = predicted({k: self.total[k] for k in "KPBH"})
+        seconds = predict_seconds({k: self.total[k] for k in "KPBH"})
         counts = "   ".join(f"{k} {self.total[k]}" for k in "KPBDH")
         self.label.setText(f"{counts}   {seconds:.1f} s")
 

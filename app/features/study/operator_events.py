@@ -33,7 +33,7 @@ class Counts:
     seconds: float
 
 
-class Operators:
+class OperatorEvents:
     """Told what the hands do, with times in seconds and points in pixels of the screen; the same event may be
     told again and again.
     """
@@ -174,7 +174,7 @@ class Hands(QObject):
         parent: QObject,
     ) -> None:
         super().__init__(parent)
-        self.operators = Operators(monotonic())
+        self.operators = OperatorEvents(monotonic())
         self._input, self._dialog, self._scrolled = input, dialog, scrolled
         app = QApplication.instance()
         assert app is not None

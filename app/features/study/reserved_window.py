@@ -11,7 +11,7 @@ from app.project.learned import Learned
 from app.shell.actions import Command
 from app.shell.context import Shell
 from app.shell.header import Header
-from app.shell.places import Places
+from app.shell.places import PanelPlaces
 from app.shell.workspace_keeper import Workspaces
 from app.stage.compatibility_state import Compatibility
 from app.translation import tr, tr_noop
@@ -57,7 +57,7 @@ class ReservedWindow:
 
     def _show_others(self, on: bool) -> None:
         """Show or hide what no task needs."""
-        places = self.shell.services[Places]
+        places = self.shell.services[PanelPlaces]
         for panel in places.panels.values():
             if not panel.study:
                 places.show_dock(panel.id, on)
@@ -79,7 +79,7 @@ class ReservedWindow:
 
     def reach(self, on: bool) -> None:
         """Let what lies below a page be reached by the keyboard, or not; nothing lies above it."""
-        widget, places = self.shell.widget, self.shell.services[Places]
+        widget, places = self.shell.widget, self.shell.services[PanelPlaces]
         below: tuple[QWidget, ...] = (
             widget.menuBar(),
             self.shell.services[Header],

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QPoint
 from PySide6.QtWidgets import QWidget
 
-from app.shell.places import Places
+from app.shell.places import PanelPlaces
 
 if TYPE_CHECKING:
     from app.shell.context import Shell
@@ -18,7 +18,7 @@ def screen_areas(shell: Shell) -> dict[str, list[int]]:
     what widgets in them name by `named_areas`.
     """
     out: dict[str, list[int]] = {}
-    for ident, dock in shell.services[Places].docks.items():
+    for ident, dock in shell.services[PanelPlaces].docks.items():
         if not dock.isVisible() or dock.visibleRegion().isEmpty():
             continue
         out[ident] = _on_screen(dock, 0, 0, dock.width(), dock.height())

@@ -26,7 +26,7 @@ from metagraph.research.study.questionnaires import BUTTONS, Item, Scale
 _EDGE = 12  # pixels left and right of a line of marks
 
 
-class Mark(QWidget):
+class MarkLine(QWidget):
     """A line with ticks on which a mark is put, by mouse or arrow keys; without one until then. Ends stand
     below.
     """
@@ -161,7 +161,7 @@ class Question(QWidget):
             self.words.textChanged.connect(self._words_changed)
             return self.words
         if item.scale is not None and len(item.scale.points) > BUTTONS:
-            self.mark = Mark(item.scale, self)
+            self.mark = MarkLine(item.scale, self)
             if value is not None:
                 self.mark.set_value(int(value))
             self.mark.changed.connect(self._answer)

@@ -16,9 +16,9 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.study.study_screen import clock, rich
+from app.features.study.study_screen import format_markdown, format_minutes
 from app.look.theme import strengthen, theme
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr
 from app.widgets.making import make_widget
 
@@ -28,7 +28,7 @@ WARNINGS = (120.0, 30.0)  # seconds before the end at which it is said
 class StudyBar(QToolBar):
     """Above the window's own bar. Instructions unfold below the title."""
 
-    def __init__(self, session: Session, parent: QWidget) -> None:
+    def __init__(self, session: StageSession, parent: QWidget) -> None:
         super().__init__(tr("Study"), parent)
         self.session = session
         self.setObjectName("study")
@@ -72,7 +72,7 @@ class StudyBar(QToolBar):
     def begin(self, title: str, text: str) -> None:
         """Show a task."""
         self.title.setText(title)
-        self.text.setText(rich(text, 13))
+        self.text.setText(format_markdown(text, 13))
         self.more.setVisible(bool(text))
         self.more.setChecked(bool(text))
         self._unfold(bool(text))
@@ -85,12 +85,12 @@ class StudyBar(QToolBar):
         """Show seconds so far, or left of the minutes there are; near the end it is said plainly."""
         look = theme(self.session.look.name)
         if minutes is None:
-            self.time.setText(clock(elapsed))
+            self.time.setText(format_minutes(elapsed))
             self.time.setStyleSheet("")
             return
         left = 60 * minutes - elapsed
         near = left <= WARNINGS[0]
-        self.time.setText(tr("{clock} left", clock=clock(left)))
+        self.time.setText(tr("{clock} left", clock=format_minutes(left)))
         self.time.setStyleSheet(f"color: {look.warning}; font-weight: 600" if near else "")
         self.told.setStyleSheet(f"color: {look.warning}")
         self.told.setText(

@@ -22,7 +22,7 @@ WHATS = (
 )  # the first that fits is the edit's
 
 
-def described(before: Project, after: Project) -> dict[str, Any]:
+def describe_change(before: Project, after: Project) -> dict[str, Any]:
     """Return `what`, `clips` (names, in the order of the project) and, where it is one layer's, `layer`."""
     whats: set[str] = set()
     clips: dict[str, None] = {}

@@ -22,10 +22,10 @@ from PySide6.QtWidgets import (
 from app.features.study.study_guide import Guide
 from app.look.theme import strengthen
 from app.project.files import Files
-from app.shell.places import Places
+from app.shell.places import PanelPlaces
 from app.translation import tr, tr_error, tr_noop
 from metagraph.errors import FileError
-from metagraph.research.study.sitting import standing
+from metagraph.research.study.sitting import describe_standing
 from metagraph.research.study.study_plan import Study, read_study
 
 if TYPE_CHECKING:
@@ -52,18 +52,18 @@ def run_study(
         QMessageBox.warning(shell.widget, tr("This study cannot be run"), tr_error(error))
         return
     if participant is not None:
-        begin(shell, study, participant, experimenter)
+        begin_sitting(shell, study, participant, experimenter)
         return
-    chooser = Chooser(study, shell.widget)
-    chooser.chosen.connect(lambda who: begin(shell, study, who, experimenter))
+    chooser = StudyChooser(study, shell.widget)
+    chooser.chosen.connect(lambda who: begin_sitting(shell, study, who, experimenter))
     chooser.open()
 
 
-def begin(shell: Shell, study: Study, participant: str, experimenter: bool = False) -> Guide | None:
+def begin_sitting(shell: Shell, study: Study, participant: str, experimenter: bool = False) -> Guide | None:
     """Lead a participant through; None, with words, when that cannot be."""
     if not shell.services[Files].may_leave():
         return None
-    shell.services[Places].make_all()  # nobody is timed while a panel is made
+    shell.services[PanelPlaces].make_all()  # nobody is timed while a panel is made
     shell.document.undo_stack.setClean()  # what was there is saved or was declined
     try:
         guide = Guide(shell, study, participant, experimenter)
@@ -74,7 +74,7 @@ def begin(shell: Shell, study: Study, participant: str, experimenter: bool = Fal
     return guide
 
 
-class Chooser(QDialog):
+class StudyChooser(QDialog):
     """Participants with how far each is; chosen: who takes part."""
 
     chosen = Signal(str)
@@ -91,7 +91,7 @@ class Chooser(QDialog):
         self.list.setAccessibleName(tr("Participants"))
         first: QListWidgetItem | None = None
         for who in study.plan.ids:
-            words = standing(study, who)
+            words = describe_standing(study, who)
             item = QListWidgetItem(f"{who}    {tr(words)}", self.list)
             item.setData(Qt.ItemDataRole.UserRole, who)
             if words in OVER:

@@ -19,20 +19,20 @@ from app.features.study.study_screen import (
     BreakPage,
     ClapPage,
     ConsentPage,
-    Page,
     QuestionsPage,
     Screen,
+    StudyPage,
     question_page,
     text_page,
 )
 from app.project.files import Files
-from app.project.jobs import Job
+from app.project.jobs import WindowJob
 from app.translation import tr, tr_error, tr_noop
 from metagraph import __version__
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
-from metagraph.research.study.plan.freeze import manifest
-from metagraph.research.study.plan.task_projects import make, reopen, write
+from metagraph.research.study.plan.freeze import study_manifest
+from metagraph.research.study.plan.task_projects import make_task_project, reopen, write_task_project
 from metagraph.research.study.sitting import Phase, Sitting
 from metagraph.research.study.study_plan import CONDITION_TITLES, Study
 
@@ -74,7 +74,7 @@ class Guide(QObject):
                 tr("Go on there, or close it."),
             )
         try:
-            self.sitting = Sitting(study, participant, machine(), __version__)
+            self.sitting = Sitting(study, participant, describe_computer(), __version__)
         except (FileError, ValueError):
             self._lock.unlock()
             raise
@@ -95,7 +95,7 @@ class Guide(QObject):
         self.bar.note.clicked.connect(self.write_note)
         self._enter()
         shell.jobs.start(
-            tr("What is worked with"), lambda job: manifest(study), self.sitting.freeze, quick=True
+            tr("What is worked with"), lambda job: study_manifest(study), self.sitting.freeze, quick=True
         )
 
     # --- the window
@@ -162,7 +162,7 @@ class Guide(QObject):
             self._show(self._page(phase))
             self._resumed = False
 
-    def _page(self, phase: Phase) -> Page:
+    def _page(self, phase: Phase) -> StudyPage:
         if phase.name == "consent":
             return ConsentPage(phase.title, phase.text, self.go_on, self.decline)
         if phase.name == "break":
@@ -199,7 +199,7 @@ class Guide(QObject):
         )
         return tr("About {names}", names=tr(", with ").join(names)) if names else ""
 
-    def _show(self, page: Page) -> None:
+    def _show(self, page: StudyPage) -> None:
         """Lay a page over the window, whose commands rest."""
         phase = self.sitting.phase
         self.reserved.allow_page()
@@ -236,15 +236,15 @@ class Guide(QObject):
 
     def _load(self, phase: Phase) -> None:
         """Make or open the project of a task on a thread; its time begins when it is there."""
-        self._show(Page(phase.title, tr("One moment: the clips are loaded.")).finish())
+        self._show(StudyPage(phase.title, tr("One moment: the clips are loaded.")).finish())
         study, path, again = self.study, self.sitting.file, self.sitting.now.begun
         name = study.plan.task(phase.task).name if phase.task is not None else tr("Practice")
         reference = study.reference(phase.task) if phase.task is not None else None
 
-        def work(job: Job) -> Project:
+        def work(job: WindowJob) -> Project:
             if again:
                 return reopen(path, job.tell)[0].project
-            return write(make(study, phase.clips, name, reference), path)
+            return write_task_project(make_task_project(study, phase.clips, name, reference), path)
 
         self.shell.jobs.start(
             tr("Loading the clips"), work, lambda project: self._begin(phase, project), self._cannot
@@ -394,7 +394,7 @@ class Guide(QObject):
         dialog.open()
 
 
-def machine() -> dict[str, Any]:
+def describe_computer() -> dict[str, Any]:
     """Return what the log says about the computer; nothing that names it or its user."""
     screen = QApplication.primaryScreen()
     size, ratio = screen.size(), screen.devicePixelRatio()

@@ -12,13 +12,13 @@ from PySide6.QtWidgets import QDialog
 
 from app.features.study.operator_events import Hands
 from app.features.study.screen_areas import screen_areas
-from app.features.study.study_changes import described
+from app.features.study.study_changes import describe_change
 from app.project.importing import Importing
 from app.stage.problem_watch import ProblemWatch
 from app.translation import in_english
 from metagraph.errors import FileError
 from metagraph.formats.imports import Imported
-from metagraph.formats.project.journal import changes
+from metagraph.formats.project.journal import find_changes
 from metagraph.graph.model import Project
 
 if TYPE_CHECKING:
@@ -29,14 +29,14 @@ MOST = 50  # ids of what is selected that are told
 MERGING = 300  # milliseconds after which a run of merged edits, as a drag makes them, is taken to be over
 
 
-class Log(Protocol):
+class SittingLog(Protocol):
     def add(self, kind: str, **fields: Any) -> Any: ...
 
 
 class Recorder(QObject):
     """Follows a window from its making until `stop`. What the log cannot take is shown to the user once."""
 
-    def __init__(self, shell: Shell, log: Log) -> None:
+    def __init__(self, shell: Shell, log: SittingLog) -> None:
         super().__init__(shell.widget)
         self.shell, self.log = shell, log
         self._failed = False
@@ -141,7 +141,7 @@ class Recorder(QObject):
         again.
         """
         before, self._told = self._told, now
-        found = changes(before, now)
+        found = find_changes(before, now)
         return {"change": found} if found else {}
 
     def _edit_made(self, index: int) -> None:
@@ -162,7 +162,7 @@ class Recorder(QObject):
             return
         command, self._edit = self._edit["command"], None
         self._tell_operators()
-        about = described(command.before, command.after)
+        about = describe_change(command.before, command.after)
         self._write("edit", {**about, "words": command.english, **self._change(command.after)})
 
     def _loaded(self) -> None:

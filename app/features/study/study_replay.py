@@ -9,7 +9,7 @@ from PySide6.QtCore import QEvent, QObject, Qt, QTimer, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QToolBar, QWidget
 
 from app.features.study.reserved_window import ReservedWindow
-from app.features.study.study_screen import clock
+from app.features.study.study_screen import format_minutes
 from app.project.files import Files
 from app.project.opening import with_motion_of
 from app.translation import tr, tr_error
@@ -17,8 +17,8 @@ from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, Slider
 from metagraph.errors import FileError
 from metagraph.graph.model import LAYERS, Project
-from metagraph.research.study.logs.log import read
-from metagraph.research.study.logs.replay import Again, Part, first_project, parts
+from metagraph.research.study.logs.log import read_log
+from metagraph.research.study.logs.replay import Again, SittingPart, first_project, list_sitting_parts
 from metagraph.research.study.study_plan import CONDITION_TITLES, Study
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ class Replayer(QObject):
         super().__init__(shell.widget)
         self.shell, self.study, self.participant = shell, study, participant
         study.plan.known(participant)
-        self.parts = parts(study, read(study.log(participant)).events)
+        self.parts = list_sitting_parts(study, read_log(study.log(participant)).events)
         if not self.parts:
             raise FileError(
                 study.log(participant),
@@ -89,7 +89,7 @@ class Replayer(QObject):
                 participant,
                 tr("Choose another sitting."),
             )
-        self.part: Part = self.parts[0]
+        self.part: SittingPart = self.parts[0]
         self.again: Again | None = None
         self.at = 0.0
         self._left = False
@@ -97,7 +97,7 @@ class Replayer(QObject):
         self.reserved = ReservedWindow(shell, self.bar, False)
         for part in self.parts:
             title = CONDITION_TITLES.get(part.condition, part.condition)
-            self.bar.part.addItem(f"{part.title}: {title} ({clock(part.seconds)})")
+            self.bar.part.addItem(f"{part.title}: {title} ({format_minutes(part.seconds)})")
         self._timer = QTimer(self, interval=TICK)
         self._timer.timeout.connect(self._tick)
         self._last = monotonic()
@@ -127,7 +127,7 @@ class Replayer(QObject):
             lambda error: self.bar.told.setText(tr_error(error)),
         )
 
-    def _loaded(self, part: Part, first: Project) -> None:
+    def _loaded(self, part: SittingPart, first: Project) -> None:
         if self._left or part is not self.part:
             return
         self.again = Again(first, self.study.data(self.participant))
@@ -251,7 +251,9 @@ class Replayer(QObject):
 
     def _tell(self) -> None:
         """Show where it stands, and what happened last."""
-        self.bar.time.setText(tr("{at} of {whole}", at=clock(self.at), whole=clock(self.part.seconds)))
+        self.bar.time.setText(
+            tr("{at} of {whole}", at=format_minutes(self.at), whole=format_minutes(self.part.seconds))
+        )
         if not self.bar.slider.isSliderDown():
             self.bar.slider.setValue(round(self.at * 10))
         done = self.part.events[: self.part.until(self.at)]

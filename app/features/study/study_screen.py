@@ -22,7 +22,7 @@ from PySide6.QtWidgets import (
 
 from app.features.study.study_answers import Question
 from app.look.theme import strengthen, theme
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr
 from metagraph.research.study.questionnaires import Questionnaire
 
@@ -33,7 +33,7 @@ WITHOUT_HTML = (
 )
 
 
-class Page(QWidget):
+class StudyPage(QWidget):
     """A title, text (Markdown), what else there is, and buttons below: the last one leads on."""
 
     def __init__(self, title: str, text: str = "") -> None:
@@ -41,7 +41,7 @@ class Page(QWidget):
         self.title = QLabel(title, self)
         self.title.setProperty("page", True)
         self.title.setWordWrap(True)
-        self.text = QLabel(rich(text, 15), self)
+        self.text = QLabel(format_markdown(text, 15), self)
         self.text.setTextFormat(Qt.TextFormat.RichText)
         self.text.setWordWrap(True)
         self.text.setVisible(bool(text))
@@ -65,7 +65,7 @@ class Page(QWidget):
         self.buttons.addWidget(button)
         return button
 
-    def finish(self) -> Page:
+    def finish(self) -> StudyPage:
         """Put the buttons below what was added."""
         self.column.addSpacing(8)
         self.column.addLayout(self.buttons)
@@ -74,21 +74,21 @@ class Page(QWidget):
         return self
 
 
-def text_page(title: str, text: str, go: str, run: Run) -> Page:
-    page = Page(title, text)
+def text_page(title: str, text: str, go: str, run: Run) -> StudyPage:
+    page = StudyPage(title, text)
     page.button(go, run, strong=True)
     return page.finish()
 
 
-def question_page(title: str, text: str, yes: str, run: Run, no: str, back: Run) -> Page:
+def question_page(title: str, text: str, yes: str, run: Run, no: str, back: Run) -> StudyPage:
     """Return a page with a way on and a way back."""
-    page = Page(title, text)
+    page = StudyPage(title, text)
     page.button(no, back)
     page.button(yes, run, strong=True)
     return page.finish()
 
 
-class ConsentPage(Page):
+class ConsentPage(StudyPage):
     """Nobody goes on without having agreed."""
 
     def __init__(self, title: str, text: str, agreed: Run, declined: Run) -> None:
@@ -102,7 +102,7 @@ class ConsentPage(Page):
         self.finish()
 
 
-class BreakPage(Page):
+class BreakPage(StudyPage):
     """Counts a break down; it may be ended before, and last longer."""
 
     def __init__(self, minutes: float, run: Run) -> None:
@@ -125,10 +125,10 @@ class BreakPage(Page):
         self._show()
 
     def _show(self) -> None:
-        self.clock.setText(clock(self.left) if self.left > 0 else tr("Go on when you are ready."))
+        self.clock.setText(format_minutes(self.left) if self.left > 0 else tr("Go on when you are ready."))
 
 
-class ClapPage(Page):
+class ClapPage(StudyPage):
     """All white with a black number, to be found in any recording of the screen."""
 
     def __init__(self, number: int) -> None:
@@ -141,7 +141,7 @@ class ClapPage(Page):
         self.finish()
 
 
-class QuestionsPage(Page):
+class QuestionsPage(StudyPage):
     """A questionnaire; what has to be answered and is not is shown when one would go on."""
 
     def __init__(
@@ -188,7 +188,7 @@ class QuestionsPage(Page):
 class Screen(QWidget):
     """Lies over the whole window while a page is shown, so that nothing below can be seen or used."""
 
-    def __init__(self, window: QWidget, session: Session) -> None:
+    def __init__(self, window: QWidget, session: StageSession) -> None:
         super().__init__(window)
         self.covered, self.session = window, session
         self.setAttribute(Qt.WidgetAttribute.WA_StyledBackground)  # else nothing hides what is below
@@ -207,7 +207,7 @@ class Screen(QWidget):
         row.addStretch(1)
         self.area.setMaximumWidth(WIDE)
         outer.addLayout(row, 1)
-        self.page: Page | None = None
+        self.page: StudyPage | None = None
         session.look.changed.connect(self.restyle)
         self.restyle()
         window.installEventFilter(self)
@@ -231,7 +231,7 @@ class Screen(QWidget):
             Screen QRadioButton::indicator:focus {{ border-color: {look.text}; }}
         """)
 
-    def show_page(self, page: Page, place: str = "") -> None:
+    def show_page(self, page: StudyPage, place: str = "") -> None:
         """Show a page, on top of everything."""
         self.place.setText(place)
         self.page = page
@@ -250,7 +250,7 @@ class Screen(QWidget):
         return False
 
 
-def rich(markdown: str, size: int) -> str:
+def format_markdown(markdown: str, size: int) -> str:
     """Return Markdown as a label shows it, with air between paragraphs. size: of the letters, pixels.
 
     HTML is shown as it is written and a picture as its words: whoever wrote the study opens no file here.
@@ -278,7 +278,7 @@ def rich(markdown: str, size: int) -> str:
     return document.toHtml()
 
 
-def clock(seconds: float) -> str:
+def format_minutes(seconds: float) -> str:
     """Return minutes and seconds."""
     whole = max(0, round(seconds))
     return f"{whole // 60}:{whole % 60:02}"

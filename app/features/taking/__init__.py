@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from app.features.taking.taking_commands import COMMANDS, TakingFeature
-from app.shell.command_table import bound
+from app.shell.command_table import bind_commands
 from app.shell.context import Contribution, Shell
 
 
 def contribute(shell: Shell) -> Contribution:
-    return Contribution(commands=bound(COMMANDS, TakingFeature(shell)))
+    return Contribution(commands=bind_commands(COMMANDS, TakingFeature(shell)))

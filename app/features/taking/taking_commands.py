@@ -9,15 +9,15 @@ from PySide6.QtWidgets import QApplication, QFileDialog
 
 from app.look.theme import theme
 from app.project.files import Files
-from app.project.jobs import Job
+from app.project.jobs import WindowJob
 from app.shell.actions import Command
-from app.shell.command_table import Feature, actions_selected, any_of
+from app.shell.command_table import Feature, any_met, has_actions_selected
 from app.shell.context import Shell
 from app.translation import tr, tr_noop
 from metagraph.formats.store import SUFFIX
 
 if TYPE_CHECKING:
-    from metagraph.formats.project.pieces import Piece
+    from metagraph.formats.project.pieces import ProjectPiece
 
 
 class TakingFeature(Feature):
@@ -45,7 +45,7 @@ class TakingFeature(Feature):
 
         into = self.document.path
 
-        def work(job: Job) -> Piece:
+        def work(job: WindowJob) -> ProjectPiece:
             return read_other_project(path, into, job.tell)
 
         self.shell.jobs.start(
@@ -55,7 +55,7 @@ class TakingFeature(Feature):
             self.files.show_failure,
         )
 
-    def offer(self, name: str, piece: Piece) -> None:
+    def offer(self, name: str, piece: ProjectPiece) -> None:
         """Show what can be taken. name: of where it comes from."""
         from app.features.taking.taking_dialog import TakingDialog
 
@@ -87,7 +87,7 @@ class TakingFeature(Feature):
             self.shell.tell(tr("Copy stances or actions in another window first"))
             return
 
-        def work(job: Job) -> Piece:
+        def work(job: WindowJob) -> ProjectPiece:
             return read_piece(text, into)
 
         name = tr("the other window")
@@ -117,7 +117,7 @@ COMMANDS = (
         TakingFeature.copy,
         ("Ctrl+Alt+C",),
         tip=tr_noop("The selected actions, or else the stance in view with all that is placed on it"),
-        enabled=any_of(actions_selected, stance_in_view),
+        enabled=any_met(has_actions_selected, stance_in_view),
         when="meta",
         menus=("action",),
     ),

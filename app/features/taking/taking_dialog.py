@@ -17,13 +17,13 @@ from PySide6.QtWidgets import (
 )
 from shiboken6 import isValid
 
-from app.look.theme import Theme, strengthen
+from app.look.theme import WindowTheme, strengthen
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.translation import tr, tr_error, tr_noop, tr_phrase
 from app.widgets.making import make_widget
-from metagraph.formats.project.pieces import Piece
-from metagraph.graph.editing.taking import Taken, Taking, words_of_taking
+from metagraph.formats.project.pieces import ProjectPiece
+from metagraph.graph.editing.taking import TakenItem, Taking, words_of_taking
 from metagraph.graph.model import Project
 
 GROUPS = (
@@ -40,9 +40,9 @@ class TakingDialog(QDialog):
         self,
         document: Document,
         jobs: Jobs,
-        piece: Piece,
+        piece: ProjectPiece,
         name: str,
-        look: Theme,
+        look: WindowTheme,
         parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
@@ -128,7 +128,7 @@ class TakingDialog(QDialog):
                 top.addChild(item)
             top.setExpanded(kind != "clip" or len(things) < 12)
 
-    def _row(self, thing: Taken) -> QTreeWidgetItem:
+    def _row(self, thing: TakenItem) -> QTreeWidgetItem:
         item = QTreeWidgetItem([thing.name, tr(thing.layer or ""), tr_phrase(thing.words)])
         item.setToolTip(0, thing.name)
         item.setToolTip(2, tr_phrase(thing.words))

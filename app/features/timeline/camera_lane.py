@@ -10,9 +10,9 @@ from PySide6.QtGui import QColor, QPainter, QPen
 from PySide6.QtWidgets import QMenu
 
 from app.features.timeline.drags.cut import CutDrag
-from app.look.theme import Theme
+from app.look.theme import WindowTheme
 from app.translation import tr, tr_noop
-from app.widgets.lane_geometry import LEFT, elided, lanes
+from app.widgets.lane_geometry import LEFT, elide_text, place_lanes
 from metagraph.graph.conversation.model import Conversation, side_name
 from metagraph.graph.timeline import Cut, Shot
 
@@ -21,7 +21,7 @@ HINT = tr_noop("No cuts: the camera is yours. Double-click here, or 1 to 9, cuts
 NAME = "cameras"
 
 
-def pictures_of(talk: Conversation) -> tuple[tuple[Shot, int, str], ...]:
+def list_camera_shots(talk: Conversation) -> tuple[tuple[Shot, int, str], ...]:
     """Return what can be cut to, in the order of the keys from 1: shot, side and words."""
     sides = range(len(talk.sides))
     return (
@@ -31,17 +31,17 @@ def pictures_of(talk: Conversation) -> tuple[tuple[Shot, int, str], ...]:
     )
 
 
-def words_of(cut: Cut, talk: Conversation) -> str:
+def describe_cut(cut: Cut, talk: Conversation) -> str:
     """Return a cut's picture in a few words."""
-    known = pictures_of(talk)
+    known = list_camera_shots(talk)
     found = (w for shot, side, w in known if shot == cut.shot and (shot == "two" or side == cut.side))
     return next(found, tr("Nobody"))
 
 
-def short_words(cut: Cut, talk: Conversation) -> str:
+def describe_cut_briefly(cut: Cut, talk: Conversation) -> str:
     """Return the same in fewer words, for the lane."""
     if cut.shot == "two" or cut.side >= len(talk.sides):
-        return words_of(cut, talk)
+        return describe_cut(cut, talk)
     name = side_name(talk, cut.side)
     return tr("Over: {name}", name=name) if cut.shot == "over" else tr("Close: {name}", name=name)
 
@@ -66,7 +66,7 @@ class CameraLane:
         return cuts
 
     def _place(self) -> QRectF | None:
-        return lanes(self.view.height(), self.view.sizes).get(NAME)
+        return place_lanes(self.view.height(), self.view.sizes).get(NAME)
 
     def on(self, at: QPointF) -> bool:
         place = self._place()
@@ -96,9 +96,9 @@ class CameraLane:
     def key(self, number: int) -> bool:
         """Cut to a picture at the playhead, from 1; False where there is no such one."""
         talk = self.talk
-        if talk is None or not 1 <= number <= len(pictures_of(talk)):
+        if talk is None or not 1 <= number <= len(list_camera_shots(talk)):
             return False
-        shot, side, _ = pictures_of(talk)[number - 1]
+        shot, side, _ = list_camera_shots(talk)[number - 1]
         self.view.performance.timeline.cut_to(shot, side, self.view.session.transport.seconds)
         return True
 
@@ -114,7 +114,7 @@ class CameraLane:
         if talk is None:
             return menu
         seconds = round(max(0.0, self.view.scale().seconds(at.x())), 2)
-        for n, (shot, side, words) in enumerate(pictures_of(talk), 1):
+        for n, (shot, side, words) in enumerate(list_camera_shots(talk), 1):
             key = f"\t{n}" if n < 10 else ""
             menu.addAction(f"{words}{key}", partial(timeline.cut_to, shot, side, seconds))
         menu.addSeparator()
@@ -140,11 +140,11 @@ class CameraLane:
         cut = self.cuts[here]
         return tr(
             "{picture}, from {at:.2f} s\nDrag a border, double-click or 1 to 9 to cut",
-            picture=words_of(cut, talk),
+            picture=describe_cut(cut, talk),
             at=cut.at,
         )
 
-    def paint(self, painter: QPainter, t: Theme, lane: QRectF, width: float, end: float) -> None:
+    def paint(self, painter: QPainter, t: WindowTheme, lane: QRectF, width: float, end: float) -> None:
         """Paint the pictures that are cut to; end: seconds at which all ends."""
         talk, scale, held = self.talk, self.view.scale(), self.view.hand.gesture
         if talk is None:
@@ -162,7 +162,7 @@ class CameraLane:
         painter.setFont(font)
         if not cuts:
             painter.setPen(QColor(t.dim))
-            words = elided(tr(HINT), font.toString(), int(width - LEFT - 14))
+            words = elide_text(tr(HINT), font.toString(), int(width - LEFT - 14))
             painter.drawText(
                 QRectF(LEFT + 7, lane.top(), width, lane.height()), Qt.AlignmentFlag.AlignVCenter, words
             )
@@ -181,6 +181,6 @@ class CameraLane:
             inner.setRight(min(rect.right(), width) - 3)
             if inner.width() > 12:
                 painter.setPen(QColor(t.text))
-                words = elided(short_words(cut, talk), font.toString(), int(inner.width()))
+                words = elide_text(describe_cut_briefly(cut, talk), font.toString(), int(inner.width()))
                 painter.drawText(inner, Qt.AlignmentFlag.AlignVCenter, words)
         painter.restore()

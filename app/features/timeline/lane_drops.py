@@ -20,13 +20,13 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QWidget
 
 from app.features.timeline.lane_view import Lanes
-from app.look.names import plain
+from app.look.names import plain_action_name
 from app.look.theme import theme
 from app.project.importing import Importing
 from app.project.load import Load
 from app.translation import tr, tr_error, tr_plural
 from app.widgets.lane_geometry import lane_at
-from app.widgets.lane_paint import badge
+from app.widgets.lane_paint import paint_badge
 from app.widgets.mime import load_of
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
@@ -56,7 +56,10 @@ def lane_drop(
     if layer is None or not load:
         return LaneDrop(layer, seconds, stance)
     found = project.stance(stance)
-    name, at = plain(found.name) if found is not None else "", tr("at {seconds:.2f} s", seconds=seconds)
+    name, at = (
+        plain_action_name(found.name) if found is not None else "",
+        tr("at {seconds:.2f} s", seconds=seconds),
+    )
     if load.actions:
         actions = [a for i in load.actions if (a := project.action(i)) is not None]
         if any(a.kind == "stance" for a in actions):
@@ -64,13 +67,13 @@ def lane_drop(
                 layer, seconds, stance, False, tr("a stance's loop is no action: ask for the stance")
             )
         what = (
-            plain(actions[0].name)
+            plain_action_name(actions[0].name)
             if len(actions) == 1
             else tr_plural("{count:,} action", "{count:,} actions", len(actions))
         )
         return LaneDrop(layer, seconds, stance, True, tr("ask for {what} {at}", what=what, at=at))
-    if load.clips and all(playing(project, layer, clip) is not None for clip in load.clips):
-        first = plain(project.clips[load.clips[0]].name)
+    if load.clips and all(find_playing_action(project, layer, clip) is not None for clip in load.clips):
+        first = plain_action_name(project.clips[load.clips[0]].name)
         what = first if load.count == 1 else tr_plural("{count:,} clip", "{count:,} clips", load.count)
         return LaneDrop(layer, seconds, stance, True, tr("ask for {what} {at}", what=what, at=at))
     if found is None:
@@ -90,22 +93,22 @@ def lane_drop(
     return LaneDrop(layer, seconds, stance, True, words)
 
 
-def playing(project: Project, layer: Layer, clip: str) -> Action | None:
+def find_playing_action(project: Project, layer: Layer, clip: str) -> Action | None:
     """Return the action of a layer that plays a clip, no loop of a stance."""
     found = (a for a in project.uses.get(clip, ()) if a.layer == layer and a.kind != "stance")
     return next(found, None)
 
 
-def asked_for(project: Project, drop: LaneDrop, load: Load) -> tuple[Project, list[Play]]:
+def ask_for_drop(project: Project, drop: LaneDrop, load: Load) -> tuple[Project, list[Play]]:
     """Return the project with clips placed that nothing plays, and the requests for all that was dropped, one
     after the other. Raises EditError.
     """
     assert drop.layer is not None
-    new = [clip for clip in load.clips if playing(project, drop.layer, clip) is None]
+    new = [clip for clip in load.clips if find_playing_action(project, drop.layer, clip) is None]
     if new:
-        project = edits.place(project, new, drop.layer, "gesture", drop.stance)
+        project = edits.place_clips(project, new, drop.layer, "gesture", drop.stance)
     some = [project.action(i) for i in load.actions]
-    some += [playing(project, drop.layer, clip) for clip in load.clips]
+    some += [find_playing_action(project, drop.layer, clip) for clip in load.clips]
     out, at = [], drop.seconds
     for action in some:
         if action is not None:
@@ -173,14 +176,14 @@ class LaneDrops(QObject):
         """Place what nothing plays, and ask for it."""
         requests = self.lanes.performance.requests
         try:
-            project, asked = asked_for(self.document.project, drop, load)
+            project, asked = ask_for_drop(self.document.project, drop, load)
         except EditError as error:
             self.importing.told.emit(tr_error(error))
             return
         if project is not self.document.project:
             self.document.edit(
                 tr("Place {clips}", clips=tr_plural("{count:,} clip", "{count:,} clips", len(load.clips))),
-                lambda p: asked_for(p, drop, load)[0],
+                lambda p: ask_for_drop(p, drop, load)[0],
             )
         for ask in asked:
             requests.ask(ask)
@@ -221,5 +224,5 @@ class _Mark(QWidget):
             x = self.lanes.scale().x(self._drop.seconds)
             painter.setPen(QPen(color, 1.4))
             painter.drawLine(QPointF(x, 0), QPointF(x, self.height()))
-        badge(painter, look, QPointF(self._at.x(), 0), self._drop.words, self.width())
+        paint_badge(painter, look, QPointF(self._at.x(), 0), self._drop.words, self.width())
         painter.end()

@@ -9,10 +9,10 @@ from PySide6.QtWidgets import QMenu
 
 from app.features.timeline.lane_keys import FAR
 from app.translation import tr
-from app.widgets.lane_geometry import Mark
+from app.widgets.lane_geometry import RequestMark
 
 
-def request_marks_menu(view: Any, mark: Mark) -> QMenu:
+def make_request_marks_menu(view: Any, mark: RequestMark) -> QMenu:
     """Return what can be done with a request, or with all that are selected with it."""
     ident = mark.ask.id
     if ident not in view.session.onstage.requests:

@@ -8,17 +8,17 @@ from typing import Any
 from PySide6.QtCore import QPointF
 from PySide6.QtGui import QColor, QPainter
 
-from app.features.timeline.lane_titles import LOCK, padlock
+from app.features.timeline.lane_titles import LOCK, paint_padlock
 from app.features.timeline.voice_lane import paint_voice
 from app.features.timeline.what_if import paint_ghost, seed_of
 from app.look.theme import theme
-from app.widgets.lane_geometry import LEFT, NAMES, Mark, lanes, rows
-from app.widgets.lane_paint import LaneScene, paint
+from app.widgets.lane_geometry import LEFT, NAMES, RequestMark, place_lanes, split_lane
+from app.widgets.lane_paint import LaneScene, paint_lane_scene
 from app.widgets.request_menu import STAGE
 
 
 def paint_lanes(
-    view: Any, painter: QPainter, found: Sequence[Mark], ends: float | None, locked: Collection[str]
+    view: Any, painter: QPainter, found: Sequence[RequestMark], ends: float | None, locked: Collection[str]
 ) -> None:
     """Paint all lanes. view: their widget. found: requests as they stand. ends: seconds at which all ends."""
     t, ratio = theme(view.session.look.name), view.devicePixelRatioF()
@@ -35,17 +35,17 @@ def paint_lanes(
         view.sizes,
         locked,
     )
-    paint(painter, t, scene)
-    for name, lane in lanes(view.height(), view.sizes).items():
+    paint_lane_scene(painter, t, scene)
+    for name, lane in place_lanes(view.height(), view.sizes).items():
         if name == "words":
             paint_voice(painter, t, lane, view.scale(), view.width(), view.voices, ratio)
         elif (seed := seed_of(name)) is not None:
             plan = view.what_if.plans.get(seed)
             paint_ghost(painter, t, lane, view.scale(), view.width(), plan)
         if name == STAGE and "words" not in view.sizes.extra and view.voices.words():
-            row = rows(lane)[1]
+            row = split_lane(lane)[1]
             painter.fillRect(row.adjusted(LEFT, 0, 0, -3), QColor(t.panel))
             paint_voice(painter, t, row, view.scale(), view.width(), view.voices, ratio)
         if name in NAMES:
             at = QPointF(LEFT - LOCK / 2 - 2, lane.center().y())
-            padlock(painter, t, at, name in locked)
+            paint_padlock(painter, t, at, name in locked)

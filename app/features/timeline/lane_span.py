@@ -7,9 +7,9 @@ from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.features.timeline.lane_keys import ZOOM
-from app.stage.performance import Performance
-from app.stage.session import Session
-from app.widgets.lane_geometry import LEFT, Mark, Scale
+from app.stage.performance import StagePerformance
+from app.stage.session import StageSession
+from app.widgets.lane_geometry import LEFT, LaneScale, RequestMark
 
 NEAREST, FARTHEST = 400.0, 0.25  # pixels a second
 
@@ -17,15 +17,15 @@ NEAREST, FARTHEST = 400.0, 0.25  # pixels a second
 class LaneSpan(QWidget):
     """first: seconds at the left of the lanes. each: pixels a second."""
 
-    session: Session
-    performance: Performance
+    session: StageSession
+    performance: StagePerformance
     each = 44.0
     first = 0.0
 
-    def scale(self) -> Scale:
-        return Scale(self.first, self.each)
+    def scale(self) -> LaneScale:
+        return LaneScale(self.first, self.each)
 
-    def marks(self) -> list[Mark]:
+    def marks(self) -> list[RequestMark]:
         """Return the requests as they are drawn now."""
         raise NotImplementedError
 

@@ -8,10 +8,10 @@ from PySide6.QtCore import QPointF
 from PySide6.QtWidgets import QApplication
 
 from app.features.timeline.what_if import seed_of
-from app.look.names import told_names
+from app.look.names import names_in_tooltip
 from app.translation import tr, tr_noop
-from app.widgets.lane_geometry import LEFT, RULER, cue_at, lane_at, lanes, mark_at, told
-from app.widgets.lane_paint import cue_words
+from app.widgets.lane_geometry import LEFT, RULER, cue_at, describe_mark, lane_at, mark_at, place_lanes
+from app.widgets.lane_paint import describe_cue
 
 # of actions, within a sentence
 KINDS = (tr_noop("stance"), tr_noop("gesture"), tr_noop("fidget"), tr_noop("transition"))
@@ -25,11 +25,11 @@ def tip_at(view: Any, at: QPointF) -> str:
         return view.ruler.tip(at)
     mark = mark_at(view.marks(), at)
     if mark is not None:
-        return told(mark, view.performance.requests.editable)
+        return describe_mark(mark, view.performance.requests.editable)
     found = cue_at(view.performance.shown, view.scale(), view.height(), at, view.sizes)
     if found is not None:
         cue = found[1]
-        name = told_names(cue_words(view.performance.shown.project, cue.action), cue.action.name)
+        name = names_in_tooltip(describe_cue(view.performance.shown.project, cue.action), cue.action.name)
         words = tr(
             "{name}\n{kind}, {start:.2f} to {end:.2f} s",
             name=name,
@@ -47,7 +47,7 @@ def tip_at(view: Any, at: QPointF) -> str:
         return view.cameras.tip(at)
     seed = seed_of(lane)
     if seed is not None:
-        row = lanes(view.height(), view.sizes)[lane]
+        row = place_lanes(view.height(), view.sizes)[lane]
         return view.what_if.tip(seed, view.scale().seconds(at.x()), (at.y() - row.top()) / row.height())
     if lane == "words":
         at_time = view.scale().seconds(at.x())

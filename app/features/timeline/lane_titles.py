@@ -14,15 +14,15 @@ from PySide6.QtGui import QColor, QPainter, QPen
 from PySide6.QtWidgets import QMenu
 
 from app.features.timeline.drags.border import BorderDrag
-from app.look.theme import Theme
-from app.stage.performance import Performance
-from app.translation import tr, tr_noop, translated
-from app.widgets.lane_geometry import LEFT, NAMES, RULER, TITLES, Sizes, lanes
+from app.look.theme import WindowTheme
+from app.stage.performance import StagePerformance
+from app.translation import lazy_texts, tr, tr_noop
+from app.widgets.lane_geometry import LEFT, NAMES, RULER, TITLES, Sizes, place_lanes
 from metagraph.graph.model import LAYERS, Layer
 from metagraph.graph.timeline import Lane
 
 SETTING = "timeline/heights"
-HEIGHTS = translated(
+HEIGHTS = lazy_texts(
     lambda: {tr("Compact"): 0.6, tr("Normal"): 1.0, tr("Tall"): 1.8}
 )  # of a lane's usual height
 SAID = (tr_noop("body"), tr_noop("arms"), tr_noop("head"))  # of layers, within a sentence
@@ -30,7 +30,7 @@ GRIP = 4.0  # pixels on either side of a border that take hold of it
 LOCK = 20.0  # pixels at the right of a title that are its padlock's
 
 
-def kept_heights() -> tuple[tuple[str, float], ...]:
+def read_lane_heights() -> tuple[tuple[str, float], ...]:
     """Return how tall lanes were made, as this person keeps it."""
     try:
         found = json.loads(str(QSettings().value(SETTING, "{}")))
@@ -45,11 +45,11 @@ def kept_heights() -> tuple[tuple[str, float], ...]:
 class LaneTitles:
     """What the titles left of the lanes do. view: the widget of the lanes."""
 
-    def __init__(self, view: Any, performance: Performance) -> None:
+    def __init__(self, view: Any, performance: StagePerformance) -> None:
         self.view, self.performance = view, performance
 
     def places(self) -> dict[str, QRectF]:
-        return lanes(self.view.height(), self.view.sizes)
+        return place_lanes(self.view.height(), self.view.sizes)
 
     def lane_at(self, place: QPointF) -> str | None:
         """Return the lane whose title a point is on."""
@@ -155,7 +155,7 @@ class LaneTitles:
         return tr("The {layer} layer is seen\n{how}", layer=tr(lane), how=how)
 
 
-def padlock(painter: QPainter, t: Theme, at: QPointF, locked: bool) -> None:
+def paint_padlock(painter: QPainter, t: WindowTheme, at: QPointF, locked: bool) -> None:
     """Paint a padlock with its middle at `at`: shut, or open and faint."""
     painter.save()
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)

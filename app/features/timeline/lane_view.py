@@ -24,35 +24,35 @@ from PySide6.QtWidgets import QToolTip, QWidget
 from app.features.timeline.camera_lane import CameraLane
 from app.features.timeline.drags.request import RequestDrag
 from app.features.timeline.lane_keys import LaneKeys
-from app.features.timeline.lane_menu import request_marks_menu
+from app.features.timeline.lane_menu import make_request_marks_menu
 from app.features.timeline.lane_picture import paint_lanes
 from app.features.timeline.lane_span import LaneSpan
 from app.features.timeline.lane_tips import tip_at
-from app.features.timeline.lane_titles import LaneTitles, kept_heights
+from app.features.timeline.lane_titles import LaneTitles, read_lane_heights
 from app.features.timeline.ruler import Ruler
 from app.features.timeline.snapping import Magnet, SnapLine, snap_lines
 from app.features.timeline.voices import Voices
 from app.features.timeline.what_if import WhatIf, seed_of
 from app.look.theme import theme
-from app.stage.performance import Performance
-from app.stage.session import Session
+from app.stage.performance import StagePerformance
+from app.stage.session import StageSession
 from app.translation import tr, tr_noop
-from app.widgets.gesture import Hand
+from app.widgets.gesture import PointerHand
 from app.widgets.lane_geometry import (
     LEFT,
     NUMBERS,
     RULER,
-    Mark,
+    RequestMark,
     Sizes,
     cue_at,
     lane_at,
-    lanes,
     mark_at,
-    marks,
+    place_lanes,
+    place_marks,
 )
-from app.widgets.lane_paint import badge, playhead
+from app.widgets.lane_paint import paint_badge, paint_playhead
 from app.widgets.memo import Once
-from app.widgets.request_menu import STAGE, request_menu
+from app.widgets.request_menu import STAGE, make_request_menu
 from metagraph.graph.model import LAYERS
 
 LEAST, LEAST_BESIDE = 38, 32  # pixels of a layer in which its two rows are read; just so, beside other seeds'
@@ -71,18 +71,23 @@ class Lanes(LaneSpan):
     """
 
     def __init__(
-        self, session: Session, performance: Performance, voices: Voices, what_if: WhatIf, parent: QWidget
+        self,
+        session: StageSession,
+        performance: StagePerformance,
+        voices: Voices,
+        what_if: WhatIf,
+        parent: QWidget,
     ) -> None:
         super().__init__(parent)
         self.session, self.performance, self.voices = session, performance, voices
         self.what_if = what_if
         self.follow = True
-        self.hand = Hand()
-        self.sizes = Sizes(tall=kept_heights())
+        self.hand = PointerHand()
+        self.sizes = Sizes(tall=read_lane_heights())
         self.titles, self.ruler = LaneTitles(self, performance), Ruler(self)
         self.cameras = CameraLane(self)
         self.keys, self.magnet = LaneKeys(self), Magnet()
-        self._marks: Once[list[Mark]] = Once()
+        self._marks: Once[list[RequestMark]] = Once()
         self._still: Once[QPixmap] = Once()  # all but what moves while it plays
         self.painted = 0  # how often that was made
         self.setMinimumHeight(RULER + 4 * LEAST)
@@ -101,20 +106,20 @@ class Lanes(LaneSpan):
         for signal in (session.look.changed, session.selection.changed, session.onstage.performance_changed):
             signal.connect(self.update)
 
-    def marks(self) -> list[Mark]:
+    def marks(self) -> list[RequestMark]:
         """Return the requests as they are drawn now."""
         if self.session.transport.show != "plan":
             return []
         p, drag = self.performance, self.drag
         asks, answers, project, scale = p.asks, p.answers(), p.document.project, self.scale()
 
-        def make() -> list[Mark]:
+        def make() -> list[RequestMark]:
             shift = dict.fromkeys(drag.idents, drag.by) if drag is not None else None
-            found = marks(asks, answers, project, scale, self.height(), self.font(), shift, self.sizes)
+            found = place_marks(asks, answers, project, scale, self.height(), self.font(), shift, self.sizes)
             if drag is None or not drag.copy:
                 return found
             # What is copied stays where it is, under its copies.
-            still = marks(asks, answers, project, scale, self.height(), self.font(), None, self.sizes)
+            still = place_marks(asks, answers, project, scale, self.height(), self.font(), None, self.sizes)
             return still + [m for m in found if m.ask.id in drag.idents]
 
         values = (scale, self.height(), self.font().toString(), self.sizes, drag and (drag.by, drag.copy))
@@ -147,10 +152,10 @@ class Lanes(LaneSpan):
         painter.drawPixmap(0, 0, self._picture())
         painter.setFont(self.font())
         self.ruler.paint(painter, t, self.width(), self.height())
-        place = lanes(self.height(), self.sizes).get("cameras")
+        place = place_lanes(self.height(), self.sizes).get("cameras")
         if place is not None:
             self.cameras.paint(painter, t, place, self.width(), self.performance.shown.length)
-        playhead(painter, t, self.scale().x(self.session.transport.seconds), self.height())
+        paint_playhead(painter, t, self.scale().x(self.session.transport.seconds), self.height())
         drag = self.drag
         if drag is not None:
             held = next((m for m in reversed(self.marks()) if m.ask.id == drag.ident), None)
@@ -162,7 +167,7 @@ class Lanes(LaneSpan):
                 words = f"{max(0.0, held.at):.2f} s  ({drag.by:+.2f}){tr('  copy') if drag.copy else ''}"
                 if line is not None and not line.weak:
                     words += tr("  at {what}", what=line.what)
-                badge(painter, t, QPointF(held.rect.left(), 0), words, self.width())
+                paint_badge(painter, t, QPointF(held.rect.left(), 0), words, self.width())
         if self.hasFocus() and self._by_keys:
             painter.setPen(QPen(QColor(t.dim), 1))
             painter.setBrush(Qt.BrushStyle.NoBrush)
@@ -246,7 +251,7 @@ class Lanes(LaneSpan):
         else:
             self.scrub(event.position().x())
 
-    def _press(self, mark: Mark, event: QMouseEvent) -> None:
+    def _press(self, mark: RequestMark, event: QMouseEvent) -> None:
         ident, chosen = mark.ask.id, self.session.onstage.requests
         more = bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier)
         lone = more and ident in chosen
@@ -322,9 +327,9 @@ class Lanes(LaneSpan):
             return
         mark, lane = mark_at(self.marks(), at), lane_at(self.height(), at, self.sizes)
         if mark is not None and self.performance.requests.editable:
-            request_marks_menu(self, mark).popup(on_screen.toPoint())
+            make_request_marks_menu(self, mark).popup(on_screen.toPoint())
         else:
-            request_menu(self, self.performance, seconds, lane if lane in LAYERS else STAGE).popup(
+            make_request_menu(self, self.performance, seconds, lane if lane in LAYERS else STAGE).popup(
                 on_screen.toPoint()
             )
 
@@ -349,7 +354,9 @@ class Lanes(LaneSpan):
         """Ask for something at the playhead."""
         x = min(max(LEFT, self.scale().x(self.session.transport.seconds)), self.width())
         seconds = round(self.session.transport.seconds, 2) if self.performance.live.stage is None else None
-        request_menu(self, self.performance, seconds).popup(self.mapToGlobal(QPointF(x, RULER).toPoint()))
+        make_request_menu(self, self.performance, seconds).popup(
+            self.mapToGlobal(QPointF(x, RULER).toPoint())
+        )
 
     def scrub(self, x: float) -> None:
         """Go to a place, still; in what is looked at alone to its end at most."""

@@ -20,11 +20,11 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.stage.performance import Performance
-from app.translation import tr, tr_error, tr_noop, translated
-from app.widgets.lane_geometry import outcome
+from app.stage.performance import StagePerformance
+from app.translation import lazy_texts, tr, tr_error, tr_noop
+from app.widgets.lane_geometry import describe_outcome
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
-from app.widgets.request_menu import MODE_WORDS, MOOD_WORDS, mood_words, request_words
+from app.widgets.request_menu import MODE_WORDS, MOOD_WORDS, describe_mood, describe_request
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.model import LAYERS, LIMBS, MODES, Project
 from metagraph.graph.timeline_edits import lane_of
@@ -32,7 +32,7 @@ from metagraph.graph.words import FEELINGS
 
 SIDES = (tr_noop("left"), tr_noop("right"), tr_noop("both"))  # of an arm, or of two
 UNSET = tr_noop("as it comes")
-LABELS = translated(
+LABELS = lazy_texts(
     lambda: {
         "at": tr("At"),
         "stroke": tr("Stroke at"),
@@ -59,7 +59,7 @@ LABELS = translated(
         "stay": tr("Stay there"),
     }
 )
-TIPS = translated(
+TIPS = lazy_texts(
     lambda: {
         "at": tr("Seconds of the performance; it may come later when something else plays"),
         "stroke": tr("When its most telling moment should come, instead of when it begins"),
@@ -80,14 +80,14 @@ ORDER = tuple(LABELS)
 
 
 class RequestEditor(QDialog):
-    def __init__(self, performance: Performance, ident: str, parent: QWidget | None = None) -> None:
+    def __init__(self, performance: StagePerformance, ident: str, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.performance, self.ident = performance, ident
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setMinimumWidth(340)
         ask = self._ask()
         self.setWindowTitle(
-            tr("Request: {what}", what=request_words(ask, performance.document.project))
+            tr("Request: {what}", what=describe_request(ask, performance.document.project))
             if ask is not None
             else tr("Request")
         )
@@ -124,7 +124,7 @@ class RequestEditor(QDialog):
         if ask is None:
             self.words.setText(tr("This request is not there any more."))
         else:
-            self.words.setText(outcome(ask, self.performance.answers().get(self.ident)))
+            self.words.setText(describe_outcome(ask, self.performance.answers().get(self.ident)))
         self.remove.setEnabled(ask is not None)
         for field in self.fields.values():
             field.setEnabled(ask is not None)
@@ -235,7 +235,7 @@ class RequestEditor(QDialog):
             return None
         box = ComboBox(self)
         if value not in [v for _, v in items]:
-            point = mood_words(value, None) if name == "mood" else tr("a point")
+            point = describe_mood(value, None) if name == "mood" else tr("a point")
             items.append((value if isinstance(value, str) else point, value))
         for words, data in items:
             box.addItem(words, data)

@@ -12,9 +12,9 @@ from PySide6.QtWidgets import QInputDialog, QMenu
 
 from app.features.timeline.drags.marker import MarkerDrag
 from app.features.timeline.drags.range import Grip, RangeDrag
-from app.look.theme import Theme
+from app.look.theme import WindowTheme
 from app.translation import tr
-from app.widgets.lane_geometry import LEFT, NUMBERS, RULER, advance, elided
+from app.widgets.lane_geometry import LEFT, NUMBERS, RULER, elide_text, text_width
 from metagraph.graph.timeline import Marker
 
 EDGE = 5.0  # pixels on either side of an end of the range that take hold of it
@@ -160,7 +160,7 @@ class Ruler:
 
     # --- painting
 
-    def paint(self, painter: QPainter, t: Theme, width: float, height: float) -> None:
+    def paint(self, painter: QPainter, t: WindowTheme, width: float, height: float) -> None:
         """Paint range, markers and the line that is snapped to, over the lanes."""
         scale, found = self.view.scale(), self.range
         painter.save()
@@ -180,7 +180,7 @@ class Ruler:
         painter.restore()
 
     def _paint_range(
-        self, painter: QPainter, t: Theme, left: float, right: float, width: float, height: float
+        self, painter: QPainter, t: WindowTheme, left: float, right: float, width: float, height: float
     ) -> None:
         if right < LEFT or left > width:
             return
@@ -205,7 +205,7 @@ class Ruler:
             painter.drawLine(QPointF(x, RULER), QPointF(x, height))
 
     def _paint_marker(
-        self, painter: QPainter, t: Theme, marker: Marker, x: float, until: float, height: float
+        self, painter: QPainter, t: WindowTheme, marker: Marker, x: float, until: float, height: float
     ) -> None:
         if x < LEFT - FLAG or x > self.view.width() + FLAG:
             return
@@ -225,11 +225,11 @@ class Ruler:
         if marker.name and room > 14:
             font = QFont(painter.font())
             font.setPixelSize(max(9, round(painter.fontInfo().pixelSize() * 0.85)))
-            words = elided(marker.name, font.toString(), int(room))
+            words = elide_text(marker.name, font.toString(), int(room))
             ground = QColor(t.panel)
             ground.setAlpha(200)
             painter.fillRect(
-                QRectF(x + FLAG, NUMBERS + 1, advance(words, font.toString()) + 4, RULER - NUMBERS - 2),
+                QRectF(x + FLAG, NUMBERS + 1, text_width(words, font.toString()) + 4, RULER - NUMBERS - 2),
                 ground,
             )
             painter.save()

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 
 from PySide6.QtCore import QSettings
 
-from app.look.names import plain
-from app.stage.performance import Performance
-from app.translation import tr, translated
-from app.widgets.lane_geometry import Mark, Scale
+from app.look.names import plain_action_name
+from app.stage.performance import StagePerformance
+from app.translation import lazy_texts, tr
+from app.widgets.lane_geometry import LaneScale, RequestMark
 from metagraph.playback.timing.phases import phases
 
-WORDS = translated(lambda: {"in": tr("in of the range"), "out": tr("out of the range")})
+WORDS = lazy_texts(lambda: {"in": tr("in of the range"), "out": tr("out of the range")})
 REACH = 8.0  # pixels from which something is drawn to a line; ours
 WIDE = 24.0  # pixels of a gesture from which its stroke is a line of its own
 SETTING = "timeline/magnet"
@@ -30,17 +30,17 @@ class SnapLine:
     weak: bool = False
 
 
-def nearest(seconds: float, lines: Iterable[SnapLine], within: float) -> SnapLine | None:
+def find_nearest_line(seconds: float, lines: Iterable[SnapLine], within: float) -> SnapLine | None:
     """Return the line nearest to a time, at most so many seconds away; a weak one where there is no other."""
     near = [line for line in lines if abs(line.at - seconds) <= within]
     return min(near, key=lambda line: (line.weak, abs(line.at - seconds)), default=None)
 
 
 def snap_lines(
-    performance: Performance,
-    marks: Sequence[Mark],
+    performance: StagePerformance,
+    marks: Sequence[RequestMark],
     words: Sequence[tuple[float, float, str]],
-    scale: Scale,
+    scale: LaneScale,
     width: float,
     but: Collection[str] = (),
 ) -> list[SnapLine]:
@@ -60,7 +60,7 @@ def snap_lines(
         for cue in of.cues:
             if cue.end < begin or cue.start > end or cue.meta.partition("+")[0] in but:
                 continue
-            name = plain(cue.action.name)
+            name = plain_action_name(cue.action.name)
             out += [
                 SnapLine(cue.start, tr("start of {name}", name=name)),
                 SnapLine(cue.end, tr("end of {name}", name=name)),
@@ -106,5 +106,5 @@ class Magnet:
     def snap(self, seconds: float, each: float) -> float:
         """Return where a time goes. each: pixels a second."""
         free = self.held_off or not self.on
-        self.line = None if free else nearest(seconds, self._lines, REACH / each)
+        self.line = None if free else find_nearest_line(seconds, self._lines, REACH / each)
         return seconds if self.line is None else max(0.0, self.line.at)

@@ -2,26 +2,26 @@
 
 from __future__ import annotations
 
-from app.stage.playback_source import Shown
-from app.stage.session import Session
+from app.stage.playback_source import ShownPlayback
+from app.stage.session import StageSession
 from app.translation import tr, tr_plural
-from app.widgets.lane_geometry import Mark, outcome, wanted
+from app.widgets.lane_geometry import RequestMark, describe_outcome, describe_wanted
 from metagraph.graph.conversation.model import Conversation, side_name
 from metagraph.graph.model import LAYERS
 
 
-def cues(shown: Shown) -> int:
+def count_cues(shown: ShownPlayback) -> int:
     """Return how much plays on all layers."""
     return sum(len(shown.plan.layers[layer].cues) for layer in LAYERS)
 
 
-def marks_words(marks: list[Mark]) -> str:
+def describe_marks(marks: list[RequestMark]) -> str:
     """Return what is said of selected requests."""
     if len(marks) == 1:
         return tr(
             "{outcome} Asked for: {wanted}.",
-            outcome=outcome(marks[0].ask, marks[0].answer),
-            wanted=wanted(marks[0]),
+            outcome=describe_outcome(marks[0].ask, marks[0].answer),
+            wanted=describe_wanted(marks[0]),
         ).strip()
     unmet, chosen = (
         sum(1 for m in marks if m.lost),
@@ -32,11 +32,11 @@ def marks_words(marks: list[Mark]) -> str:
     return tr("{requests} selected, {unmet:,} of them could not be met", requests=chosen, unmet=unmet)
 
 
-def machine_words(shown: Shown, session: Session) -> str:
+def describe_machine(shown: ShownPlayback, session: StageSession) -> str:
     """Return what is said of the machine drawn by hand."""
     if session.transport.show == "context":
         return tr("Alone. Esc for the whole machine.")
-    count = cues(shown)
+    count = count_cues(shown)
     words = (
         tr(
             "{states} in {length:g} s.",
@@ -49,7 +49,7 @@ def machine_words(shown: Shown, session: Session) -> str:
     return words + "".join(f" {r.message[:1].upper()}{r.message[1:]}." for r in shown.plan.reports[-1:])
 
 
-def talk_words(shown: Shown, talk: Conversation | None) -> str:
+def describe_talk(shown: ShownPlayback, talk: Conversation | None) -> str:
     """Return what is said of the one whose plan of a conversation is seen."""
     who = side_name(talk, shown.side) if talk is not None else tr("One who talks")
     if shown.motion is not None:

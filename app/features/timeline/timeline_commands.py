@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.project.importing import Importing
 from app.shell.actions import Command
-from app.shell.command_table import Feature, all_of, has_skeleton
+from app.shell.command_table import Feature, all_met, has_skeleton
 from app.shell.context import Shell
 from app.translation import tr_noop
 
@@ -138,28 +138,28 @@ class TimelineFeature(Feature):
         return self.live.stage is not None
 
 
-def performance_shown(feature: TimelineFeature) -> bool:
+def is_performance_shown(feature: TimelineFeature) -> bool:
     """Whether the timeline is a performance's, and no clip's or action's that is looked at alone."""
     return feature.transport.show == "plan"
 
 
-def snaps(feature: TimelineFeature) -> bool:
+def is_snapping(feature: TimelineFeature) -> bool:
     return QSettings().value("timeline/magnet", "true") != "false"
 
 
-def conversation_performed(feature: TimelineFeature) -> bool:
+def is_conversation_performed(feature: TimelineFeature) -> bool:
     return feature.performance.conversation is not None
 
 
-def requests_kept(feature: TimelineFeature) -> bool:
+def has_kept_requests(feature: TimelineFeature) -> bool:
     return feature.requests.kept is not None
 
 
-def requests_selected(feature: TimelineFeature) -> bool:
+def has_requests_selected(feature: TimelineFeature) -> bool:
     return bool(feature.session.onstage.requests)
 
 
-def marker_selected(feature: TimelineFeature) -> bool:
+def has_marker_selected(feature: TimelineFeature) -> bool:
     return feature.noted.selected is not None
 
 
@@ -169,7 +169,7 @@ def _command(
     return Command(ident, "&Play", group, text, run, keys, when="meta", **{"enabled": has_skeleton, **more})
 
 
-performing = all_of(has_skeleton, performance_shown)
+performing = all_met(has_skeleton, is_performance_shown)
 COMMANDS = (
     _command(
         "range_in",
@@ -237,7 +237,7 @@ COMMANDS = (
         tr_noop("&Snap on the timeline"),
         TimelineFeature.toggle_snapping,
         ("S",),
-        checked=snaps,
+        checked=is_snapping,
     ),
     _command(
         "timeline_ripple",
@@ -278,7 +278,7 @@ COMMANDS = (
         TimelineFeature.cut_automatically,
         ("Ctrl+Shift+U",),
         tip=tr_noop("The camera of the conversation on stage follows who speaks"),
-        enabled=conversation_performed,
+        enabled=is_conversation_performed,
     ),
     _command(
         "captions",
@@ -310,7 +310,7 @@ COMMANDS = (
         tr_noop("Copy re&quests"),
         TimelineFeature.copy_requests,
         tip=tr_noop("As a text that another window pastes, too; Ctrl+C on the timeline"),
-        enabled=all_of(requests_kept, requests_selected),
+        enabled=all_met(has_kept_requests, has_requests_selected),
     ),
     _command(
         "requests_paste",

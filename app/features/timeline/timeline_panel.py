@@ -19,20 +19,20 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.timeline.lane_view import Lanes
-from app.features.timeline.stage_words import cues, machine_words, marks_words, talk_words
+from app.features.timeline.stage_words import count_cues, describe_machine, describe_marks, describe_talk
 from app.features.timeline.voices import Voices
 from app.features.timeline.what_if import WhatIf
 from app.look import icons
 from app.look.theme import theme
 from app.project.document import Document
 from app.project.jobs import Jobs
-from app.stage.performance import Performance
-from app.stage.session import Session
+from app.stage.performance import StagePerformance
+from app.stage.session import StageSession
 from app.translation import tr, tr_error, tr_noop, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
-from app.widgets.request_menu import MOOD_WORDS, request_menu
+from app.widgets.request_menu import MOOD_WORDS, make_request_menu
 from app.widgets.sentence import Sentence
 from metagraph.graph import edits
 from metagraph.graph.conversation.edits import change_conversation
@@ -57,8 +57,8 @@ class TimelinePanel(QWidget):
     def __init__(
         self,
         document: Document,
-        session: Session,
-        performance: Performance,
+        session: StageSession,
+        performance: StagePerformance,
         jobs: Jobs,
         parent: QWidget | None = None,
     ) -> None:
@@ -358,7 +358,9 @@ class TimelinePanel(QWidget):
     # --- asking, seed
 
     def _ask(self) -> None:
-        request_menu(self, self.performance, None).exec(self.ask.mapToGlobal(self.ask.rect().bottomLeft()))
+        make_request_menu(self, self.performance, None).exec(
+            self.ask.mapToGlobal(self.ask.rect().bottomLeft())
+        )
 
     def _seeded(self, value: float) -> None:
         seed = int(value)
@@ -410,20 +412,20 @@ class TimelinePanel(QWidget):
         chosen = self.session.onstage.requests if plan else ()
         marks = [m for m in self.lanes.marks() if m.ask.id in chosen] if chosen else []
         if marks:
-            self.title.say(marks_words(marks), True)
+            self.title.say(describe_marks(marks), True)
         elif self.performance.live.stage is not None and plan:
             self.title.say(self.performance.live.stage.words())
         elif shown.clip is not None:
             self.title.say(tr("A clip alone. Click it again to play it in context, Esc for the performance."))
         elif self.session.onstage.mode == "manual":
-            self.title.say(machine_words(shown, self.session))
+            self.title.say(describe_machine(shown, self.session))
         elif shown.others and plan:
             talk = self.document.project.conversations.get(self.session.onstage.conversation or "")
-            self.title.say(talk_words(shown, talk))
+            self.title.say(describe_talk(shown, talk))
         elif self.session.transport.show == "context":
             self.title.say(tr("In context: stance, action, back to the stance. Esc for the performance."))
         else:
-            count = cues(shown)
+            count = count_cues(shown)
             words = tr(
                 "{actions} in {length:g} s",
                 actions=tr_plural("{count:,} action", "{count:,} actions", count),

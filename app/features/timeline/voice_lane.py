@@ -6,9 +6,9 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QPainter, QPen
 
 from app.features.timeline.voices import Voices
-from app.look.theme import Theme
-from app.widgets.lane_geometry import LEFT, Scale, advance
-from app.widgets.waveforms import joined, painted
+from app.look.theme import WindowTheme
+from app.widgets.lane_geometry import LEFT, LaneScale, text_width
+from app.widgets.waveforms import join_columns, paint_columns
 
 TEXT = 15.0  # pixels of the words' line
 LETTERS = 12  # pixels high
@@ -18,7 +18,13 @@ LOW = 30.0  # pixels below which words stand over the waveform
 
 
 def paint_voice(
-    painter: QPainter, t: Theme, lane: QRectF, scale: Scale, width: float, voices: Voices, ratio: float
+    painter: QPainter,
+    t: WindowTheme,
+    lane: QRectF,
+    scale: LaneScale,
+    width: float,
+    voices: Voices,
+    ratio: float,
 ) -> None:
     """Paint waveform and words into a lane, or, where it is low, the words over the waveform. ratio: pixels
     of the screen to one of the widget.
@@ -54,12 +60,18 @@ def paint_voice(
                 Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft,
                 text,
             )
-            free = left + advance(text, key) + GAP
+            free = left + text_width(text, key) + GAP
     painter.restore()
 
 
 def _waves(
-    painter: QPainter, t: Theme, area: QRectF, scale: Scale, width: float, voices: Voices, ratio: float
+    painter: QPainter,
+    t: WindowTheme,
+    area: QRectF,
+    scale: LaneScale,
+    width: float,
+    voices: Voices,
+    ratio: float,
 ) -> None:
     """Paint the waveform of each line that is said, where it is said."""
     color = QColor(t.dim)
@@ -74,7 +86,7 @@ def _waves(
         first = scale.seconds(left) - speech.start
         low, top = voice.wave.columns(first, scale.each * ratio, wide)
         grow = (high / 2 - 1) / voice.loudest
-        upper, lower = joined(high / 2 - top * grow, high / 2 - low * grow, 1.0 * ratio)
-        picture = painted(upper, lower, high, color)
+        upper, lower = join_columns(high / 2 - top * grow, high / 2 - low * grow, 1.0 * ratio)
+        picture = paint_columns(upper, lower, high, color)
         picture.setDevicePixelRatio(ratio)
         painter.drawImage(QPointF(left, area.top()), picture)

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 
 from app.project.document import Document
-from app.project.jobs import Job, Jobs
-from app.stage.performance import Performance
+from app.project.jobs import Jobs, WindowJob
+from app.stage.performance import StagePerformance
 from app.translation import tr
 from app.widgets.memo import Once
 from metagraph.errors import FileError
@@ -28,7 +28,7 @@ Key = tuple[str | None, int | None, str | None]  # a line's sound, channel and T
 
 
 @dataclass(frozen=True)
-class Voice:
+class LineVoice:
     """wave: None where there is no sound, or it cannot be read. loudest: of its samples, 0..1."""
 
     wave: Envelope | None = None
@@ -42,12 +42,12 @@ class Voices(QObject):
     changed = Signal()
 
     def __init__(
-        self, document: Document, jobs: Jobs, performance: Performance, parent: QObject | None = None
+        self, document: Document, jobs: Jobs, performance: StagePerformance, parent: QObject | None = None
     ) -> None:
         super().__init__(parent)
         self.document, self.jobs, self.performance = document, jobs, performance
         self.version = 0
-        self._read: dict[Key, Voice | None] = {}  # None while it is being read
+        self._read: dict[Key, LineVoice | None] = {}  # None while it is being read
         self._words: Once[list[tuple[float, float, str]]] = Once()
         performance.changed.connect(self._follow)
         document.loaded.connect(self.forget)
@@ -81,19 +81,19 @@ class Voices(QObject):
             tr("Reading voices"), lambda job: _read_all(list(missing), job), self._came, lambda error: None
         )
 
-    def _came(self, found: dict[Key, Voice]) -> None:
+    def _came(self, found: dict[Key, LineVoice]) -> None:
         self._read.update(found)
         self.version += 1
         self.changed.emit()
 
-    def of(self, line: str | None) -> Voice | None:
+    def of(self, line: str | None) -> LineVoice | None:
         """Return the voice of a line, by its id, as far as it is read."""
         found = self.performance.shown.project.lines.get(line or "")
         return self._read.get(self._key(found)) if found is not None else None
 
     def words(self) -> list[tuple[float, float, str]]:
         """Return the words that are said and whose times are known: first and last second, text."""
-        from metagraph.speech.captions import told_words
+        from metagraph.speech.captions import list_timed_words
 
         shown = self.performance.shown
         if shown.clip is not None:
@@ -105,7 +105,7 @@ class Voices(QObject):
                 return [(w.start, w.end, w.text) for w in talk.sides[shown.side].words]
             said = shown.plan.track.speeches
             lines = {i: v.words for s in said if (i := s.line) and (v := self.of(i)) is not None}
-            return [(w.start, w.end, w.text) for s in said for w in told_words(s, lines)]
+            return [(w.start, w.end, w.text) for s in said for w in list_timed_words(s, lines)]
 
         return self._words.of((self.version, shown.side), (shown.plan, talk), make)
 
@@ -115,32 +115,32 @@ class Voices(QObject):
         return bool(self._lines()) or bool(self.words())
 
 
-def _read_all(keys: list[Key], job: Job) -> dict[Key, Voice]:
-    out: dict[Key, Voice] = {}
+def _read_all(keys: list[Key], job: WindowJob) -> dict[Key, LineVoice]:
+    out: dict[Key, LineVoice] = {}
     for n, key in enumerate(keys):
         if job.cancelled:
             break
         job.tell(n, len(keys), Path(key[0] or key[2] or "").name)
         out[key] = _voice(key)
-    return {**{key: Voice() for key in keys}, **out}
+    return {**{key: LineVoice() for key in keys}, **out}
 
 
-def _voice(key: Key) -> Voice:
+def _voice(key: Key) -> LineVoice:
     """Read one; what cannot be read is nothing: who plays it says why."""
     from app.widgets.waveforms import Envelope
-    from metagraph.speech.captions import line_words
+    from metagraph.speech.captions import describe_line
     from metagraph.speech.sound import read_recording
 
     path, channel, phones = key
-    words = line_words(Line(phones=phones), Path()) if phones is not None else ()
+    words = describe_line(Line(phones=phones), Path()) if phones is not None else ()
     if path is None:
-        return Voice(words=words)
+        return LineVoice(words=words)
     try:
         read = read_recording(path, LONGEST, KEPT)
     except FileError:
-        return Voice(words=words)
+        return LineVoice(words=words)
     there = channel is None or channel < len(read.samples)
     samples = read.samples.mean(0) if channel is None or not there else read.samples[channel]
     wave = Envelope(len(samples) / read.rate)
     wave.fill(0, samples, read.rate / wave.rate)
-    return Voice(wave, max(1e-3, float(abs(samples).max(initial=0.0))), words)
+    return LineVoice(wave, max(1e-3, float(abs(samples).max(initial=0.0))), words)

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QElapsedTimer, QObject, QRectF, Qt, QTimer, Signal
 from PySide6.QtGui import QPainter
 
-from app.look.names import plain
-from app.look.theme import Theme
+from app.look.names import plain_action_name
+from app.look.theme import WindowTheme
 from app.project.document import Document
 from app.project.jobs import Jobs
-from app.stage.performance import Performance
+from app.stage.performance import StagePerformance
 from app.translation import tr
-from app.widgets.lane_geometry import LEFT, Scale
+from app.widgets.lane_geometry import LEFT, LaneScale
 from metagraph.graph import edits
 from metagraph.graph.conversation.edits import change_conversation
 from metagraph.graph.editing import performances as performance_edits
@@ -43,7 +43,7 @@ class WhatIf(QObject):
     changed = Signal()
 
     def __init__(
-        self, document: Document, jobs: Jobs, performance: Performance, parent: QObject | None = None
+        self, document: Document, jobs: Jobs, performance: StagePerformance, parent: QObject | None = None
     ) -> None:
         super().__init__(parent)
         self.document, self.jobs, self.performance = document, jobs, performance
@@ -186,7 +186,7 @@ class WhatIf(QObject):
         here = (
             tr(
                 "{name}, {start:.2f} to {end:.2f} s\n",
-                name=plain(cue.action.name),
+                name=plain_action_name(cue.action.name),
                 start=cue.start,
                 end=cue.end,
             )
@@ -210,11 +210,11 @@ class WhatIf(QObject):
 def plan_with(project: Project, kept: KeptPerformance | None, length: float, seed: int) -> Plan:
     """Return what another seed plays of a performance, or improvises."""
     from metagraph.playback.planner import make_plan
-    from metagraph.playback.planning.running_plan import asks_of, perform
+    from metagraph.playback.planning.running_plan import list_kept_asks, plan_performance
 
     if kept is None:
         return make_plan(project, length, seed=seed)
-    return perform(project, asks_of(kept), length, seed, dict(kept.stances), kept.idle)
+    return plan_performance(project, list_kept_asks(kept), length, seed, dict(kept.stances), kept.idle)
 
 
 def seed_of(lane: str | None) -> int | None:
@@ -223,7 +223,7 @@ def seed_of(lane: str | None) -> int | None:
 
 
 def paint_ghost(
-    painter: QPainter, t: Theme, lane: QRectF, scale: Scale, width: float, plan: Plan | None
+    painter: QPainter, t: WindowTheme, lane: QRectF, scale: LaneScale, width: float, plan: Plan | None
 ) -> None:
     """Paint what a seed would play into its row: a strip for each layer, faint."""
     painter.save()

@@ -9,7 +9,7 @@ from PySide6.QtCore import QPointF, QRectF
 from PySide6.QtGui import QColor, QImage, QPainter, QPen, QPixmap
 
 from app.features.timing_editor.axis import Axis
-from app.features.timing_editor.paint import MIDDLE, Look
+from app.features.timing_editor.paint import MIDDLE, TimingLook
 from app.features.timing_editor.rows import GUTTER, JOINT
 from metagraph.motion.dope import DopeSheet
 
@@ -17,7 +17,9 @@ SEEN = 24  # of 255: what is less opaque is beside the figure
 PAUSE = 0.12  # of the greatest speed of a joint, below which nothing is painted
 
 
-def poses(painter: QPainter, look: Look, rect: QRectF, axis: Axis, pictures: Sequence[QImage]) -> None:
+def paint_poses(
+    painter: QPainter, look: TimingLook, rect: QRectF, axis: Axis, pictures: Sequence[QImage]
+) -> None:
     """Paint a clip's pictures, evenly apart from its first moment to its last; as many as find room."""
     left, right = max(axis.x(0), axis.left), min(axis.x(axis.length), axis.left + axis.width)
     if right <= left:
@@ -56,7 +58,9 @@ def room_of(pictures: Sequence[QImage]) -> QRectF:
     return QRectF(xs[0], ys[0], xs[-1] + 1 - xs[0], ys[-1] + 1 - ys[0])
 
 
-def dope(painter: QPainter, look: Look, rect: QRectF, axis: Axis, sheet: DopeSheet, color: QColor) -> None:
+def paint_dope_sheet(
+    painter: QPainter, look: TimingLook, rect: QRectF, axis: Axis, sheet: DopeSheet, color: QColor
+) -> None:
     """Paint what moves when: a line for each joint, the stronger the faster it turns."""
     painter.setFont(look.small)
     left, right = max(axis.x(0), axis.left), min(axis.x(axis.length), axis.left + axis.width)

@@ -36,7 +36,7 @@ class Hit:
     name: str = ""
 
 
-def hit_at(
+def find_timing_hit(
     tracks: Sequence[TrackRows],
     facts: Mapping[str, Facts],
     axis: Axis,

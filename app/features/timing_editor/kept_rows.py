@@ -12,9 +12,9 @@ from PySide6.QtGui import QColor, QPainter
 from app.features.timing_editor.axis import Axis
 from app.features.timing_editor.drags.host import Host
 from app.features.timing_editor.hits import Hit
-from app.features.timing_editor.paint import MIDDLE, Look
+from app.features.timing_editor.paint import MIDDLE, TimingLook
 from app.features.timing_editor.rows import TrackRows
-from app.features.timing_editor.track import Facts, Kept
+from app.features.timing_editor.track import Facts, KeptHand
 from app.translation import tr
 from metagraph.graph.clip_source import course_of
 from metagraph.graph.editing.retiming import set_kept
@@ -25,7 +25,7 @@ ENDS = ("first", "last")
 
 
 @dataclass(frozen=True)
-class Part:
+class KeptPart:
     """What of a kept hand is meant: one of its ends, or "" for all of it. place: among the clip's."""
 
     place: int
@@ -36,20 +36,20 @@ class Part:
         return f"kept {self.place} {self.end}"
 
     @staticmethod
-    def of(name: str) -> Part | None:
+    def of(name: str) -> KeptPart | None:
         """Return the part that a name stands for, None for a name of something else."""
         words = name.split(" ")
-        return Part(int(words[1]), words[2]) if words[0] == "kept" else None
+        return KeptPart(int(words[1]), words[2]) if words[0] == "kept" else None
 
 
-def seconds_of(facts: Facts, name: str) -> float | None:
+def find_kept_seconds(facts: Facts, name: str) -> float | None:
     """Return where an end of a kept hand is, seconds of the clip; None for what is none, or is gone."""
-    part = Part.of(name)
+    part = KeptPart.of(name)
     kept = next((k for k in facts.kept if part is not None and k.place == part.place), None)
     return float(getattr(kept, part.end)) if kept is not None and part is not None and part.end else None
 
 
-def bar(axis: Axis, rows: TrackRows, facts: Facts, kept: Kept) -> QRectF:
+def kept_bar(axis: Axis, rows: TrackRows, facts: Facts, kept: KeptHand) -> QRectF:
     """Return where a kept hand stands."""
     row = rows.rows[f"hand {facts.hands.index(kept.hand)}"]
     left, right = axis.x(kept.first), axis.x(kept.last)
@@ -57,13 +57,13 @@ def bar(axis: Axis, rows: TrackRows, facts: Facts, kept: Kept) -> QRectF:
 
 
 def paint_kept(
-    painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Facts
+    painter: QPainter, look: TimingLook, axis: Axis, rows: TrackRows, facts: Facts
 ) -> Iterator[tuple[str, QRectF]]:
     """Paint the rows of kept hands; yield where the numbers of their ends stand."""
     t = look.t
     painter.setFont(look.small)
     for kept in facts.kept:
-        box = bar(axis, rows, facts, kept)
+        box = kept_bar(axis, rows, facts, kept)
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(QColor(t.hover))
         painter.drawRoundedRect(box, 3, 3)
@@ -82,7 +82,7 @@ def paint_kept(
             place = QRectF(left, box.top(), width + 1, box.height())
             if _free(rows, axis, facts, kept, place):
                 painter.drawText(place, MIDDLE, words)
-                yield Part(kept.place, end).name, place
+                yield KeptPart(kept.place, end).name, place
         middle = inner.adjusted(wide[0] + 8, 0, -wide[1] - 8, 0) if within else inner
         words = look.elided(tr("at {place}", place=kept.to), middle.width(), True)
         if len(words) > 3:
@@ -90,7 +90,7 @@ def paint_kept(
             painter.drawText(middle, Qt.AlignmentFlag.AlignCenter, words)
 
 
-def _free(rows: TrackRows, axis: Axis, facts: Facts, kept: Kept, place: QRectF) -> bool:
+def _free(rows: TrackRows, axis: Axis, facts: Facts, kept: KeptHand, place: QRectF) -> bool:
     """Return whether a number is in sight and lies on no other bar of its hand, nor where that has its
     number.
     """
@@ -98,7 +98,9 @@ def _free(rows: TrackRows, axis: Axis, facts: Facts, kept: Kept, place: QRectF) 
         return False
     room = place.width() + 8
     others = (k for k in facts.kept if k.hand == kept.hand and k.place != kept.place)
-    return not any(bar(axis, rows, facts, k).adjusted(-room, 0, room, 0).intersects(place) for k in others)
+    return not any(
+        kept_bar(axis, rows, facts, k).adjusted(-room, 0, room, 0).intersects(place) for k in others
+    )
 
 
 def hit_kept(
@@ -106,21 +108,21 @@ def hit_kept(
 ) -> Hit | None:
     """Return which part of a kept hand is under a point: an end, by its number too, or all of it."""
     for name, box in numbers.items():
-        if Part.of(name) is not None and box.contains(at):
+        if KeptPart.of(name) is not None and box.contains(at):
             return Hit("kept", rows.ident, name)
     for kept in facts.kept:
-        box = bar(axis, rows, facts, kept)
+        box = kept_bar(axis, rows, facts, kept)
         if not box.adjusted(-REACH, 0, REACH, 0).contains(at):
             continue
         gaps = {end: abs(x - at.x()) for end, x in zip(ENDS, (box.left(), box.right()), strict=True)}
         end = min(ENDS, key=lambda e: gaps[e])
-        return Hit("kept", rows.ident, Part(kept.place, end if gaps[end] <= REACH else "").name)
+        return Hit("kept", rows.ident, KeptPart(kept.place, end if gaps[end] <= REACH else "").name)
     return None
 
 
-def tip(facts: Facts, hit: Hit) -> str:
+def describe_kept_hit(facts: Facts, hit: Hit) -> str:
     """Say what a kept hand does, and what can be done with it."""
-    part = Part.of(hit.name)
+    part = KeptPart.of(hit.name)
     kept = next((k for k in facts.kept if part is not None and k.place == part.place), None)
     if kept is None:
         return ""
@@ -134,7 +136,7 @@ def tip(facts: Facts, hit: Hit) -> str:
     )
 
 
-def change(host: Host, facts: Facts, kept: Kept) -> None:
+def change(host: Host, facts: Facts, kept: KeptHand) -> None:
     """Keep a hand from and until other seconds of the clip as it plays, in one step. Raises EditError."""
     course = course_of(facts.entry)
     if course is None:
@@ -150,7 +152,7 @@ def change(host: Host, facts: Facts, kept: Kept) -> None:
 
 def set_number(host: Host, facts: Facts, name: str, seconds: float) -> None:
     """Move an end of a kept hand to a moment of the clip as it plays. Raises EditError."""
-    part = Part.of(name)
+    part = KeptPart.of(name)
     kept = next((k for k in facts.kept if part is not None and k.place == part.place), None)
     if kept is not None and part is not None and part.end:
         change(host, facts, kept.with_end(part.end, min(max(0.0, seconds), facts.entry.duration)))

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from app.features.timing_editor.axis import Axis
 from app.stage.line_player import RATE
-from app.stage.playback_source import Shown
+from app.stage.playback_source import ShownPlayback
 from app.widgets.waveforms import Envelope
 from metagraph.graph.model import Action, Project
 from metagraph.playback.life.track import Speech
-from metagraph.playback.life.voice import voice_of
+from metagraph.playback.life.voice import voice_for_speech
 from metagraph.playback.planning.asked_lines import asked_line
 
 Array = NDArray[Any]
@@ -32,7 +32,7 @@ class Said:
     offset: float
 
 
-def said_in(shown: Shown, action: Action) -> Said | None:
+def find_line_heard(shown: ShownPlayback, action: Action) -> Said | None:
     """Return what is said where an action first plays with something said; None where nothing is."""
     if shown.clip is not None:
         return None
@@ -45,19 +45,19 @@ def said_in(shown: Shown, action: Action) -> Said | None:
     return None
 
 
-def line_of(project: Project, ident: str, action: Action, stroke: float) -> Said | None:
+def lay_line(project: Project, ident: str, action: Action, stroke: float) -> Said | None:
     """Return a line of the project laid on an action so that its first stress falls on the stroke; None where
     the line is gone.
     """
     if ident not in project.lines:
         return None
     speech = _speech(project, ident)
-    voice = voice_of(project.voices, speech)
+    voice = voice_for_speech(project.voices, speech)
     first = float(voice.accents[0]) if len(voice.accents) else 0.0
     return Said(speech, round(stroke - first, 3))
 
 
-def said_with(project: Project, action: Action) -> Said | None:
+def find_requested_line(project: Project, action: Action) -> Said | None:
     """Return the line that an action is asked for with, performed or not; None where there is none."""
     found = asked_line(project, action) if action.clip in project.clips else None
     if found is None:
@@ -70,11 +70,13 @@ def _speech(project: Project, ident: str) -> Speech:
     return Speech("line", 0.0, line.duration or 0.0, ident, line.text, length=line.duration)
 
 
-def stresses(project: Project, said: Said | None) -> tuple[float, ...]:
+def find_line_stresses(project: Project, said: Said | None) -> tuple[float, ...]:
     """Return the moments a line stresses, seconds of the clip."""
     if said is None:
         return ()
-    return tuple(round(float(t) + said.offset, 3) for t in voice_of(project.voices, said.speech).accents)
+    return tuple(
+        round(float(t) + said.offset, 3) for t in voice_for_speech(project.voices, said.speech).accents
+    )
 
 
 class Waves:
@@ -105,7 +107,7 @@ def _sound(samples: Array) -> Envelope:
 
 def _peaks(project: Project, said: Said) -> Envelope:
     """Where there is no sound, its syllables are drawn as guessed from the text."""
-    voice = voice_of(project.voices, said.speech)
+    voice = voice_for_speech(project.voices, said.speech)
     out = Envelope(max(voice.duration, 0.1))
     times = np.arange(int(voice.duration * out.rate) + 1) / out.rate
     loud: Array = voice.strengths if len(voice.strengths) else np.ones(len(voice.peaks))

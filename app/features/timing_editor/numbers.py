@@ -16,7 +16,9 @@ class Placed:
     line: int
 
 
-def placed(wanted: Sequence[tuple[float, float]], low: float, high: float, lines: int = 2) -> list[Placed]:
+def place_numbers(
+    wanted: Sequence[tuple[float, float]], low: float, high: float, lines: int = 2
+) -> list[Placed]:
     """Return where words stand that are wanted (middle, width), pixels, between two edges: in the first line
     in which they are free to stand there, else moved aside as little as it takes. In order of importance.
     """

@@ -10,15 +10,15 @@ from PySide6.QtGui import QColor, QPainter, QPen
 from app.features.timing_editor import kept_rows
 from app.features.timing_editor.axis import Axis
 from app.features.timing_editor.hits import Hit
-from app.features.timing_editor.paint import Look, ruler_words
+from app.features.timing_editor.paint import TimingLook, lay_out_ruler
 from app.features.timing_editor.rows import RULER, TrackRows
-from app.features.timing_editor.track import Facts, Kept
-from app.translation import tr, tr_phrase, translated
-from app.widgets.vocabulary import word
+from app.features.timing_editor.track import Facts, KeptHand
+from app.translation import lazy_texts, tr, tr_phrase
+from app.widgets.vocabulary import vocabulary_word
 from metagraph.playback.timing.handles import WORDS
 from metagraph.suggest.jumps.snapping import Snap
 
-HINTS = translated(
+HINTS = lazy_texts(
     lambda: {
         "start": tr("where it begins in the clip"),
         "end": tr("where it ends in the clip"),
@@ -33,9 +33,9 @@ HINTS = translated(
 )
 
 
-def playhead(
+def paint_timing_playhead(
     painter: QPainter,
-    look: Look,
+    look: TimingLook,
     axis: Axis,
     tracks: Sequence[TrackRows],
     facts: Mapping[str, Facts],
@@ -47,13 +47,13 @@ def playhead(
         return
     color = QColor(look.t.text)
     painter.setPen(QPen(color, 1.2))
-    upright(painter, tracks, x, RULER - 2)
+    paint_upright(painter, tracks, x, RULER - 2)
     painter.setFont(look.small)
     shown = facts[tracks[0].ident]
     words = f"{seconds:.2f} s"
     if len(shown.speeds) and seconds <= shown.entry.duration:
         words += f"  {shown.speed_at(seconds):.1f} m/s"
-    box = chip(painter, look, axis, words, x)
+    box = paint_chip(painter, look, axis, words, x)
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(color)
     painter.drawPolygon(
@@ -61,7 +61,7 @@ def playhead(
     )
 
 
-def upright(painter: QPainter, tracks: Sequence[TrackRows], x: float, top: float) -> None:
+def paint_upright(painter: QPainter, tracks: Sequence[TrackRows], x: float, top: float) -> None:
     """Paint a line through all rows but those in which numbers stand."""
     for rows in tracks:
         numbers = rows.rows["numbers"]
@@ -70,12 +70,12 @@ def upright(painter: QPainter, tracks: Sequence[TrackRows], x: float, top: float
         top = rows.bottom
 
 
-def chip(painter: QPainter, look: Look, axis: Axis, words: str, middle: float) -> QRectF:
+def paint_chip(painter: QPainter, look: TimingLook, axis: Axis, words: str, middle: float) -> QRectF:
     """Paint words in the ruler about a point, instead of what is written there; return where."""
     wide = look.wide(words) + 12
     left = min(max(axis.left, middle - wide / 2), axis.left + axis.width - wide)
     box = QRectF(left, 0, wide, RULER - 6)
-    for _, _, place in ruler_words(look, axis):
+    for _, _, place in lay_out_ruler(look, axis):
         if place.adjusted(-4, 0, 4, 0).intersects(box):
             painter.fillRect(place.adjusted(-1, 0, 1, 0), QColor(look.t.panel))
     painter.setPen(Qt.PenStyle.NoPen)
@@ -86,9 +86,9 @@ def chip(painter: QPainter, look: Look, axis: Axis, words: str, middle: float) -
     return box
 
 
-def part(
+def paint_looped_part(
     painter: QPainter,
-    look: Look,
+    look: TimingLook,
     axis: Axis,
     loop: tuple[str, float, float] | None,
     facts: Mapping[str, Facts],
@@ -106,9 +106,9 @@ def part(
             painter.drawLine(QPointF(x, 1), QPointF(x, RULER - 3))
 
 
-def held(
+def paint_held(
     painter: QPainter,
-    look: Look,
+    look: TimingLook,
     axis: Axis,
     width: float,
     tracks: Sequence[TrackRows],
@@ -127,7 +127,7 @@ def held(
     if snapped is not None:
         x = axis.x(snapped.at)
         painter.setPen(QPen(QColor(look.t.warning), 1.6))
-        upright(painter, tracks, x, RULER - 4)
+        paint_upright(painter, tracks, x, RULER - 4)
         words = f"{words} — {tr_phrase(snapped.why)}"
     wide = min(look.wide(words) + 18, width - axis.left)
     middle = axis.x(snapped.at) if snapped is not None else axis.left + axis.width / 2
@@ -140,27 +140,27 @@ def held(
     painter.drawText(box, Qt.AlignmentFlag.AlignCenter, look.elided(words, wide - 10))
 
 
-def stretched(
+def paint_stretched_hand(
     painter: QPainter,
-    look: Look,
+    look: TimingLook,
     axis: Axis,
     tracks: Sequence[TrackRows],
     facts: Mapping[str, Facts],
     ident: str,
-    kept: Kept,
+    kept: KeptHand,
 ) -> None:
     """Paint a kept hand as it would be if it were let go now."""
     rows = next((r for r in tracks if r.ident == ident), None)
     if rows is not None and kept.hand in facts[ident].hands:
         painter.setPen(QPen(QColor(look.t.text), 1.4, Qt.PenStyle.DashLine))
         painter.setBrush(Qt.BrushStyle.NoBrush)
-        painter.drawRoundedRect(kept_rows.bar(axis, rows, facts[ident], kept), 3, 3)
+        painter.drawRoundedRect(kept_rows.kept_bar(axis, rows, facts[ident], kept), 3, 3)
 
 
-def tip(facts: Facts, hit: Hit, seconds: float) -> str:
+def describe_timing_hit(facts: Facts, hit: Hit, seconds: float) -> str:
     """Say what is under the pointer, and what can be done with it."""
     if hit.what == "kept":
-        return kept_rows.tip(facts, hit)
+        return kept_rows.describe_kept_hit(facts, hit)
     if hit.what == "handle":
         found = facts.handle(hit.name)
         own = "" if found is None or found.own else tr(", as found from the motion")
@@ -168,14 +168,15 @@ def tip(facts: Facts, hit: Hit, seconds: float) -> str:
         return tr(
             "{handle}{number}{own}: {hint}.\nDrag it, with Alt without coming to rest; "
             "double-click its number to type.",
-            handle=word(WORDS[hit.name]),
+            handle=vocabulary_word(WORDS[hit.name]),
             number=number,
             own=own,
             hint=HINTS[hit.name],
         )
     if hit.what == "block":
         return tr(
-            "{name}: drag it; with Shift all of it plays another part of the clip.", name=word(hit.name)
+            "{name}: drag it; with Shift all of it plays another part of the clip.",
+            name=vocabulary_word(hit.name),
         )
     if hit.what == "stay":
         return tr("The clip is held here. Drag to hold it longer or shorter; to nothing takes the hold away.")

@@ -11,13 +11,13 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QBrush, QColor, QFont, QFontMetricsF, QPainter, QPen, QPolygonF
 
 from app.features.timing_editor.axis import Axis
-from app.features.timing_editor.numbers import placed
+from app.features.timing_editor.numbers import place_numbers
 from app.features.timing_editor.rows import GUTTER, RIGHT, RULER, TITLES, TrackRows
-from app.features.timing_editor.track import Facts, handle_words
-from app.look.theme import KIND_MARKS, Theme
+from app.features.timing_editor.track import Facts, describe_handle
+from app.look.theme import KIND_MARKS, WindowTheme
 from app.translation import tr
-from app.widgets.vocabulary import word
-from app.widgets.waveforms import joined, painted
+from app.widgets.vocabulary import vocabulary_word
+from app.widgets.waveforms import join_columns, paint_columns
 
 Array = NDArray[Any]
 
@@ -32,10 +32,10 @@ ORDER = ("start", "end", "stroke", "in", "out", "exit")  # whose numbers find th
 
 
 @dataclass(frozen=True)
-class Look:
+class TimingLook:
     """t: the theme. small: the font of numbers and names of rows."""
 
-    t: Theme
+    t: WindowTheme
     small: QFont
 
     def wide(self, words: str) -> float:
@@ -46,7 +46,7 @@ class Look:
         return QFontMetricsF(self.small).elidedText(words, mode, width)
 
 
-def ruler_words(look: Look, axis: Axis) -> list[tuple[float, str, QRectF]]:
+def lay_out_ruler(look: TimingLook, axis: Axis) -> list[tuple[float, str, QRectF]]:
     """Return where the ruler's marks are, what is written at them, and where that stands."""
     out = []
     for seconds in axis.marks():
@@ -58,16 +58,16 @@ def ruler_words(look: Look, axis: Axis) -> list[tuple[float, str, QRectF]]:
     return out
 
 
-def ruler(painter: QPainter, look: Look, axis: Axis) -> None:
+def paint_ruler(painter: QPainter, look: TimingLook, axis: Axis) -> None:
     """Paint seconds along the top."""
     painter.setFont(look.small)
     painter.setPen(QColor(look.t.dim))
-    for x, words, place in ruler_words(look, axis):
+    for x, words, place in lay_out_ruler(look, axis):
         painter.drawText(place, MIDDLE, words)
         painter.drawLine(QPointF(x, RULER - 4), QPointF(x, RULER - 1))
 
 
-def names(painter: QPainter, look: Look, rows: TrackRows, facts: Facts) -> None:
+def paint_row_names(painter: QPainter, look: TimingLook, rows: TrackRows, facts: Facts) -> None:
     """Paint what the rows are, at the left."""
     painter.setFont(look.small)
     t, line = look.t, QFontMetricsF(look.small).height()
@@ -96,12 +96,14 @@ def names(painter: QPainter, look: Look, rows: TrackRows, facts: Facts) -> None:
         painter.drawLine(QPointF(10, y + line / 2), QPointF(22, y + line / 2))
         painter.setPen(QColor(t.dim))
         painter.drawText(
-            QRectF(26, y, GUTTER - 28, line), MIDDLE, look.elided(word(curve.name), GUTTER - 28, True)
+            QRectF(26, y, GUTTER - 28, line),
+            MIDDLE,
+            look.elided(vocabulary_word(curve.name), GUTTER - 28, True),
         )
         y += line
 
 
-def ground(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Facts) -> None:
+def paint_row_ground(painter: QPainter, look: TimingLook, axis: Axis, rows: TrackRows, facts: Facts) -> None:
     """Paint what lies behind the rows: the part that plays is lighter than the rest of the clip."""
     t = look.t
     for name, rect in rows.rows.items():
@@ -113,7 +115,7 @@ def ground(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Fa
     painter.fillRect(QRectF(start, speed.top(), end - start, speed.height()), QColor(t.card))
 
 
-def blends(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Facts) -> None:
+def paint_blends(painter: QPainter, look: TimingLook, axis: Axis, rows: TrackRows, facts: Facts) -> None:
     """Paint the blends as ramps: how much of the action is seen."""
     rect, color = rows.rows["speed"], look.t.fill(facts.action.kind)
     color.setAlpha(52)
@@ -128,7 +130,9 @@ def blends(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Fa
             )
 
 
-def curves(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Facts) -> None:
+def paint_speed_curves(
+    painter: QPainter, look: TimingLook, axis: Axis, rows: TrackRows, facts: Facts
+) -> None:
     """Paint how fast what is looked at goes."""
     rect, top = rows.rows["speed"], facts.top * (1 + MARGIN)
     painter.setBrush(Qt.BrushStyle.NoBrush)
@@ -137,7 +141,9 @@ def curves(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Fa
         painter.drawPolyline(_line(axis, rect, curve.speeds / top, facts.entry.fps))
 
 
-def before(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Facts, top: float) -> None:
+def paint_action_before(
+    painter: QPainter, look: TimingLook, axis: Axis, rows: TrackRows, facts: Facts, top: float
+) -> None:
     """Paint the same action as it was: its curve and its ends, dim."""
     rect = rows.rows["speed"]
     painter.setPen(QPen(QColor(look.t.dim), 1.2, Qt.PenStyle.DotLine))
@@ -157,7 +163,7 @@ def _line(axis: Axis, rect: QRectF, part: Array, fps: float) -> QPolygonF:
     return QPolygonF([QPointF(x, y) for x, y in zip(xs.tolist(), ys.tolist(), strict=True)])
 
 
-def stays(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Facts) -> None:
+def paint_stays(painter: QPainter, look: TimingLook, axis: Axis, rows: TrackRows, facts: Facts) -> None:
     """Paint where the clip is held: hatched, with for how long."""
     rect = rows.rows["speed"]
     painter.setFont(look.small)
@@ -179,7 +185,9 @@ def stays(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Fac
             painter.drawText(label, Qt.AlignmentFlag.AlignCenter, words)
 
 
-def blocks(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Facts) -> None:
+def paint_phase_blocks(
+    painter: QPainter, look: TimingLook, axis: Axis, rows: TrackRows, facts: Facts
+) -> None:
     """Paint the phases, or for what has none the part that plays."""
     rect = rows.rows["phases"].adjusted(0, 1, 0, -1)
     painter.setFont(look.small)
@@ -192,20 +200,22 @@ def blocks(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Fa
         painter.drawRoundedRect(box, 3, 3)
         inner = QRectF(max(left, axis.left) + 6, rect.top(), 0, rect.height())
         inner.setRight(min(right, axis.left + axis.width) - 4)
-        full = f"{word(name)} {last - first:.2f} s"
-        words = next((w for w in (full, word(name)) if look.wide(w) <= inner.width()), "")
+        full = f"{vocabulary_word(name)} {last - first:.2f} s"
+        words = next((w for w in (full, vocabulary_word(name)) if look.wide(w) <= inner.width()), "")
         painter.setPen(QColor(INK))
         painter.drawText(inner, MIDDLE, words)
 
 
-def block_color(t: Theme, kind: str, name: str) -> QColor:
+def block_color(t: WindowTheme, kind: str, name: str) -> QColor:
     if name == "hold":
         return QColor(STILL)
     fill = t.fill(kind)
     return fill.darker(122) if name in ("preparation", "retraction") else fill
 
 
-def stance(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Facts) -> None:
+def paint_stance_distance(
+    painter: QPainter, look: TimingLook, axis: Axis, rows: TrackRows, facts: Facts
+) -> None:
     """Paint how far the clip is from its stances, brighter where it may begin and end, in the colour of
     mistakes where it does and that shows; and where beginning and ending is proposed.
     """
@@ -248,7 +258,9 @@ def stance(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Fa
             painter.drawPolygon(QPolygonF([QPointF(x - 4, y), QPointF(x + 4, y), QPointF(x, y + 6)]))
 
 
-def handles(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Facts) -> dict[str, QRectF]:
+def paint_handles(
+    painter: QPainter, look: TimingLook, axis: Axis, rows: TrackRows, facts: Facts
+) -> dict[str, QRectF]:
     """Paint the handles with their numbers; return where those stand, by the handle's name."""
     area, t = rows.handles, look.t
     speed = rows.rows["speed"]
@@ -266,13 +278,15 @@ def handles(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: F
     return _numbers(painter, look, axis, rows, facts)
 
 
-def _numbers(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Facts) -> dict[str, QRectF]:
+def _numbers(
+    painter: QPainter, look: TimingLook, axis: Axis, rows: TrackRows, facts: Facts
+) -> dict[str, QRectF]:
     rect, t = rows.rows["numbers"], look.t
     painter.setFont(look.small)
     chosen = [h for n in ORDER if (h := facts.handle(n)) is not None]
-    shown = [(h, _words(handle_words(h), h.name, facts, h.at)) for h in chosen if _in_sight(axis, h.at)]
+    shown = [(h, _words(describe_handle(h), h.name, facts, h.at)) for h in chosen if _in_sight(axis, h.at)]
     widths = [look.wide(words) + 10 for _, words in shown]
-    places = placed(
+    places = place_numbers(
         [(axis.x(h.at), w) for (h, _), w in zip(shown, widths, strict=True)],
         axis.left,
         axis.left + axis.width,
@@ -304,7 +318,9 @@ def _in_sight(axis: Axis, seconds: float) -> bool:
     return axis.left - 1 <= axis.x(seconds) <= axis.left + axis.width + 1
 
 
-def wave(painter: QPainter, look: Look, rect: QRectF, axis: Axis, low: Array, high: Array) -> None:
+def paint_wave(
+    painter: QPainter, look: TimingLook, rect: QRectF, axis: Axis, low: Array, high: Array
+) -> None:
     """Paint a sound. low, high `[W]`: its least and greatest in columns of pixels, -1..1; low greater where
     there is none.
     """
@@ -312,5 +328,5 @@ def wave(painter: QPainter, look: Look, rect: QRectF, axis: Axis, low: Array, hi
     there = high >= low
     top = np.where(there, half - np.where(there, high, 0.0) * (half - 1), 1.0)
     bottom = np.where(there, half - np.where(there, low, 0.0) * (half - 1), 0.0)
-    image = painted(*joined(top, bottom, 1.2), max(1, round(rect.height())), QColor(look.t.dim))
+    image = paint_columns(*join_columns(top, bottom, 1.2), max(1, round(rect.height())), QColor(look.t.dim))
     painter.drawImage(QPointF(axis.left, rect.top()), image)

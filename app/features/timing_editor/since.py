@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.project.document import Document
-from app.stage.session import Session
+from app.stage.session import StageSession
 from metagraph.graph.model import Project
 
 
@@ -13,7 +13,7 @@ class Since:
     project: None before anything was selected.
     """
 
-    def __init__(self, document: Document, session: Session) -> None:
+    def __init__(self, document: Document, session: StageSession) -> None:
         self.document, self.selection = document, session.selection
         self.project: Project | None = None
         self._of: tuple[str, ...] = ()

@@ -12,15 +12,22 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QImage
 
 from app.features.timing_editor.axis import Axis
-from app.features.timing_editor.line_heard import Said, Waves, line_of, said_in, said_with, stresses
+from app.features.timing_editor.line_heard import (
+    Said,
+    Waves,
+    find_line_heard,
+    find_line_stresses,
+    find_requested_line,
+    lay_line,
+)
 from app.features.timing_editor.since import Since
-from app.features.timing_editor.track import Facts, Track
+from app.features.timing_editor.track import Facts, TimingTrack
 from app.project.document import Document
 from app.stage.compatibility_state import Compatibility
 from app.stage.line_player import Sound
-from app.stage.onion import Skin
-from app.stage.performance import Performance
-from app.stage.session import Session
+from app.stage.onion import OnionSkin
+from app.stage.performance import StagePerformance
+from app.stage.session import StageSession
 from app.stage.thumbnails import Thumbnails
 from app.translation import tr
 from app.widgets.memo import Once
@@ -29,7 +36,7 @@ from metagraph.graph.clip_source import course_of
 from metagraph.graph.editing.retiming import keep_hand, set_hold, set_retime, set_speed
 from metagraph.graph.model import Project
 from metagraph.motion.dope import DopeSheet, dope_sheet
-from metagraph.playback.timing.handles import moved
+from metagraph.playback.timing.handles import move_handle
 
 Array = NDArray[Any]
 
@@ -66,8 +73,8 @@ class Subject(QObject):
     def __init__(
         self,
         document: Document,
-        session: Session,
-        performance: Performance,
+        session: StageSession,
+        performance: StagePerformance,
         compatibility: Compatibility,
         thumbnails: Thumbnails,
         sound: Sound,
@@ -83,8 +90,8 @@ class Subject(QObject):
         self.said: Said | None = None
         self.marked: Project | None = None
         self.before: Project | None = None
-        self._tracks: dict[str, Track] = {}
-        self._old: dict[str, Track] = {}
+        self._tracks: dict[str, TimingTrack] = {}
+        self._old: dict[str, TimingTrack] = {}
         self._waves = Waves()
         self._sheets: dict[str, Once[DopeSheet]] = {}
         document.loaded.connect(self._loaded)
@@ -142,11 +149,11 @@ class Subject(QObject):
         if self.shows.heard:
             stroke = next((f.handle("stroke") for f in self.facts().values()), None)
             at = stroke.at if stroke is not None else self.document.project.span(action)[0]
-            self.said = line_of(self.document.project, self.shows.heard, action, at)
+            self.said = lay_line(self.document.project, self.shows.heard, action, at)
             return
         project, staged = self.document.project, self.performance.staged
-        said = said_in(staged, action) if staged is not None else None
-        self.said = said if said is not None else said_with(project, action)
+        said = find_line_heard(staged, action) if staged is not None else None
+        self.said = said if said is not None else find_requested_line(project, action)
 
     def show(self, **changes: Any) -> None:
         """Show something else of the actions; fields of `Shows`."""
@@ -160,7 +167,7 @@ class Subject(QObject):
         """Return what is shown of each action that is still there, in the order they were selected."""
         project, out = self.document.project, {}
         for ident in self.idents:
-            track = self._tracks.setdefault(ident, Track(ident))
+            track = self._tracks.setdefault(ident, TimingTrack(ident))
             found = track.facts(project, self.shows.joint, self.compatibility.curves)
             if found is not None:
                 out[ident] = found
@@ -172,7 +179,7 @@ class Subject(QObject):
             return {}
         out = {}
         for ident in self.idents:
-            track = self._old.setdefault(ident, Track(ident))
+            track = self._old.setdefault(ident, TimingTrack(ident))
             found = track.facts(self.before, self.shows.joint, lambda _: None)
             if found is not None:
                 out[ident] = found
@@ -203,7 +210,7 @@ class Subject(QObject):
         motion = entry.motion
         groups: Mapping[str, str] | None = None
         if not self.shows.whole and motion.skeleton == project.skeleton:
-            groups = dict(zip(motion.skeleton.names, anatomy.parts(project), strict=True))
+            groups = dict(zip(motion.skeleton.names, anatomy.project_parts(project), strict=True))
         once = self._sheets.setdefault(ident, Once())
         key = (tuple(groups.items()) if groups is not None else (),)
         return once.of(key, (motion,), lambda: dope_sheet(motion, groups))
@@ -221,7 +228,7 @@ class Subject(QObject):
     def stresses(self, facts: Facts) -> tuple[float, ...]:
         if not self.idents or facts.action.id != self.idents[0]:
             return ()
-        return stresses(self.document.project, self.said)
+        return find_line_stresses(self.document.project, self.said)
 
     def playhead(self) -> float | None:
         """Return the moment of the first action's clip that plays; None while it does not."""
@@ -242,7 +249,7 @@ class Subject(QObject):
         """Move a handle of actions to moments of their clips, in one step."""
         project = self.document.project
         changes = {
-            ident: {"timing": moved(project, action, handle, seconds)}
+            ident: {"timing": move_handle(project, action, handle, seconds)}
             for ident, seconds in at.items()
             if (action := project.action(ident)) is not None and action.clip in project.clips
         }
@@ -331,4 +338,4 @@ class Subject(QObject):
             self.session.onion.show(None)
             return
         found = [(h.at, GHOSTS[h.name]) for h in facts.handles if h.name in GHOSTS]
-        self.session.onion.show(Skin(facts.action, tuple(found)))
+        self.session.onion.show(OnionSkin(facts.action, tuple(found)))

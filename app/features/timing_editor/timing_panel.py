@@ -17,15 +17,15 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.timing_editor.kept_rows import seconds_of, set_number
+from app.features.timing_editor.kept_rows import find_kept_seconds, set_number
 from app.features.timing_editor.subject import Subject
 from app.features.timing_editor.view import TimingView
-from app.look.names import told_names
+from app.look.names import names_in_tooltip
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr, tr_error, tr_plural
-from app.widgets.form_fields import Chooser, Seconds, common
+from app.widgets.form_fields import QuietChooser, Seconds, common_value
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
 from app.widgets.one_stop import OneStop
@@ -41,7 +41,7 @@ LONGEST = 30  # letters of an action's name before it is cut in its middle
 class TimingPanel(QWidget):
     """Every control changes the project by one edit, or only what is shown."""
 
-    def __init__(self, document: Document, session: Session, subject: Subject, parent: QWidget) -> None:
+    def __init__(self, document: Document, session: StageSession, subject: Subject, parent: QWidget) -> None:
         super().__init__(parent)
         self.document, self.session, self.subject = document, session, subject
         self.name = QLabel(self)
@@ -50,7 +50,7 @@ class TimingPanel(QWidget):
             QPushButton, tr("Use proposed"), self, toolTip=tr("Begin and end where no jump shows")
         )
         self.use.clicked.connect(self._use)
-        self.joint = Chooser(self, toolTip=tr("Whose speed is drawn"))
+        self.joint = QuietChooser(self, toolTip=tr("Whose speed is drawn"))
         self.joint.setMinimumContentsLength(12)
         self.joint.activated.connect(lambda n: subject.show(joint=self.joint.itemData(n)))
         tip = tr("Speed of the clip, 1 as it was read; what uses it follows. The file stays as it is")
@@ -122,7 +122,7 @@ class TimingPanel(QWidget):
         joints = joints_offered(self.document.project)
         offered = [(tr("what it moves"), ""), *((words, name) for name, words in joints)]
         self.joint.show_entries(offered, self.subject.shows.joint)
-        self.speed.show_value(common([f.entry.retime.speed for f in shown.values()]) if shown else 1.0)
+        self.speed.show_value(common_value([f.entry.retime.speed for f in shown.values()]) if shown else 1.0)
         if first is None:
             self._done()
             self.name.setText("")
@@ -139,7 +139,7 @@ class TimingPanel(QWidget):
         )
         cut = name if len(name) <= LONGEST else f"{name[: LONGEST // 2]}…{name[-LONGEST // 2 + 1 :]}"
         self.name.setText(f"{KIND_MARKS[first.action.kind]} {cut}")
-        self.name.setToolTip(told_names(name, first.action.name) if len(shown) == 1 else name)
+        self.name.setToolTip(names_in_tooltip(name, first.action.name) if len(shown) == 1 else name)
         set_sheet(self.name, f"color: {t.kinds[first.action.kind]}")
         worse = next((f for f in shown.values() if not f.fine), first)
         words = worse.verdict if len(shown) == 1 or worse.fine else f"{worse.name}: {worse.verdict}"
@@ -213,7 +213,7 @@ class TimingPanel(QWidget):
         """Let a number be typed where it stands."""
         facts = self.subject.facts().get(ident)
         found = facts.handle(handle) if facts is not None else None
-        kept = seconds_of(facts, handle) if facts is not None else None
+        kept = find_kept_seconds(facts, handle) if facts is not None else None
         if found is None and kept is None:
             return
         self._typing = (ident, handle)
@@ -234,7 +234,7 @@ class TimingPanel(QWidget):
         facts = self.subject.facts().get(ident)
         if facts is None or value < 0:
             return
-        if seconds_of(facts, handle) is not None:
+        if find_kept_seconds(facts, handle) is not None:
             self._try(lambda: set_number(self.view, facts, handle, value))
             return
         start, end = facts.span

@@ -10,20 +10,20 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from app.look.names import plain
+from app.look.names import plain_action_name
 from app.translation import tr, tr_phrase
 from app.widgets.memo import Once
-from app.widgets.vocabulary import word
+from app.widgets.vocabulary import vocabulary_word
 from metagraph.graph import anatomy
 from metagraph.graph.checks import end_gaps
 from metagraph.graph.clip_source import course_of
 from metagraph.graph.model import Action, ClipEntry, Project, Timing
 from metagraph.motion.retime import Hold
-from metagraph.playback.timing.handles import WORDS, Block, Handle, blocks_of, handles_of
+from metagraph.playback.timing.handles import WORDS, Handle, PhaseBlock, blocks_of, handles_of
 from metagraph.playback.timing.speed_curves import SpeedCurve, curves_of, speed_of
 from metagraph.suggest.jumps.found import Curves
-from metagraph.suggest.jumps.seen_jumps import Seen, far_ends, verdict
-from metagraph.suggest.stances.stance_distance import StanceDistance, distance_of, measured
+from metagraph.suggest.jumps.seen_jumps import SeenJumps, describe_ends, far_ends
+from metagraph.suggest.stances.stance_distance import StanceDistance, distance_of, measure_stance_distance
 
 Array = NDArray[Any]
 
@@ -38,7 +38,7 @@ class Stay:
 
 
 @dataclass(frozen=True)
-class Kept:
+class KeptHand:
     """A hand that is kept on the body. place: among the clip's. hand: whose row it is in, in words. to: the
     joint it stays at. first, last: seconds of the clip as it plays.
     """
@@ -49,7 +49,7 @@ class Kept:
     first: float
     last: float
 
-    def with_end(self, end: str, seconds: float) -> Kept:
+    def with_end(self, end: str, seconds: float) -> KeptHand:
         """Return it with its "first" or its "last" somewhere else."""
         return replace(self, first=seconds) if end == "first" else replace(self, last=seconds)
 
@@ -66,15 +66,15 @@ class Facts:
     entry: ClipEntry
     span: tuple[float, float]
     handles: tuple[Handle, ...]
-    blocks: tuple[Block, ...]
+    blocks: tuple[PhaseBlock, ...]
     speeds: Array
     curves: tuple[SpeedCurve, ...]
-    seen: Seen | None
+    seen: SeenJumps | None
     distance: StanceDistance
     verdict: str
     fine: bool
     stays: tuple[Stay, ...] = ()
-    kept: tuple[Kept, ...] = ()
+    kept: tuple[KeptHand, ...] = ()
 
     @property
     def hands(self) -> tuple[str, ...]:
@@ -95,7 +95,7 @@ class Facts:
         return max([0.2, *(float(c.speeds.max()) for c in self.curves if len(c.speeds))])
 
 
-class Track:
+class TimingTrack:
     """ident: of the action. The slow parts - speeds, distances - rest on its clip and its stances, not on its
     times, so that a drag makes nothing of them anew.
     """
@@ -137,15 +137,15 @@ class Track:
         both = self._far.of(
             (timeless, loops, tuple(graph.weights.items())),
             (entry.motion, *(end_gaps.motion_of(project, a) for a in loops)),
-            lambda: measured(project, action),
+            lambda: measure_stance_distance(project, action),
         )
-        seen = Seen(action, known) if known is not None else None
+        seen = SeenJumps(action, known) if known is not None else None
         words, fine = _verdict(project, action, seen)
         stance = project.stance(action.stance)
         limb = action.limb if action.layer == "arms" else None
         return Facts(
             action,
-            plain(action.name, stance.name if stance is not None else "", limb),
+            plain_action_name(action.name, stance.name if stance is not None else "", limb),
             entry,
             project.span(action),
             handles_of(project, action),
@@ -156,26 +156,29 @@ class Track:
             distance_of(project, action, seen, both),
             words,
             fine,
-            stays_of(entry),
-            kept_of(project, entry),
+            list_stays(entry),
+            list_kept_hands(project, entry),
         )
 
 
-def kept_of(project: Project, entry: ClipEntry) -> tuple[Kept, ...]:
+def list_kept_hands(project: Project, entry: ClipEntry) -> tuple[KeptHand, ...]:
     """Return where hands are kept on the body."""
     course = course_of(entry) if entry.retime.contacts else None
     if course is None:
         return ()
-    roles, names = anatomy.roles(project), project.skeleton.names if project.skeleton is not None else ()
+    roles, names = (
+        anatomy.project_roles(project),
+        project.skeleton.names if project.skeleton is not None else (),
+    )
     words = (("left_hand", tr("left hand")), ("right_hand", tr("right hand")))
     sides = {names[roles[role]]: said for role, said in words if role in roles}
     return tuple(
-        Kept(n, sides.get(c.hand, c.hand), c.to, course.time(c.first), course.time(c.last, late=True))
+        KeptHand(n, sides.get(c.hand, c.hand), c.to, course.time(c.first), course.time(c.last, late=True))
         for n, c in enumerate(entry.retime.contacts)
     )
 
 
-def stays_of(entry: ClipEntry) -> tuple[Stay, ...]:
+def list_stays(entry: ClipEntry) -> tuple[Stay, ...]:
     """Return where a clip is held."""
     course = course_of(entry) if entry.retime.holds else None
     if course is None:
@@ -183,12 +186,12 @@ def stays_of(entry: ClipEntry) -> tuple[Stay, ...]:
     return tuple(Stay(hold, *ends) for hold, ends in zip(entry.retime.holds, course.stays, strict=True))
 
 
-def handle_words(handle: Handle) -> str:
+def describe_handle(handle: Handle) -> str:
     """Return a handle's name and number: "blend in 0.20"."""
-    return f"{word(WORDS[handle.name])} {handle.number:.2f}"
+    return f"{vocabulary_word(WORDS[handle.name])} {handle.number:.2f}"
 
 
-def _verdict(project: Project, action: Action, seen: Seen | None) -> tuple[str, bool]:
+def _verdict(project: Project, action: Action, seen: SeenJumps | None) -> tuple[str, bool]:
     """Return what is said of beginning and ending, and whether that is nothing to mend."""
     if seen is None:
         return "", True
@@ -196,4 +199,4 @@ def _verdict(project: Project, action: Action, seen: Seen | None) -> tuple[str, 
     first, last = seen.cost("start", start), seen.cost("end", end)
     costs = {"Repeats": last} if seen.loops else {"Begins": first, "ends": last}
     far = far_ends(project, action)
-    return tr_phrase(verdict(costs, far)), max(costs.values()) <= 1 and not far
+    return tr_phrase(describe_ends(costs, far)), max(costs.values()) <= 1 and not far

@@ -26,26 +26,26 @@ from app.features.timing_editor.drags.pan import Panning
 from app.features.timing_editor.drags.scrub import Scrubbing
 from app.features.timing_editor.drags.stay import StayDrag
 from app.features.timing_editor.drags.timing import TimingDrag, block_change, handle_change
-from app.features.timing_editor.hits import Hit, hit_at
+from app.features.timing_editor.hits import Hit, find_timing_hit
 from app.features.timing_editor.kept_rows import hit_kept, paint_kept
 from app.features.timing_editor.rows import (
     GUTTER,
     RIGHT,
     TrackRows,
     TrackWants,
-    laid_out,
-    least_height,
+    lay_out_rows,
+    least_rows_height,
 )
 from app.features.timing_editor.subject import Subject
-from app.features.timing_editor.track import Facts, Kept, handle_words
+from app.features.timing_editor.track import Facts, KeptHand, describe_handle
 from app.look.theme import theme
 from app.project.document import Document
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.stage.transport import Transport
 from app.translation import tr, tr_noop
-from app.widgets.gesture import Hand
+from app.widgets.gesture import PointerHand
 from app.widgets.memo import Once
-from app.widgets.vocabulary import word
+from app.widgets.vocabulary import vocabulary_word
 from metagraph.suggest.jumps.snapping import Snap, snaps_of
 
 ZOOM = 1.2
@@ -60,16 +60,16 @@ class TimingView(QWidget):
 
     typed = Signal(str, str, QRectF)
 
-    def __init__(self, document: Document, session: Session, subject: Subject, parent: QWidget) -> None:
+    def __init__(self, document: Document, session: StageSession, subject: Subject, parent: QWidget) -> None:
         super().__init__(parent)
         self.document, self.session, self.subject = document, session, subject
         self.length = 1.0  # seconds of the longest clip
         self._near: Axis | None = None  # the part that is seen; None for everything
-        self.hand = Hand()
+        self.hand = PointerHand()
         self.snapped: Snap | None = None
         self.snaps: tuple[Snap, ...] = ()
         self.held = ""
-        self.stretched: tuple[str, Kept] | None = None
+        self.stretched: tuple[str, KeptHand] | None = None
         self.numbers: dict[str, dict[str, QRectF]] = {}
         self._clip = ""
         self._still: Once[tuple[QPixmap, dict[str, dict[str, QRectF]]]] = Once()
@@ -112,7 +112,7 @@ class TimingView(QWidget):
             self.numbers = {}
         if clip != self._clip:
             self._clip, self._near = clip, None
-        self.setMinimumHeight(round(least_height(self.wants())) + 2)
+        self.setMinimumHeight(round(least_rows_height(self.wants())) + 2)
         self.update()
 
     def wants(self) -> list[TrackWants]:
@@ -123,7 +123,7 @@ class TimingView(QWidget):
         ]
 
     def tracks(self) -> tuple[TrackRows, ...]:
-        return laid_out(self.wants(), self.width(), self.height())
+        return lay_out_rows(self.wants(), self.width(), self.height())
 
     def minimumSizeHint(self) -> QSize:
         return QSize(320, self.minimumHeight())
@@ -135,7 +135,7 @@ class TimingView(QWidget):
             numbers = self.numbers.get(rows.ident, {})
             if facts[rows.ident].kept and (kept := hit_kept(rows, facts[rows.ident], axis, numbers, at)):
                 return kept
-        return hit_at(tracks, facts, axis, self.numbers, at)
+        return find_timing_hit(tracks, facts, axis, self.numbers, at)
 
     # --- painting
 
@@ -147,19 +147,21 @@ class TimingView(QWidget):
         look, tracks, facts = self._look(), self.tracks(), self.subject.facts()
         seconds = self.subject.playhead()
         if seconds is not None:
-            overlay.playhead(painter, look, self.axis, tracks, facts, seconds)
-        overlay.part(painter, look, self.axis, self.transport.part, facts)
+            overlay.paint_timing_playhead(painter, look, self.axis, tracks, facts, seconds)
+        overlay.paint_looped_part(painter, look, self.axis, self.transport.part, facts)
         if self.stretched is not None:
-            overlay.stretched(painter, look, self.axis, tracks, facts, *self.stretched)
+            overlay.paint_stretched_hand(painter, look, self.axis, tracks, facts, *self.stretched)
         if self.held:
-            overlay.held(painter, look, self.axis, self.width(), tracks, self.snaps, self.snapped, self.held)
+            overlay.paint_held(
+                painter, look, self.axis, self.width(), tracks, self.snaps, self.snapped, self.held
+            )
         painter.end()
 
-    def _look(self) -> paint.Look:
+    def _look(self) -> paint.TimingLook:
         small = QFont(self.font())
         small.setPointSizeF(max(7.0, small.pointSizeF() * 0.9))
         small.setFeature(QFont.Tag("tnum"), 1)
-        return paint.Look(theme(self.session.look.name), small)
+        return paint.TimingLook(theme(self.session.look.name), small)
 
     def _picture(self) -> tuple[QPixmap, dict[str, dict[str, QRectF]]]:
         """Return what only an edit, zooming or a new size changes, and where the numbers stand."""
@@ -191,34 +193,36 @@ class TimingView(QWidget):
             )
             painter.end()
             return picture, {}
-        paint.ruler(painter, look, axis)
+        paint.paint_ruler(painter, look, axis)
         for rows in self.tracks():
             shown = facts[rows.ident]
-            paint.names(painter, look, rows, shown)
+            paint.paint_row_names(painter, look, rows, shown)
             painter.setClipRect(QRectF(axis.left - 1, rows.top, axis.width + 2, self.height()))
-            paint.ground(painter, look, axis, rows, shown)
+            paint.paint_row_ground(painter, look, axis, rows, shown)
             if "poses" in rows.rows:
                 own = self.subject.clip_axis(axis, shown)
-                filmstrip.poses(painter, look, rows.rows["poses"], own, self.subject.film(rows.ident))
+                filmstrip.paint_poses(painter, look, rows.rows["poses"], own, self.subject.film(rows.ident))
             if "line" in rows.rows:
                 wave = self.subject.wave(axis, shown)
-                paint.wave(painter, look, rows.rows["line"], axis, *wave)
-            paint.blends(painter, look, axis, rows, shown)
+                paint.paint_wave(painter, look, rows.rows["line"], axis, *wave)
+            paint.paint_blends(painter, look, axis, rows, shown)
             if rows.ident in before:
-                paint.before(painter, look, axis, rows, before[rows.ident], shown.top)
-            paint.curves(painter, look, axis, rows, shown)
+                paint.paint_action_before(painter, look, axis, rows, before[rows.ident], shown.top)
+            paint.paint_speed_curves(painter, look, axis, rows, shown)
             if "phases" in rows.rows:
-                paint.blocks(painter, look, axis, rows, shown)
+                paint.paint_phase_blocks(painter, look, axis, rows, shown)
             if "stance" in rows.rows:
-                paint.stance(painter, look, axis, rows, shown)
-            out[rows.ident] = paint.handles(painter, look, axis, rows, shown)
-            paint.stays(painter, look, axis, rows, shown)
+                paint.paint_stance_distance(painter, look, axis, rows, shown)
+            out[rows.ident] = paint.paint_handles(painter, look, axis, rows, shown)
+            paint.paint_stays(painter, look, axis, rows, shown)
             out[rows.ident].update(paint_kept(painter, look, axis, rows, shown))
             painter.setClipping(False)
             sheet = self.subject.sheet(rows.ident)
             if sheet.names:
                 own = self.subject.clip_axis(axis, shown)
-                filmstrip.dope(painter, look, rows.dope, own, sheet, look.t.kind(shown.action.kind))
+                filmstrip.paint_dope_sheet(
+                    painter, look, rows.dope, own, sheet, look.t.kind(shown.action.kind)
+                )
         painter.end()
         return picture, out
 
@@ -268,7 +272,7 @@ class TimingView(QWidget):
         def words(_: float) -> str:
             shown = self.subject.facts().get(facts.action.id, facts)
             handle = shown.handle(name)
-            return f"{handle_words(handle)} s" if handle is not None else name
+            return f"{describe_handle(handle)} s" if handle is not None else name
 
         return TimingDrag(self, facts, grip, snaps, handle_change(self.idents(), name), words)
 
@@ -280,7 +284,7 @@ class TimingView(QWidget):
             ends = next(((b.first, b.last) for b in shown.blocks if b.name == name), shown.span)
             return tr(
                 "{what} {start:.2f} to {end:.2f} s",
-                what=word(name) if name else tr("plays"),
+                what=vocabulary_word(name) if name else tr("plays"),
                 start=ends[0],
                 end=ends[1],
             )
@@ -360,4 +364,4 @@ class TimingView(QWidget):
         hit = self.hit(at)
         if hit is None:
             return ""
-        return overlay.tip(self.subject.facts()[hit.ident], hit, self.axis.seconds(at.x()))
+        return overlay.describe_timing_hit(self.subject.facts()[hit.ident], hit, self.axis.seconds(at.x()))

@@ -8,17 +8,17 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.look.plural import clips_words
-from app.project.jobs import Job
+from app.look.plural import count_clips
+from app.project.jobs import WindowJob
 from app.translation import tr, tr_error, tr_plural
 from metagraph.common.file_names import file_stem
-from metagraph.formats.clips import digest, read_clips
+from metagraph.formats.clips import digest, read_clip_file
 from metagraph.formats.gltf.writer import write_glb
 from metagraph.formats.imports import Loaded
 from metagraph.formats.store import relative
 from metagraph.formats.takes import REPAIRS
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.editing.mirroring import TwinClip, mirrored_clips, place_twins, twin_clips
+from metagraph.graph.editing.mirroring import TwinClip, mirror_clips, place_twins, twin_clips
 from metagraph.graph.edits import add_clips
 from metagraph.graph.model import Project
 from metagraph.motion.adopt import adopt
@@ -43,8 +43,8 @@ def make_twins(shell: Shell) -> None:
         )
         return
 
-    def work(job: Job) -> list[tuple[TwinClip, Loaded]]:
-        made = twin_clips(project, actions) if actions else mirrored_clips(project, clips)
+    def work(job: WindowJob) -> list[tuple[TwinClip, Loaded]]:
+        made = twin_clips(project, actions) if actions else mirror_clips(project, clips)
         out = []
         for n, twin in enumerate(made):
             job.tell(n, len(made), twin.name)
@@ -82,7 +82,7 @@ def make_twins(shell: Shell) -> None:
         words = (
             tr_plural("{count:,} mirrored twin", "{count:,} mirrored twins", count)
             if actions
-            else tr("{clips} mirrored", clips=clips_words(count))
+            else tr("{clips} mirrored", clips=count_clips(count))
         )
         names = ", ".join(twin.name for twin, _ in made[:3]) + (" …" if len(made) > 3 else "")
         shell.tell(
@@ -103,7 +103,7 @@ def write_twin(twin: TwinClip, folder: Path) -> Loaded:
     while path.exists():
         path, n = place / f"{stem}_{n}.glb", n + 1
     write_glb(path, [twin.motion])
-    (read,) = read_clips(path, REPAIRS)  # it is what it should be, so nothing of it is repaired
+    (read,) = read_clip_file(path, REPAIRS)  # it is what it should be, so nothing of it is repaired
     return relative(path, folder), 0, digest(path), adopt(read.renamed(twin.name), twin.motion.skeleton)
 
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from PySide6.QtCore import QTimer
 
-from app.features.welcome.welcome_page import Choice, WelcomePage
+from app.features.welcome.welcome_page import WelcomeChoice, WelcomePage
 from app.project.files import PRACTICE, SAMPLE, Files
 from app.project.importing import Importing
-from app.project.load import readable
+from app.project.load import describe_readable_formats
 from app.shell.context import Contribution, Shell
-from app.shell.places import Places
+from app.shell.places import PanelPlaces
 from app.translation import tr
 
 
@@ -19,21 +19,24 @@ def contribute(shell: Shell) -> Contribution:
 
     def begin() -> None:
         """Lay the page over the graph; once there are places."""
-        room = shell.services[Places].dock("graph").widget()
+        room = shell.services[PanelPlaces].dock("graph").widget()
         choices = (
-            Choice(
+            WelcomeChoice(
                 "import",
                 tr("Import clips"),
-                tr("A folder of your own motion: {formats}", formats=readable().splitlines()[0]),
+                tr(
+                    "A folder of your own motion: {formats}",
+                    formats=describe_readable_formats().splitlines()[0],
+                ),
                 importing.ask_import_folder,
             ),
-            Choice(
+            WelcomeChoice(
                 "practice",
                 tr("Practice"),
                 tr("152 clips without labels: say of each what it is, the graph grows with it"),
                 lambda: files.open(PRACTICE, template=True),
             ),
-            Choice(
+            WelcomeChoice(
                 "sample",
                 tr("Look at the sample"),
                 tr("A finished character that stands, gestures and talks"),

@@ -23,7 +23,7 @@ from app.features.welcome.welcome_pictures import PICTURES
 from app.look.theme import theme
 from app.project.document import Document
 from app.project.files import Files
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.translation import tr
 from app.widgets.making import make_widget
 
@@ -34,7 +34,7 @@ RECENT = 3  # projects that a card names
 
 
 @dataclass(frozen=True)
-class Choice:
+class WelcomeChoice:
     """A way to begin. id: of its picture too. what: what it is for."""
 
     id: str
@@ -43,10 +43,10 @@ class Choice:
     run: Callable[[], object]
 
 
-class Card(QAbstractButton):
+class WelcomeCard(QAbstractButton):
     """A picture over or beside a title and what it is for."""
 
-    def __init__(self, choice: Choice, session: Session, parent: QWidget) -> None:
+    def __init__(self, choice: WelcomeChoice, session: StageSession, parent: QWidget) -> None:
         super().__init__(parent)
         self.choice, self.session = choice, session
         self.setText(choice.title)
@@ -103,7 +103,12 @@ class WelcomePage(QWidget):
     """
 
     def __init__(
-        self, choices: Sequence[Choice], files: Files, session: Session, document: Document, room: QWidget
+        self,
+        choices: Sequence[WelcomeChoice],
+        files: Files,
+        session: StageSession,
+        document: Document,
+        room: QWidget,
     ) -> None:
         super().__init__(room)
         self.files, self.session, self.document, self.room = files, session, document, room
@@ -113,8 +118,10 @@ class WelcomePage(QWidget):
         title = QLabel(tr("How would you like to begin?"), self)
         title.setProperty("heading", True)
         title.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self.recent = Card(Choice("recent", tr("Go on"), "", self._choose_recent), session, self)
-        self.cards = [*(Card(c, session, self) for c in choices), self.recent]
+        self.recent = WelcomeCard(
+            WelcomeChoice("recent", tr("Go on"), "", self._choose_recent), session, self
+        )
+        self.cards = [*(WelcomeCard(c, session, self) for c in choices), self.recent]
         self.skip = make_widget(
             QToolButton, self, text=tr("Begin with an empty graph"), toolTip=tr("Close this page")
         )

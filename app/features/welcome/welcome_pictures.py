@@ -7,10 +7,10 @@ from collections.abc import Callable, Mapping
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 
-from app.look.theme import Theme
+from app.look.theme import WindowTheme
 from metagraph.graph.model import KINDS
 
-Draw = Callable[[QPainter, Theme, QRectF], None]
+Draw = Callable[[QPainter, WindowTheme, QRectF], None]
 HIGH = 64.0  # pixels of a picture, before it is scaled into its room
 
 
@@ -36,14 +36,14 @@ def _figure(painter: QPainter, ink: QColor, at: QPointF, high: float, lean: floa
         painter.drawLine(hip, hip + QPointF(side * 1.1 * u, 3.8 * u))
 
 
-def _card(painter: QPainter, t: Theme, box: QRectF, edge: QColor, lean: float) -> None:
+def _card(painter: QPainter, t: WindowTheme, box: QRectF, edge: QColor, lean: float) -> None:
     painter.setPen(QPen(edge, 1.4))
     painter.setBrush(QColor(t.field))
     painter.drawRoundedRect(box, 3, 3)
     _figure(painter, QColor(t.dim), QPointF(box.center().x(), box.top() + 4), box.height() - 9, lean)
 
 
-def _import(painter: QPainter, t: Theme, room: QRectF) -> None:
+def _import(painter: QPainter, t: WindowTheme, room: QRectF) -> None:
     _begin(painter, room, 150)
     painter.setPen(QPen(QColor(t.dim), 1.4))
     painter.setBrush(QColor(t.hover))
@@ -57,7 +57,7 @@ def _import(painter: QPainter, t: Theme, room: QRectF) -> None:
     painter.restore()
 
 
-def _practice(painter: QPainter, t: Theme, room: QRectF) -> None:
+def _practice(painter: QPainter, t: WindowTheme, room: QRectF) -> None:
     _begin(painter, room, 170)
     for n, (kind, lean) in enumerate(zip(KINDS, (0.0, 1.0, 0.5, 0.2), strict=True)):
         box = QRectF(6 + 42 * n, 6, 30, 40)
@@ -68,7 +68,7 @@ def _practice(painter: QPainter, t: Theme, room: QRectF) -> None:
     painter.restore()
 
 
-def _sample(painter: QPainter, t: Theme, room: QRectF) -> None:
+def _sample(painter: QPainter, t: WindowTheme, room: QRectF) -> None:
     _begin(painter, room, 170)
     painter.setBrush(Qt.BrushStyle.NoBrush)
     for left, kind in ((8.0, "gesture"), (118.0, "fidget")):
@@ -88,7 +88,7 @@ def _sample(painter: QPainter, t: Theme, room: QRectF) -> None:
     painter.restore()
 
 
-def _recent(painter: QPainter, t: Theme, room: QRectF) -> None:
+def _recent(painter: QPainter, t: WindowTheme, room: QRectF) -> None:
     _begin(painter, room, 130)
     for n in (2, 1, 0):
         painter.setPen(QPen(QColor(t.line), 1.2))

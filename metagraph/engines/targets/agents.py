@@ -15,11 +15,11 @@ import msgspec
 from metagraph.common.file_names import file_stems
 from metagraph.common.wording import phrase
 from metagraph.common.xml_text import replaced_note
-from metagraph.engines.engine_machine import Machine, State, animations, machines, write_machine_glb
+from metagraph.engines.engine_machine import EngineState, Machine, animations, machines, write_machine_glb
 from metagraph.engines.targets.losses import MACHINE
 from metagraph.engines.targets.meshes import mesh_of
-from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
-from metagraph.errors import error_words
+from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
+from metagraph.errors import describe_error
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Project
@@ -30,7 +30,7 @@ from metagraph.playback.timing.phases import phases
 # --- BML
 
 
-def blocks(project: Project) -> Iterator[tuple[str, tuple[a.AnyRequest, ...]]]:
+def list_blocks(project: Project) -> Iterator[tuple[str, tuple[a.AnyRequest, ...]]]:
     """Yield a name and the asks of each block: the kept performances, then the lines."""
     for performance in project.performances.values():
         yield performance.name, tuple(x for x in performance.asks if not isinstance(x, a.Bml))
@@ -62,17 +62,17 @@ def vocabulary(project: Project) -> dict[str, Any]:
     }
 
 
-def write_blocks(order: ExportOrder) -> Made:
+def write_blocks(order: ExportOrder) -> ExportedFiles:
     """Write a file for each block, and the vocabulary."""
     files: list[Path] = []
     notes: list[str] = []
-    for name, asks in blocks(order.project):
+    for name, asks in list_blocks(order.project):
         path = order.folder / f"{_file(name, files)}.bml"
         numbered = tuple(_numbered(asks))
         try:
             content = write_bml(numbered).encode()
         except RequestError as error:
-            notes.append(phrase("'{name}' is left out: {why}", name=name, why=error_words(error)))
+            notes.append(phrase("'{name}' is left out: {why}", name=name, why=describe_error(error)))
             continue
         lost = replaced_note([msgspec.to_builtins(numbered)])
         if lost is not None:
@@ -86,7 +86,7 @@ def write_blocks(order: ExportOrder) -> Made:
         if files
         else ("no performance is kept and no line has requests of its own: there is the vocabulary alone",)
     )
-    return Made((*files, words), (*notes, *none))
+    return ExportedFiles((*files, words), (*notes, *none))
 
 
 def _numbered(asks: tuple[a.AnyRequest, ...]) -> Iterator[a.AnyRequest]:
@@ -136,7 +136,7 @@ def gesture_map(name: str, built: tuple[Machine, ...], files: Mapping[str, str])
     return "\n".join(rows) + "\n"
 
 
-def _words(state: State) -> tuple[str, str]:
+def _words(state: EngineState) -> tuple[str, str]:
     """Return a gesture's lexeme and type: its tags, else its name."""
     tags = [re.sub(r"\W+", "_", tag).upper() for tag in state.action.tags]
     return (tags[0] if tags else re.sub(r"\W+", "_", state.action.name).upper()), (
@@ -144,7 +144,7 @@ def _words(state: State) -> tuple[str, str]:
     )
 
 
-def write_smartbody(order: ExportOrder) -> Made:
+def write_smartbody(order: ExportOrder) -> ExportedFiles:
     """Write the map, and a BVH for each animation it names and each posture."""
     from metagraph.formats.bvh.file import write_bvh
 
@@ -159,7 +159,7 @@ def write_smartbody(order: ExportOrder) -> Made:
         order.tell(n, len(clips), clip.name)
         files.append(order.folder / "motions" / f"{name}.bvh")
         write_bvh(clip, files[-1])
-    return Made(tuple(files))
+    return ExportedFiles(tuple(files))
 
 
 # --- Sumerian
@@ -187,14 +187,14 @@ def gestures(project: Project, built: tuple[Machine, ...]) -> dict[str, Any]:
     return out
 
 
-def write_sumerian(order: ExportOrder) -> Made:
+def write_sumerian(order: ExportOrder) -> ExportedFiles:
     """Write gesture.json and the GLB with its animations."""
     built = machines(order.project)
     table, glb = order.folder / "gesture.json", order.folder / f"{order.stem}.glb"
     body, notes = mesh_of(order)
     write_machine_glb(order.project, built, glb, body)
     write_atomically(table, json.dumps(gestures(order.project, built), indent=1).encode())
-    return Made((table, glb), notes)
+    return ExportedFiles((table, glb), notes)
 
 
 def _unsaid(project: Project) -> int:

@@ -6,16 +6,16 @@ import io
 import zipfile
 
 from metagraph.common.wording import phrase
-from metagraph.engines.targets.runtimes import RUNTIMES, written
-from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
+from metagraph.engines.targets.runtimes import RUNTIMES, write_with_sounds
+from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.formats.atomic import write_atomically
 
 ADDON = "metagraph_blender"
 
 
-def write(order: ExportOrder) -> Made:
+def write(order: ExportOrder) -> ExportedFiles:
     """Write the export and the archive, each time the same."""
-    made = written(order)
+    made = write_with_sounds(order)
     page, archive = order.folder / "README.md", order.folder / f"{ADDON}.zip"
     content = io.BytesIO()
     with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as out:
@@ -23,7 +23,7 @@ def write(order: ExportOrder) -> Made:
             out.writestr(zipfile.ZipInfo(f"{ADDON}/{path.name}"), path.read_bytes(), zipfile.ZIP_DEFLATED)
     write_atomically(archive, content.getvalue())
     write_atomically(page, (RUNTIMES / "blender" / "README.md").read_bytes())
-    return Made((archive, page, *made.files), made.notes)
+    return ExportedFiles((archive, page, *made.files), made.notes)
 
 
 TARGETS = (

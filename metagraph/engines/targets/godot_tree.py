@@ -35,13 +35,13 @@ from collections.abc import Iterator, Mapping
 from typing import Literal
 
 from metagraph.common.wording import phrase
-from metagraph.engines.engine_machine import Arrow, Machine, State, machines, write_machine_glb
+from metagraph.engines.engine_machine import Arrow, EngineState, Machine, machines, write_machine_glb
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
 from metagraph.engines.targets.meshes import mesh_of
-from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
+from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph import anatomy
-from metagraph.graph.expand import ends_in
+from metagraph.graph.expand import find_end_stance
 from metagraph.graph.model import Layer, Part, Project
 
 Version = Literal[3, 4]
@@ -84,7 +84,7 @@ class _Resources:
 def tree(project: Project, built: tuple[Machine, ...], version: Version) -> str:
     """Return the AnimationTree's root as the text of a .tres file."""
     out = _Resources(version)
-    filters = {m.layer: m.joints for m in built} if version == 4 else owned(project, built)
+    filters = {m.layer: m.joints for m in built} if version == 4 else find_owned_joints(project, built)
     fields = [
         f"nodes/base/node = {out.add('AnimationNodeBlendSpace1D')}",
         "nodes/base/position = Vector2(0, 0)",
@@ -111,13 +111,13 @@ def tree(project: Project, built: tuple[Machine, ...], version: Version) -> str:
     return out.text("AnimationNodeBlendTree", *fields)
 
 
-def owned(project: Project, built: tuple[Machine, ...]) -> dict[Layer, tuple[str, ...]]:
+def find_owned_joints(project: Project, built: tuple[Machine, ...]) -> dict[Layer, tuple[str, ...]]:
     """Return for each layer the joints it alone moves where layers cannot be added: the one its part belongs
     to, or else the first that reaches it.
     """
     assert project.skeleton is not None
     out: dict[Layer, list[str]] = {m.layer: [] for m in built}
-    for joint, part in zip(project.skeleton.names, anatomy.parts(project), strict=True):
+    for joint, part in zip(project.skeleton.names, anatomy.project_parts(project), strict=True):
         reaching = [m.layer for m in built if joint in m.joints]
         if reaching:
             out[OWNER[part] if OWNER[part] in reaching else reaching[0]].append(joint)
@@ -131,11 +131,11 @@ def paths_of(project: Project, joint: str, version: Version) -> tuple[str, ...]:
     node = ("Armature/" if sum(p < 0 for p in project.skeleton.parents) > 1 else "") + (
         "Skeleton3D" if version == 4 else "Skeleton"
     )
-    names = (name,) if version == 4 else (name, old_name(joint))
+    names = (name,) if version == 4 else (name, godot3_name(joint))
     return tuple(f"{node}:{n}" for n in dict.fromkeys(names))
 
 
-def old_name(joint: str) -> str:
+def godot3_name(joint: str) -> str:
     """Return a joint's name as Godot 3 imports it unless told otherwise: LeftThumb1 -> left_thumb_1."""
     word = (
         r"(?<![A-Z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z]{2})|(?<![0-9])(?=[0-9])|(?<=[0-9])(?=[^0-9][a-z0-9])"
@@ -160,7 +160,7 @@ def _machine(out: _Resources, machine: Machine) -> str:
     return out.add("AnimationNodeStateMachine", *fields)
 
 
-def _state(out: _Resources, state: State) -> str:
+def _state(out: _Resources, state: EngineState) -> str:
     if out.version == 3:
         return out.add("AnimationNodeAnimation", f'animation = "{state.name}"')
     own = (
@@ -195,15 +195,17 @@ def _transition(out: _Resources, arrow: Arrow) -> str:
     return out.add("AnimationNodeStateMachineTransition", *fields)
 
 
-def _places(machine: Machine) -> Iterator[tuple[State, Place]]:
+def _places(machine: Machine) -> Iterator[tuple[EngineState, Place]]:
     """Yield the states with their places: a block for each stance, blocks further apart than any is wide and
     high. From the loop in its corner outwards come the transitions in the order they were placed, since the
     nearest is taken, and then all else.
     """
-    blocks: dict[str | None, list[State]] = {stance: [machine.rest(stance)] for stance in machine.stances}
+    blocks: dict[str | None, list[EngineState]] = {
+        stance: [machine.rest(stance)] for stance in machine.stances
+    }
     for state in sorted(machine.states, key=lambda s: s.action.kind != "transition"):
-        if state is not machine.rest(str(ends_in(state.action))):
-            blocks[ends_in(state.action)].append(state)
+        if state is not machine.rest(str(find_end_stance(state.action))):
+            blocks[find_end_stance(state.action)].append(state)
     largest = max(len(b) for b in blocks.values())
     columns = math.ceil(math.sqrt(largest / 3))
     rows = math.ceil(largest / columns)
@@ -218,7 +220,7 @@ def _places(machine: Machine) -> Iterator[tuple[State, Place]]:
             yield state, (number * step + x, y)
 
 
-def write(order: ExportOrder) -> Made:
+def write(order: ExportOrder) -> ExportedFiles:
     """Write both trees, the GLB and a guide."""
     project, stem = order.project, order.stem
     built = machines(project)
@@ -230,15 +232,15 @@ def write(order: ExportOrder) -> Made:
     texts = {
         f"{stem}.tres": tree(project, built, 4),
         f"{stem}.godot3.tres": tree(project, built, 3),
-        f"{stem}.godot.md": guide(stem, built),
+        f"{stem}.godot.md": write_godot_guide(stem, built),
     }
     for name, text in texts.items():
         write_atomically(order.folder / name, text.encode())
     order.tell(2, 2, "done")
-    return Made((*(order.folder / name for name in texts), glb), notes)
+    return ExportedFiles((*(order.folder / name for name in texts), glb), notes)
 
 
-def guide(stem: str, built: tuple[Machine, ...]) -> str:
+def write_godot_guide(stem: str, built: tuple[Machine, ...]) -> str:
     """Return in Markdown how a scene plays the tree, and the states there are."""
     layers = ", ".join(f'"{m.layer}"' for m in built)
     loops = ", ".join(f'"{s.name}"' for m in built for s in m.states if s.loop)
@@ -250,7 +252,7 @@ def guide(stem: str, built: tuple[Machine, ...]) -> str:
         parts.append("\n| action | seconds | in | then |\n|---|---|---|---|\n")
         for state in machine.states:
             if state is not machine.rest(state.action.stance):
-                here, there = names[state.action.stance], names[str(ends_in(state.action))]
+                here, there = names[state.action.stance], names[str(find_end_stance(state.action))]
                 parts.append(
                     f"| `{state.name}` | {state.seconds:.2f} | {here} | {there if there != here else ''} |\n"
                 )

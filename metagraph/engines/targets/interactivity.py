@@ -14,13 +14,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from metagraph.common.wording import phrase
-from metagraph.engines.engine_machine import Machine, State, animations, machines
+from metagraph.engines.engine_machine import EngineState, Machine, animations, machines
 from metagraph.engines.targets.losses import MACHINE
 from metagraph.engines.targets.meshes import mesh_of
-from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
+from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph import anatomy
-from metagraph.graph.expand import ends_in
+from metagraph.graph.expand import find_end_stance
 from metagraph.graph.model import Layer, Part, Project
 
 OWNERS: Mapping[Part, Layer] = {
@@ -33,13 +33,13 @@ OWNERS: Mapping[Part, Layer] = {
 TYPES = ("int", "float", "bool", "ref")
 
 
-def owned(project: Project, built: tuple[Machine, ...]) -> dict[Layer, list[int]]:
+def find_joints_of_layers(project: Project, built: tuple[Machine, ...]) -> dict[Layer, list[int]]:
     """Return the joints each layer moves alone; those of a layer that has no machine go to the body, or the
     first there is.
     """
     there = [m.layer for m in built]
     out: dict[Layer, list[int]] = {layer: [] for layer in there}
-    for joint, part in enumerate(anatomy.parts(project)):
+    for joint, part in enumerate(anatomy.project_parts(project)):
         owner = OWNERS[part] if OWNERS[part] in there else there[0]
         out[owner].append(joint)
     return out
@@ -86,7 +86,7 @@ class _Graph:
             "math/eq", None, a=self.node("variable/get", {"variable": [variable]}), b=("int", value)
         )
 
-    def start(self, state: State, endless: int) -> int:
+    def start(self, state: EngineState, endless: int) -> int:
         end = endless if state.loop else ("float", self.seconds[state.name])
         return self.node(
             "animation/start",
@@ -97,7 +97,7 @@ class _Graph:
             speed=("float", 1.0),
         )
 
-    def stop(self, state: State) -> int:
+    def stop(self, state: EngineState) -> int:
         return self.node("animation/stop", None, animation=("ref", f"/animations/{self.places[state.name]}"))
 
     def document(self) -> dict[str, Any]:
@@ -151,7 +151,7 @@ class _Lane:
         )
         self.go_on = graph.event(f"{name}.go_on")
 
-    def action(self, state: State) -> None:
+    def action(self, state: EngineState) -> None:
         """Receive: if it is its stance and nothing plays, forget where to go, and play."""
         graph, here = self.graph, self.machine.stances[state.action.stance]
         name = f"{self.machine.layer}.action.{state.name}"
@@ -165,12 +165,12 @@ class _Lane:
         graph.flow(both, "0", graph.set(self.goal, 0))
         graph.flow(both, "1", self.play(state))
 
-    def play(self, state: State) -> int:
+    def play(self, state: EngineState) -> int:
         """Return the node that stops the loop of the stance, plays, then the loop of the stance it ends in,
         and goes on with its way.
         """
         graph, machine = self.graph, self.machine
-        here, there = state.action.stance, ends_in(state.action) or state.action.stance
+        here, there = state.action.stance, find_end_stance(state.action) or state.action.stance
         first = graph.node("flow/sequence")
         graph.flow(first, "0", graph.set(self.busy, 1))
         graph.flow(first, "1", graph.stop(machine.rest(here)))
@@ -217,7 +217,7 @@ class _Lane:
                         graph.flow(wanted, "true", playing)
 
 
-def write(order: ExportOrder) -> Made:
+def write(order: ExportOrder) -> ExportedFiles:
     """Write the GLB."""
     from metagraph.formats.gltf.writer import ForEngine, write_glb
 
@@ -227,7 +227,7 @@ def write(order: ExportOrder) -> Made:
     body, notes = mesh_of(order)
     order.tell(0, 2, "clips")
     clips = animations(project, built)
-    joints = owned(project, built)
+    joints = find_joints_of_layers(project, built)
     moved = {s.name: joints[m.layer] for m in built for s in m.states}
     chart = behaviour(built, {c.name: n for n, c in enumerate(clips)}, {c.name: c.duration for c in clips})
     order.tell(1, 2, "graph")
@@ -242,7 +242,7 @@ def write(order: ExportOrder) -> Made:
     names += [f"{m.layer}.stance.{word}" for m in built for word in m.stance_words.values()]
     write_atomically(events, json.dumps(names, indent=1).encode())
     order.tell(2, 2, "done")
-    return Made((glb, events), notes)
+    return ExportedFiles((glb, events), notes)
 
 
 TARGETS = (

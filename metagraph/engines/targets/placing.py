@@ -21,7 +21,7 @@ import msgspec
 
 from metagraph.common.budgets import TEXT_FILE
 from metagraph.common.files import is_file, is_inside, read_file
-from metagraph.common.network_paths import reason
+from metagraph.common.network_paths import explain_refusal
 from metagraph.common.wording import phrase
 from metagraph.engines.export_error import ExportError
 from metagraph.errors import FileError
@@ -37,7 +37,7 @@ _LAST = {".glb": 1, ".json": 2}  # files that are moved behind the others
 NAMED = 4  # foreign files that are named
 
 
-class Record(msgspec.Struct, frozen=True):
+class ExportRecord(msgspec.Struct, frozen=True):
     """What was written: for which target, of which project; its files by their paths in the folder, with
     their SHA-256. replaced: those of the export before, while files are exchanged; None afterwards.
     """
@@ -57,7 +57,7 @@ class ForeignFilesError(ExportError):
     paths in the folder.
     """
 
-    def __init__(self, folder: Path, files: tuple[str, ...], of: Record | None) -> None:
+    def __init__(self, folder: Path, files: tuple[str, ...], of: ExportRecord | None) -> None:
         self.folder, self.files = folder, files
         more = f" and {len(files) - NAMED} more" if len(files) > NAMED else ""
         whose = f"; the folder holds an export of '{of.project}' for '{of.target}'" if of is not None else ""
@@ -67,10 +67,10 @@ class ForeignFilesError(ExportError):
         )
 
 
-def read_record(folder: Path) -> Record | None:
+def read_record(folder: Path) -> ExportRecord | None:
     """Return what was exported into a folder; None where nothing was, or where it cannot be told."""
     try:
-        return msgspec.json.decode(read_file(folder / RECORD, TEXT_FILE), type=Record)
+        return msgspec.json.decode(read_file(folder / RECORD, TEXT_FILE), type=ExportRecord)
     except (FileError, msgspec.DecodeError, UnicodeDecodeError):
         return None
 
@@ -92,7 +92,7 @@ def foreign(folder: Path, wanted: Mapping[str, str], target: str, project: str) 
     return tuple(out)
 
 
-def place(
+def place_files(
     staged: Staging, folder: Path, names: Iterable[str], target: str, project: str, overwrite: bool
 ) -> None:
     """Move files from where they were staged into a folder, and take away what an earlier export of the same
@@ -113,19 +113,19 @@ def place(
         known = {**(before.replaced or {}), **before.files}
         for name in sorted(known.keys() - digests.keys()):
             old = folder / name
-            if reason(name, folder) is not None or not is_inside(old, folder):
+            if explain_refusal(name, folder) is not None or not is_inside(old, folder):
                 continue  # no name that an export would have written
             if is_file(old) and before.knows(name, digest(old)):
                 gone.append(name)
     (staged.path / BEFORE).mkdir()
-    _write_record(staged.path / BEFORE / RECORD, Record(target, project, digests, known))
-    _write_record(staged.path / RECORD, Record(target, project, digests))
+    _write_record(staged.path / BEFORE / RECORD, ExportRecord(target, project, digests, known))
+    _write_record(staged.path / RECORD, ExportRecord(target, project, digests))
     # Last what names the others: the GLB, its JSON right after it, the record.
     order = sorted(digests, key=lambda name: (_LAST.get(Path(name).suffix.lower(), 0), -name.count("/")))
     staged.move([f"{BEFORE}/{RECORD}", *order, RECORD], gone)
 
 
-def _write_record(path: Path, record: Record) -> None:
+def _write_record(path: Path, record: ExportRecord) -> None:
     write_atomically(path, msgspec.json.format(msgspec.json.encode(record), indent=1))
 
 
@@ -218,13 +218,13 @@ def sweep_staging(folder: Path) -> list[Path]:
     """Remove the staging folders of exports that were killed; return them. Those of other computers, which
     cannot be asked, go after a day.
     """
-    swept = forsaken_staging(folder)
+    swept = find_forsaken_staging(folder)
     for path in swept:
         shutil.rmtree(path, ignore_errors=True)
     return swept
 
 
-def forsaken_staging(folder: Path) -> list[Path]:
+def find_forsaken_staging(folder: Path) -> list[Path]:
     """Return the staging folders that killed exports have left in a folder."""
     found: list[Path] = []
     with suppress(OSError, ValueError):

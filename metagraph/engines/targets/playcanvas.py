@@ -15,7 +15,7 @@ from metagraph.common.wording import phrase
 from metagraph.engines.engine_machine import Arrow, Machine, machines, write_machine_glb
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
 from metagraph.engines.targets.meshes import mesh_of
-from metagraph.engines.targets.target import ExportOrder, ExportTarget, Made
+from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.gltf.writer import SCENE
 from metagraph.graph.model import Project
@@ -86,7 +86,7 @@ def _transitions(machine: Machine, arrow: Arrow) -> Iterator[dict[str, Any]]:
         yield {**whole, "priority": 0 if arrow.on == "action" else 1, "conditions": conditions}
 
 
-def write(order: ExportOrder) -> Made:
+def write(order: ExportOrder) -> ExportedFiles:
     """Write the state graph, a guide to its numbers, and the GLB."""
     built = machines(order.project)
     graph, glb = order.folder / f"{order.stem}.animstategraph.json", order.folder / f"{order.stem}.glb"
@@ -98,12 +98,14 @@ def write(order: ExportOrder) -> Made:
         graph, json.dumps(state_graph(order.project, built), indent=1, ensure_ascii=False).encode()
     )
     numbers = order.folder / f"{order.stem}.numbers.json"
-    write_atomically(numbers, json.dumps(guide(built), indent=1, ensure_ascii=False).encode())
+    write_atomically(
+        numbers, json.dumps(write_playcanvas_guide(built), indent=1, ensure_ascii=False).encode()
+    )
     order.tell(2, 2, "done")
-    return Made((graph, numbers, glb), notes)
+    return ExportedFiles((graph, numbers, glb), notes)
 
 
-def guide(built: tuple[Machine, ...]) -> dict[str, Any]:
+def write_playcanvas_guide(built: tuple[Machine, ...]) -> dict[str, Any]:
     """Return which number stands for which action and stance."""
     return {
         machine.layer: {

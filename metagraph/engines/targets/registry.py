@@ -10,12 +10,12 @@ from importlib import import_module
 from pathlib import Path
 
 from metagraph.common.wording import phrase
-from metagraph.engines.export import sound, stem_of
+from metagraph.engines.export import require_exportable, stem_of
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets.placing import Staging
-from metagraph.engines.targets.placing import place as move
-from metagraph.engines.targets.target import BARE, Contents, ExportOrder, ExportTarget, Report, Tell
-from metagraph.formats.atomic import synced_together
+from metagraph.engines.targets.placing import place_files as move
+from metagraph.engines.targets.target import BARE, Contents, ExportOrder, ExportTarget, TargetReport, Tell
+from metagraph.formats.atomic import sync_together
 from metagraph.formats.store import writable
 from metagraph.graph.model import Project
 
@@ -64,14 +64,14 @@ def losses(project: Project, name: str) -> tuple[str, ...]:
     return tuple(words for loss in target(name).losses if (words := loss.told(project)) is not None)
 
 
-def write(
+def write_for_target(
     project: Project,
     name: str,
     folder: str | Path,
     contents: Contents = BARE,
     tell: Tell | None = None,
     overwrite: bool = False,
-) -> Report:
+) -> TargetReport:
     """Write a project for a target into a folder, which is made.
 
     overwrite: also files that are not of an earlier export of the same project for the same target. All of it
@@ -90,17 +90,17 @@ def write(
             )
         )
     project = writable(project)
-    warnings = sound(project)
+    warnings = require_exportable(project)
     place = Path(folder)
     with Staging(place) as staged:
         order = ExportOrder(project, staged.path, stem_of(project), contents)
         if tell is not None:
             order = replace(order, tell=tell)
-        with synced_together():
+        with sync_together():
             made = chosen.write(order)
         names = tuple(path.relative_to(staged.path).as_posix() for path in made.files)
         move(staged, place, names, name, project.name, overwrite)
     clips = len(project.uses.keys() | {project.base.clip} - {None})
-    return Report(
+    return TargetReport(
         name, tuple(place / n for n in names), clips, losses(project, name), (*made.notes, *warnings)
     )

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from metagraph import engines
 from metagraph.common.wording import phrase
-from metagraph.engines.export import write
-from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
+from metagraph.engines.export import write_project_files
+from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.errors import FileError
 
 RUNTIMES = Path(engines.__file__).with_name("runtimes")
@@ -17,9 +17,9 @@ REQUESTS = "../../../../docs/agents/live.md"  # where a README finds them here; 
 BML = Loss(phrase("requests in Behaviour Markup Language are read by the desktop alone"))
 
 
-def written(order: ExportOrder) -> Made:
+def write_with_sounds(order: ExportOrder) -> ExportedFiles:
     """Write JSON, GLB and the lines' sounds."""
-    made = write(
+    made = write_project_files(
         order.project,
         order.folder,
         order.contents.expanded,
@@ -29,10 +29,10 @@ def written(order: ExportOrder) -> Made:
         order.contents.chosen,
         order.contents.compress,
     )
-    return Made((made.json, made.glb, *made.sounds), made.warnings)
+    return ExportedFiles((made.json, made.glb, *made.sounds), made.warnings)
 
 
-def copied(source: Path, target: Path, leave: tuple[str, ...] = ()) -> list[Path]:
+def copy_runtime(source: Path, target: Path, leave: tuple[str, ...] = ()) -> list[Path]:
     """Copy a runtime's files; return them. leave: names that are not copied. Raises FileError."""
     out = []
     for path in sorted(source.rglob("*")):
@@ -62,10 +62,12 @@ def copied(source: Path, target: Path, leave: tuple[str, ...] = ()) -> list[Path
     return out
 
 
-def _with(runtime: str, under: str) -> Callable[[ExportOrder], Made]:
-    def write(order: ExportOrder) -> Made:
-        made = written(order)
-        return Made((*made.files, *copied(RUNTIMES / runtime, order.folder / under)), made.notes)
+def _with(runtime: str, under: str) -> Callable[[ExportOrder], ExportedFiles]:
+    def write(order: ExportOrder) -> ExportedFiles:
+        made = write_with_sounds(order)
+        return ExportedFiles(
+            (*made.files, *copy_runtime(RUNTIMES / runtime, order.folder / under)), made.notes
+        )
 
     return write
 
@@ -73,13 +75,13 @@ def _with(runtime: str, under: str) -> Callable[[ExportOrder], Made]:
 PLUGIN = "Plugins/Metagraph"  # where Unreal looks for a project's plugins
 
 
-def _plugin(order: ExportOrder) -> Made:
+def _plugin(order: ExportOrder) -> ExportedFiles:
     """Write the export and Unreal's plugin, the C++ runtime inside it."""
-    made = written(order)
-    files = copied(RUNTIMES / "unreal", order.folder / PLUGIN)
+    made = write_with_sounds(order)
+    files = copy_runtime(RUNTIMES / "unreal", order.folder / PLUGIN)
     core = order.folder / PLUGIN / "Source" / "Metagraph" / "Private" / "Core"
-    files += copied(RUNTIMES / "cpp", core, ("README.md", "conformance.hpp", "conformance.cpp"))
-    return Made((*made.files, *files), made.notes)
+    files += copy_runtime(RUNTIMES / "cpp", core, ("README.md", "conformance.hpp", "conformance.cpp"))
+    return ExportedFiles((*made.files, *files), made.notes)
 
 
 TARGETS = (
@@ -87,7 +89,7 @@ TARGETS = (
         "metagraph",
         "Metagraph (JSON + GLB)",
         phrase("one JSON, the graph, and one GLB, its clips"),
-        written,
+        write_with_sounds,
         group=phrase("Played as the preview does"),
         unpacks=True,
     ),

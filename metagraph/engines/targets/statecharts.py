@@ -13,10 +13,10 @@ from typing import Any
 from xml.etree import ElementTree as Xml
 
 from metagraph.common.wording import phrase
-from metagraph.engines.engine_machine import Arrow, Machine, State, machines, write_machine_glb
+from metagraph.engines.engine_machine import Arrow, EngineState, Machine, machines, write_machine_glb
 from metagraph.engines.targets.losses import MACHINE
 from metagraph.engines.targets.meshes import mesh_of
-from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
+from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.formats.atomic import write_atomically
 
 HOST = Loss(
@@ -40,7 +40,7 @@ def _events(machine: Machine, arrow: Arrow) -> Iterator[str]:
         yield from (f"{machine.layer}.stance.{words[value]}" for value in arrow.values)
 
 
-def _ends(machine: Machine, state: State) -> tuple[Arrow | None, float]:
+def _ends(machine: Machine, state: EngineState) -> tuple[Arrow | None, float]:
     """Return the arrow that leaves an action of itself, and the seconds from which others may be taken."""
     done = next((a for a in machine.leaving[state.name] if a.on == "done"), None)
     others = [a.leave or 0.0 for a in machine.leaving[state.name] if a.on != "done"]
@@ -54,7 +54,7 @@ def xstate(name: str, built: tuple[Machine, ...]) -> dict[str, Any]:
     return {"id": name, "type": "parallel", "states": {machine.layer: _region(machine) for machine in built}}
 
 
-def _play(state: State, blend: float) -> dict[str, Any]:
+def _play(state: EngineState, blend: float) -> dict[str, Any]:
     return {
         "type": "play",
         "params": {"animation": state.name, "blend": round(blend, 4), "loop": state.loop},
@@ -70,7 +70,7 @@ def _region(machine: Machine) -> dict[str, Any]:
     }
 
 
-def _node(machine: Machine, state: State) -> dict[str, Any]:
+def _node(machine: Machine, state: EngineState) -> dict[str, Any]:
     done, leave = _ends(machine, state)
     events: dict[str, Any] = {}
     for arrow in machine.leaving[state.name]:
@@ -127,7 +127,7 @@ def _tag(parent: Xml.Element | None, tag: str, **attributes: str) -> Xml.Element
     return Xml.SubElement(parent, f"{{{NAMESPACE}}}{tag}", named)
 
 
-def _state(region: Xml.Element, machine: Machine, state: State) -> None:
+def _state(region: Xml.Element, machine: Machine, state: EngineState) -> None:
     done, leave = _ends(machine, state)
     end = (done.leave or 0.0) if done is not None else 0.0
     bound = done is not None and leave > 0
@@ -165,7 +165,7 @@ def _timer(node: Xml.Element, event: str, seconds: float) -> None:
     node.insert(1, leaving)
 
 
-def _write(order: ExportOrder, suffix: str, text: bytes, built: tuple[Machine, ...]) -> Made:
+def _write(order: ExportOrder, suffix: str, text: bytes, built: tuple[Machine, ...]) -> ExportedFiles:
     chart, glb = order.folder / f"{order.stem}.{suffix}", order.folder / f"{order.stem}.glb"
     body, notes = mesh_of(order)
     order.tell(0, 2, "clips")
@@ -173,16 +173,16 @@ def _write(order: ExportOrder, suffix: str, text: bytes, built: tuple[Machine, .
     order.tell(1, 2, "chart")
     write_atomically(chart, text)
     order.tell(2, 2, "done")
-    return Made((chart, glb), notes)
+    return ExportedFiles((chart, glb), notes)
 
 
-def write_xstate(order: ExportOrder) -> Made:
+def write_xstate(order: ExportOrder) -> ExportedFiles:
     built = machines(order.project)
     text = json.dumps(xstate(order.stem, built), indent=1, ensure_ascii=False)
     return _write(order, "xstate.json", text.encode(), built)
 
 
-def write_scxml(order: ExportOrder) -> Made:
+def write_scxml(order: ExportOrder) -> ExportedFiles:
     built = machines(order.project)
     return _write(order, "scxml", scxml(order.stem, built), built)
 

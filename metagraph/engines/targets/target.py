@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from metagraph.common.wording import Phrase, phrase
-from metagraph.engines.export import Chosen, nothing_chosen
+from metagraph.engines.export import Chosen, choose_nothing
 from metagraph.graph.model import Project
-from metagraph.motion.character_mesh import Character
+from metagraph.motion.character_mesh import CharacterMesh
 
 Tell = Callable[[int, int, str], None]
 
@@ -41,10 +41,10 @@ class Contents:
     that read it then.
     """
 
-    character: Path | Character | None = None
+    character: Path | CharacterMesh | None = None
     expanded: bool = False
     base: Path | None = None
-    chosen: Chosen = nothing_chosen
+    chosen: Chosen = choose_nothing
     compress: bool = False
 
 
@@ -63,7 +63,7 @@ class ExportOrder:
 
 
 @dataclass(frozen=True)
-class Made:
+class ExportedFiles:
     """The files of an export, and what else there is to say."""
 
     files: tuple[Path, ...]
@@ -80,7 +80,7 @@ class ExportTarget:
     name: str
     title: str
     files: str
-    write: Callable[[ExportOrder], Made]
+    write: Callable[[ExportOrder], ExportedFiles]
     losses: tuple[Loss, ...] = ()
     untried: str = ""
     group: str = phrase("Formats")
@@ -88,7 +88,7 @@ class ExportTarget:
 
 
 @dataclass(frozen=True)
-class Report:
+class TargetReport:
     """What was written for a target. losses: in words, for this project."""
 
     target: str

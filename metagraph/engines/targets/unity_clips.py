@@ -23,10 +23,10 @@ from metagraph.engines.targets.unity_yaml import (
     Written,
     asset,
     fields,
+    format_yaml_number,
+    format_yaml_text,
     joint_path,
     main_id,
-    number,
-    text,
 )
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
@@ -90,7 +90,7 @@ def clip_asset(
         written = _write_keys(np.concatenate(numbers, 1), values.shape[2])
         for joint, count in zip(joints, counts, strict=True):
             path = joint_path(skeleton, joint)
-            curves[kind].append(_CURVE % ("".join(islice(written, count)), text(path)))
+            curves[kind].append(_CURVE % ("".join(islice(written, count)), format_yaml_text(path)))
             bound.append(_BOUND % (zlib.crc32(path.encode()), kind))
 
     shifts = np.broadcast_to(
@@ -179,7 +179,7 @@ def _write_keys(rows: Array, size: int) -> Iterator[str]:
     """Yield the text of each key `[K, 1 + 3 * size]`: seconds and values to 6 digits, slopes to 4."""
     digits, key = [6] * (1 + size) + [4] * (2 * size), _KEY[size]
     for row in rows.tolist():
-        yield key % tuple(map(number, row, digits))
+        yield key % tuple(map(format_yaml_number, row, digits))
 
 
 def _keys(values: Array, slopes: Array, tolerance: float) -> list[list[int]]:

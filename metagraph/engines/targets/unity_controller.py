@@ -17,10 +17,10 @@ import numpy as np
 
 from metagraph.common.file_names import file_stems
 from metagraph.common.wording import phrase
-from metagraph.engines.engine_machine import Arrow, Machine, State, animations, machines
+from metagraph.engines.engine_machine import Arrow, EngineState, Machine, animations, machines
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
 from metagraph.engines.targets.meshes import mesh_of
-from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
+from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.engines.targets.unity_clips import Moving, clip_asset
 from metagraph.engines.targets.unity_yaml import (
     CLIP,
@@ -195,7 +195,7 @@ def _at(x: int, y: int) -> Inline:
     return Inline(x=x, y=y, z=0)
 
 
-def _transitions(machine: Machine, state: State, seconds: float) -> Iterator[Row]:
+def _transitions(machine: Machine, state: EngineState, seconds: float) -> Iterator[Row]:
     """Yield the transitions that leave a state, those that come first to be taken first: one for each value,
     since all of a transition's conditions must hold.
     """
@@ -251,7 +251,7 @@ def _transition(arrow: Arrow, value: str, conditions: list[dict[str, Any]], leav
     )
 
 
-def mask(skeleton: Skeleton, machine: Machine) -> bytes:
+def make_avatar_mask(skeleton: Skeleton, machine: Machine) -> bytes:
     """Return a layer's AvatarMask: all joints, those of the layer with weight 1."""
     elements = [{"m_Path": "", "m_Weight": 1}]
     elements += [
@@ -263,7 +263,7 @@ def mask(skeleton: Skeleton, machine: Machine) -> bytes:
     return asset((MASK, main_id(MASK), "AvatarMask", whole))
 
 
-def write(order: ExportOrder) -> Made:
+def write(order: ExportOrder) -> ExportedFiles:
     """Write controller, masks, clips and a guide, each with its `.meta`, and the mesh as a GLB, where there
     is one.
     """
@@ -298,7 +298,7 @@ def write(order: ExportOrder) -> Made:
     )
     reference = to(CLIP, project.name, f"{BASE}.anim")
     for machine in built:
-        put(f"{machine.layer}.mask", mask(skeleton, machine), MASK)
+        put(f"{machine.layer}.mask", make_avatar_mask(skeleton, machine), MASK)
         moving = _moving([skeleton.index(name) for name in machine.joints], shifted)
         for state in machine.states:
             order.tell(len(made) // 2, len(states) + len(built) + 3, state.name)
@@ -307,7 +307,7 @@ def write(order: ExportOrder) -> Made:
             put(f"{name}.anim", clip_asset(clips[state.name], name, moving, base, state.loop, pose), CLIP)
     seconds = {name: clip.duration for name, clip in clips.items()}
     put(f"{order.stem}.controller", controller(project, order.stem, built, names, seconds), CONTROLLER)
-    put(f"{order.stem}.unity.md", guide(order.stem, skeleton, built).encode(), None)
+    put(f"{order.stem}.unity.md", write_unity_guide(order.stem, skeleton, built).encode(), None)
     if body is not None:
         made.append(order.folder / f"{order.stem}.glb")
         write_glb(made[-1], [], body)
@@ -315,14 +315,14 @@ def write(order: ExportOrder) -> Made:
     slashed = [name for name in skeleton.names if "/" in name]
     if slashed:
         notes += (f"Unity's paths cannot lead to joints with a slash in their names: {', '.join(slashed)}",)
-    return Made(tuple(made), notes)
+    return ExportedFiles(tuple(made), notes)
 
 
 def _moving(joints: Any, shifted: set[int]) -> Moving:
     return Moving(tuple(joints), tuple(joint for joint in joints if joint in shifted))
 
 
-def guide(stem: str, skeleton: Skeleton, built: tuple[Machine, ...]) -> str:
+def write_unity_guide(stem: str, skeleton: Skeleton, built: tuple[Machine, ...]) -> str:
     """Return what to do with the folder in Unity, and which number stands for which action and stance."""
     roots = " and ".join(f"`{skeleton.names[j]}`" for j in range(len(skeleton)) if skeleton.parents[j] < 0)
     machine = max(built, key=lambda m: len(m.states))

@@ -32,7 +32,7 @@ NOTHING = Inline(fileID=0)
 _HEAD = {"m_CorrespondingSourceObject": NOTHING, "m_PrefabInstance": NOTHING, "m_PrefabAsset": NOTHING}
 
 
-def number(value: float, digits: int = 6) -> str:
+def format_yaml_number(value: float, digits: int = 6) -> str:
     """Return a number with at most so many digits (1 or more) behind the point, none needless, and without an
     exponent.
     """
@@ -108,14 +108,14 @@ def _scalar(value: Any) -> str:
     if isinstance(value, int):
         return str(int(value))
     if isinstance(value, str):
-        return text(value)
+        return format_yaml_text(value)
     if isinstance(value, Inline):
         return "{" + ", ".join([f"{key}: {_scalar(v)}" for key, v in value.items()]) + "}"
-    return "[]" if isinstance(value, list) else number(value)
+    return "[]" if isinstance(value, list) else format_yaml_number(value)
 
 
 @lru_cache(maxsize=4096)  # paths of joints come back in every clip
-def text(value: str) -> str:
+def format_yaml_text(value: str) -> str:
     """Return a text as YAML on one line: plain where it can be, even where it looks like a number, for Unity
     reads by type.
     """

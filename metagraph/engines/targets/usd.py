@@ -14,12 +14,12 @@ from typing import Any
 import msgspec
 
 from metagraph.common.wording import phrase
-from metagraph.engines.export import exported_clips
+from metagraph.engines.export import list_exported_clips
 from metagraph.engines.targets.meshes import mesh_of
-from metagraph.engines.targets.runtimes import written
-from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
-from metagraph.formats.usd.usda import Names, Prim, number, text, texts
-from metagraph.formats.usd.writer import CHARACTER, clip_paths, named, write_usd
+from metagraph.engines.targets.runtimes import write_with_sounds
+from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
+from metagraph.formats.usd.usda import Names, Prim, usda_number, usda_string, usda_strings
+from metagraph.formats.usd.writer import CHARACTER, clip_paths, keep_name, write_usd
 
 GRAPH = f"{CHARACTER}/Graph"
 
@@ -64,7 +64,7 @@ def _named(scope: str, rows: list[dict[str, Any]]) -> Prim:
     for row in rows:
         own = names.of(row["name"])
         shown = {k: v for k, v in row.items() if k not in ("clip", "stance", "end_stance")}
-        out.children.append(Prim("", own, named(row["name"], own), _properties(shown)))
+        out.children.append(Prim("", own, keep_name(row["name"], own), _properties(shown)))
     return out
 
 
@@ -96,19 +96,21 @@ def _value(value: Any) -> tuple[str, str]:
     if isinstance(value, bool):
         return "bool", "true" if value else "false"
     if isinstance(value, int | float):
-        return "double", number(value)
+        return "double", usda_number(value)
     if isinstance(value, str):
-        return "string", text(value)
+        return "string", usda_string(value)
     if isinstance(value, list) and all(isinstance(v, str) for v in value):
-        return "string[]", texts(value)
+        return "string[]", usda_strings(value)
     if isinstance(value, list) and all(isinstance(v, int | float) and not isinstance(v, bool) for v in value):
-        return "double[]", f"[{', '.join(map(number, value))}]"
-    return "string", text(json.dumps(value, ensure_ascii=False))
+        return "double[]", f"[{', '.join(map(usda_number, value))}]"
+    return "string", usda_string(json.dumps(value, ensure_ascii=False))
 
 
-def write(order: ExportOrder) -> Made:
+def write(order: ExportOrder) -> ExportedFiles:
     """Write JSON, GLB and sounds, and the stage with its textures."""
-    made = written(replace(order, tell=lambda done, total, words: order.tell(done, total + 1, words)))
+    made = write_with_sounds(
+        replace(order, tell=lambda done, total, words: order.tell(done, total + 1, words))
+    )
     document = msgspec.json.decode(made.files[0].read_bytes())
     project = order.project
     assert project.skeleton is not None
@@ -122,24 +124,24 @@ def write(order: ExportOrder) -> Made:
     files = write_usd(
         order.folder / f"{order.stem}.usda",
         project.skeleton,
-        exported_clips(project),
+        list_exported_clips(project),
         body,
         called.get(first),
         [graph_prims(document)],
         [
             "customData = {",
             "    dictionary metagraph = {",
-            f"        string name = {text(document['name'])}",
-            f"        double version = {number(document['metagraph'])}"
+            f"        string name = {usda_string(document['name'])}",
+            f"        double version = {usda_number(document['metagraph'])}"
             if isinstance(document["metagraph"], int | float)
-            else f"        string version = {text(str(document['metagraph']))}",
+            else f"        string version = {usda_string(str(document['metagraph']))}",
             f"        asset export = @./{made.files[0].name}@",
             "    }",
             "}",
         ],
     )
     order.tell(4, 4, "done")
-    return Made((*files, *made.files), made.notes)
+    return ExportedFiles((*files, *made.files), made.notes)
 
 
 TARGETS = (

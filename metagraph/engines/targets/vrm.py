@@ -19,15 +19,15 @@ from metagraph.common.files import read_file
 from metagraph.common.wording import phrase
 from metagraph.engines.export_error import ExportError
 from metagraph.engines.targets.meshes import mesh_of
-from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
+from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
 from metagraph.errors import FileError
 from metagraph.formats.gltf.writer import ForEngine, write_glb
 from metagraph.graph import anatomy
-from metagraph.graph.face.curves import worn
+from metagraph.graph.face.curves import fit_curves_to_face
 from metagraph.graph.face.expression_presets import presets_of
 from metagraph.graph.face.rig import axes_of
 from metagraph.graph.model import Project
-from metagraph.motion.joint_map import known_roles
+from metagraph.motion.joint_map import find_known_roles
 from metagraph.motion.roles import REQUIRED
 from metagraph.motion.skeleton import Pose, Skeleton, unique_names
 from metagraph.motion.t_pose import t_pose
@@ -58,7 +58,7 @@ _EYE_REACH = 30.0
 def humanoid(skeleton: Skeleton, roles: Mapping[str, int]) -> dict[str, int]:
     """Return VRM's bone -> joint. A bone without the one VRM wants above it is left out."""
     out: dict[str, int] = {}
-    for role, joint in known_roles(skeleton, roles).items():
+    for role, joint in find_known_roles(skeleton, roles).items():
         parts = role.split("_")
         if len(parts) == 3 and parts[2].isdigit():
             side, finger, number = parts
@@ -162,10 +162,10 @@ def _between_eyes(project: Project, bones: Mapping[str, int], eyes: list[int]) -
     return [round(float(x), 6) for x in at[eyes].mean(0) - at[bones["head"]]]
 
 
-def _write(order: ExportOrder) -> Made:
+def _write(order: ExportOrder) -> ExportedFiles:
     project, skeleton = order.project, order.project.skeleton
     assert skeleton is not None
-    roles = anatomy.roles(project)
+    roles = anatomy.project_roles(project)
     lacking = [role for role in REQUIRED if role not in roles]
     if lacking:
         raise ExportError(
@@ -187,7 +187,7 @@ def _write(order: ExportOrder) -> Made:
     meta, said = meta_of(project, order.contents.base)
     mesh = len(skeleton) + (sum(int(p) < 0 for p in skeleton.parents) > 1)
     used = [project.clips[c] for c in project.uses if c in project.clips]
-    clips = [worn(project, e.motion) for e in used if e.motion is not None]
+    clips = [fit_curves_to_face(project, e.motion) for e in used if e.motion is not None]
     names = unique_names([clip.name for clip in clips])
     path = order.folder / f"{order.stem}.vrm"
     stand = t_pose(skeleton, roles, axes[0])
@@ -203,7 +203,7 @@ def _write(order: ExportOrder) -> Made:
     order.tell(2, 2, "done")
     if not said:
         notes = (*notes, f"nobody said what may be done with it: the strictest terms stand in it ({META})")
-    return Made((path,), notes)
+    return ExportedFiles((path,), notes)
 
 
 def _grounded(pose: Pose, skeleton: Skeleton, roles: Mapping[str, int]) -> Pose:

@@ -3,9 +3,16 @@
 from __future__ import annotations
 
 from metagraph.common.wording import phrase
-from metagraph.engines.targets.runtimes import BML, RUNTIMES, copied, written
-from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
-from metagraph.engines.targets.web_tools import NET, THREE, at_hand, bundled, import_map, three
+from metagraph.engines.targets.runtimes import BML, RUNTIMES, copy_runtime, write_with_sounds
+from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportTarget, Loss
+from metagraph.engines.targets.web_tools import (
+    NET,
+    THREE,
+    bundle_module,
+    import_map,
+    is_three_at_hand,
+    read_three,
+)
 from metagraph.formats.atomic import write_atomically
 
 CHARACTER = "metagraph-character.js"  # the element, and with it all that it needs
@@ -27,16 +34,16 @@ _FROM_THE_NET = f"""<p id="net">
 _MODULES = f'export * from "./metagraph/element.js"; // which imports three.js {THREE}\n'.encode()
 
 
-def write(order: ExportOrder) -> Made:
+def write(order: ExportOrder) -> ExportedFiles:
     """Write export, page and player: the character's element as one file where three.js and esbuild can be
     had, else as modules, which without three.js load it from the net.
     """
-    made = written(order)
+    made = write_with_sounds(order)
     page = (RUNTIMES / "web" / "index.html").read_text(encoding="utf-8")
     page = page.replace("EXPORT.json", f"{order.stem}.json")
-    files = [*copied(RUNTIMES / "web" / "player", order.folder / "player")]
+    files = [*copy_runtime(RUNTIMES / "web" / "player", order.folder / "player")]
     notes = list(made.notes)
-    whole = bundled(RUNTIMES / "javascript" / "element.js") if at_hand() else None
+    whole = bundle_module(RUNTIMES / "javascript" / "element.js") if is_three_at_hand() else None
     element = order.folder / CHARACTER
     files.append(element)
     where = said = ""
@@ -45,8 +52,8 @@ def write(order: ExportOrder) -> Made:
     else:
         write_atomically(element, _MODULES)
         leave = ("conformance.mjs", "conformance.d.mts")
-        files += copied(RUNTIMES / "javascript", order.folder / "metagraph", leave)
-        theirs = three()
+        files += copy_runtime(RUNTIMES / "javascript", order.folder / "metagraph", leave)
+        theirs = read_three()
         for name, content in (theirs or {}).items():
             files.append(order.folder / "three" / name)
             write_atomically(files[-1], content)
@@ -74,7 +81,7 @@ def write(order: ExportOrder) -> Made:
     )  # else each module waits for the one that names it
     index = order.folder / "index.html"
     write_atomically(index, page.encode())
-    return Made((index, *made.files, *files), tuple(notes))
+    return ExportedFiles((index, *made.files, *files), tuple(notes))
 
 
 TARGETS = (

@@ -43,17 +43,17 @@ LONGEST = 120.0  # seconds that fetching, and bundling, may take
 LARGEST = 64 << 20  # bytes of one of their files
 
 
-def kept() -> Path | None:
+def web_tools_folder() -> Path | None:
     """Return the folder they are kept in between exports; None where nobody's home is known."""
     return cache_folder(f"web-{THREE}-{ESBUILD}")
 
 
-def at_hand() -> bool:
+def is_three_at_hand() -> bool:
     """Return whether three.js is kept here, or npm has fetched it now."""
-    return three() is not None or (_fetch() and three() is not None)
+    return read_three() is not None or (_fetch() and read_three() is not None)
 
 
-def three() -> dict[str, bytes] | None:
+def read_three() -> dict[str, bytes] | None:
     """Return three.js's files by their names; None where they are not kept, or are not those they should
     be.
     """
@@ -68,9 +68,9 @@ def three() -> dict[str, bytes] | None:
     )
 
 
-def bundled(entry: Path) -> bytes | None:
+def bundle_module(entry: Path) -> bytes | None:
     """Return a module with all it imports, three.js too, as one minified file; None where that cannot be."""
-    modules, program, files = _modules(), _esbuild(), three()
+    modules, program, files = _modules(), _esbuild(), read_three()
     if modules is None or program is None or files is None:
         return None
     with tempfile.TemporaryDirectory() as scratch:
@@ -87,7 +87,7 @@ def bundled(entry: Path) -> bytes | None:
             f"--outfile={out}",
         ]  # fmt: skip
         try:
-            code, _ = programs.run(command, LONGEST)
+            code, _ = programs.run_program(command, LONGEST)
             return out.read_bytes() if code == 0 else None
         except (OSError, TimeoutError):
             return None
@@ -115,7 +115,7 @@ def import_map(at: str, *, checked: bool) -> str:
 
 
 def _modules() -> Path | None:
-    place = kept()
+    place = web_tools_folder()
     return place / "node_modules" if place is not None and programs.is_own(place) else None
 
 
@@ -140,7 +140,7 @@ def _esbuild() -> Path | None:
 
 def _fetch() -> bool:
     """Let npm fetch both; return whether it said that it did. Their own scripts are not run."""
-    npm, place = programs.system_program("npm"), kept()
+    npm, place = programs.system_program("npm"), web_tools_folder()
     if npm is None or place is None or not programs.make_own(place):
         return False
     command = [
@@ -149,6 +149,6 @@ def _fetch() -> bool:
         f"three@{THREE}", f"esbuild@{ESBUILD}",
     ]  # fmt: skip
     try:
-        return programs.run(command, LONGEST, cwd=place, umask=0o077)[0] == 0
+        return programs.run_program(command, LONGEST, cwd=place, umask=0o077)[0] == 0
     except (OSError, TimeoutError):
         return False

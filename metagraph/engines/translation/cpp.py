@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 from metagraph.engines.translation import tree as x
 from metagraph.engines.translation.braces import Braces
-from metagraph.engines.translation.layout import Break, Document, Group, Nest, listed
-from metagraph.engines.translation.lifting import lifted
+from metagraph.engines.translation.layout import Document, Group, LineBreak, Nest, bracket_items
+from metagraph.engines.translation.lifting import lift_comprehensions
 from metagraph.engines.translation.printing import (
     ALONE,
     CHOICE,
@@ -48,7 +48,7 @@ class Cpp(Braces):
 
     def text(self) -> str:
         self.native: set[str] = set()
-        records = [p for p in self.module.parts if isinstance(p, x.Record)]
+        records = [p for p in self.module.parts if isinstance(p, x.RecordClass)]
         constants = [p for p in self.module.parts if isinstance(p, x.Constant)]
         functions = [p for p in self.module.parts if isinstance(p, x.Function)]
         for record in records:
@@ -109,7 +109,7 @@ class Cpp(Braces):
         kind = self.type(node.value.type)
         self.line((f"{lead} {kind} {self.word(node.name)} = ", self.plain(node.value), ";"), node.beside)
 
-    def record(self, node: x.Record) -> None:
+    def record(self, node: x.RecordClass) -> None:
         self.out.append("")
         self.documented(node.about)
         base = f" : std::enable_shared_from_this<{node.name}>" if self.tells_itself(node) else ""
@@ -120,7 +120,7 @@ class Cpp(Braces):
         self.out.append("")
         explicit = "explicit " if sum(f.default is None for f in node.fields) <= 1 else ""
         given = [self.parameter(f, "_") for f in node.fields]
-        self.line((f"{explicit}{node.name}", listed("(", given, ")")))
+        self.line((f"{explicit}{node.name}", bracket_items("(", given, ")")))
         values = [f"{self.word(f.name)}({self.moved(f)})" for f in node.fields]
         self.depth += 1
         self.line((": ", Group(Nest(_commas(values))), " {}"))
@@ -132,7 +132,7 @@ class Cpp(Braces):
         self.depth -= 1
         self.line("};")
 
-    def tells_itself(self, node: x.Record) -> bool:
+    def tells_itself(self, node: x.RecordClass) -> bool:
         """Whether a record gives itself to others, and not only its parts."""
         every = [one for method in node.methods for one in x.walk(method.body)]
         own = [one for one in every if isinstance(one, x.This)]
@@ -145,7 +145,7 @@ class Cpp(Braces):
         return f"{node.name}_" if node.type.bare.kind in SMALL else f"std::move({node.name}_)"
 
     def signature(
-        self, node: x.Function, record: x.Record | None = None, defaults: bool = True, of: str = ""
+        self, node: x.Function, record: x.RecordClass | None = None, defaults: bool = True, of: str = ""
     ) -> tuple[Document, ...]:
         """of: the structure a method is defined outside of, "Name::"."""
         set_anew = {
@@ -160,7 +160,7 @@ class Cpp(Braces):
         } | {
             e.target.of.name
             for e in x.walk(node.body)
-            if isinstance(e, x.Assign) and isinstance(e.target, x.Item) and isinstance(e.target.of, x.Local)
+            if isinstance(e, x.Assign) and isinstance(e.target, x.ItemOf) and isinstance(e.target.of, x.Local)
         }
         given = [
             self.parameter(
@@ -170,7 +170,11 @@ class Cpp(Braces):
         ]
         tail = " const" if record is not None and not record.changes else ""
         lead = "" if record is not None and not of else "inline "
-        return (f"{lead}{self.type(node.returns)} {of}{self.word(node.name)}", listed("(", given, ")"), tail)
+        return (
+            f"{lead}{self.type(node.returns)} {of}{self.word(node.name)}",
+            bracket_items("(", given, ")"),
+            tail,
+        )
 
     def function(self, node: x.Function) -> None:
         self.comments(node.comments)
@@ -180,7 +184,7 @@ class Cpp(Braces):
 
     def body(self, node: x.Function) -> None:
         self.serial = 0
-        node = lifted(node)
+        node = lift_comprehensions(node)
         self.block(node.body)
         self.line("}")
 
@@ -236,7 +240,11 @@ class Cpp(Braces):
 
     def unpacked(self, node: x.Unpack) -> None:
         names = [self.plain(t) for t in node.targets]
-        lead = ("auto ", listed("[", names, "]")) if node.new else ("std::tie", listed("(", names, ")"))
+        lead = (
+            ("auto ", bracket_items("[", names, "]"))
+            if node.new
+            else ("std::tie", bracket_items("(", names, ")"))
+        )
         self.line((*lead, " = ", self.plain(node.value), ";"), node.beside)
 
     def each(self, node: x.ForEach) -> None:
@@ -268,7 +276,7 @@ class Cpp(Braces):
         self.braced((f"for (const auto& {target} : ", source, ")"), node.body, node.beside)
 
     def target(self, node: x.Expression) -> Document:
-        if isinstance(node, x.Item) and node.of.type.bare.kind == "map":
+        if isinstance(node, x.ItemOf) and node.of.type.bare.kind == "map":
             return (self.strong(node.of, ALONE), "[", self.plain(node.place), "]")
         return self.plain(node)
 
@@ -281,35 +289,35 @@ class Cpp(Braces):
             case x.Call():
                 return (
                     self.strong(node.function, ALONE),
-                    listed("(", [self.plain(a) for a in node.arguments], ")"),
+                    bracket_items("(", [self.plain(a) for a in node.arguments], ")"),
                 ), ALONE
             case x.New():
                 self.type(node.type)
-                given = listed("(", [self.plain(a) for a in node.arguments], ")")
+                given = bracket_items("(", [self.plain(a) for a in node.arguments], ")")
                 return (f"lang::made<{node.type.name}>", given), ALONE
             case x.Replaced():
                 return self.replaced(node), ALONE
-            case x.Compared():
+            case x.Comparison():
                 return self.compared(node)
             case x.Either():
                 test, kind = self.strong(node.test, NOT), node.type
                 then, other = self.branch(node.then, kind), self.branch(node.other, kind)
-                return Group(Nest((test, Break(" "), "? ", then, Break(" "), ": ", other))), CHOICE
-            case x.Item():
+                return Group(Nest((test, LineBreak(" "), "? ", then, LineBreak(" "), ": ", other))), CHOICE
+            case x.ItemOf():
                 return self.item(node), ALONE
             case x.Slice():
                 ends = ["0" if node.first is None else self.plain(node.first)]
                 ends += [] if node.last is None else [self.plain(node.last)]
-                return ("lang::part", listed("(", [self.plain(node.of), *ends], ")")), ALONE
+                return ("lang::part", bracket_items("(", [self.plain(node.of), *ends], ")")), ALONE
             case x.Gathered():
                 return self.gathered(node), ALONE
             case x.Mapped():
                 pairs: list[Document] = [
                     ("{", self.plain(k), ", ", self.plain(v), "}") for k, v in node.items
                 ]
-                return (self.type(node.type), listed("{", pairs, "}")), ALONE
+                return (self.type(node.type), bracket_items("{", pairs, "}")), ALONE
             case x.Formatted():
-                return ("lang::text", listed("(", [self.piece(p) for p in node.parts], ")")), ALONE
+                return ("lang::text", bracket_items("(", [self.piece(p) for p in node.parts], ")")), ALONE
         return super().expression(node)
 
     def named(self, node: x.Named) -> tuple[Document, int]:
@@ -322,7 +330,7 @@ class Cpp(Braces):
                 return self.reached(node.module, node.name), ALONE
             case x.This():
                 return "lang::self(this)", ALONE
-            case x.Known():
+            case x.KnownValue():
                 if node.type.kind == "record":
                     return self.expression(node.of)
                 return ("*", self.strong(node.of, ALONE)), UNARY
@@ -364,7 +372,7 @@ class Cpp(Braces):
             return "INFINITY" if value > 0 else "-INFINITY"
         return repr(float(str(value))) if node.type == x.FLOAT else repr(value)
 
-    def compared(self, node: x.Compared) -> tuple[Document, int]:
+    def compared(self, node: x.Comparison) -> tuple[Document, int]:
         left, right = node.left, node.right
         kind = left.type.bare.kind
         if node.operator in ("is", "is not"):
@@ -382,10 +390,10 @@ class Cpp(Braces):
             raise TranslationError(
                 f"{self.module.name}: whether two {kind}s are equal; compare what tells them apart"
             )
-        parts = self.strong(left, PLUS), Break(" "), f"{node.operator} ", self.strong(right, PLUS)
+        parts = self.strong(left, PLUS), LineBreak(" "), f"{node.operator} ", self.strong(right, PLUS)
         return Group(Nest(parts)), COMPARE
 
-    def item(self, node: x.Item) -> Document:
+    def item(self, node: x.ItemOf) -> Document:
         kind = node.of.type.bare.kind
         if kind == "tuple":
             assert isinstance(node.place, x.Value)
@@ -402,21 +410,21 @@ class Cpp(Braces):
             self.plain(changes[f.name]) if f.name in changes else (of, f"->{self.word(f.name)}")
             for f in self.record_of(node.type).fields
         ]
-        return (f"lang::made<{node.type.name}>", listed("(", given, ")"))
+        return (f"lang::made<{node.type.name}>", bracket_items("(", given, ")"))
 
     def gathered(self, node: x.Gathered) -> Document:
         kind = self.type(node.type)
         if not node.spread:
-            return (kind, listed("{", [self.plain(i) for i in node.items], "}"))
+            return (kind, bracket_items("{", [self.plain(i) for i in node.items], "}"))
         parts: list[Document] = [
             self.plain(item) if n in node.spread else (f"{kind}{{", self.plain(item), "}")
             for n, item in enumerate(node.items)
         ]
-        return ("lang::together", listed("(", parts, ")"))
+        return ("lang::together", bracket_items("(", parts, ")"))
 
 
 def _commas(parts: Sequence[str]) -> Document:
     out: list[Document] = []
     for n, part in enumerate(parts):
-        out += [part] if n == 0 else [",", Break(" "), part]
+        out += [part] if n == 0 else [",", LineBreak(" "), part]
     return tuple(out)

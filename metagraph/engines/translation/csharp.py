@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 from metagraph.engines.translation import tree as x
 from metagraph.engines.translation.braces import Braces
-from metagraph.engines.translation.layout import Break, Document, Group, Nest, listed
+from metagraph.engines.translation.layout import Document, Group, LineBreak, Nest, bracket_items
 from metagraph.engines.translation.printing import (
     ALONE,
     CHOICE,
@@ -44,8 +44,8 @@ class CSharp(Braces):
 
     def text(self) -> str:
         self.depth = 1
-        records = [p for p in self.module.parts if isinstance(p, x.Record)]
-        rest = [p for p in self.module.parts if not isinstance(p, x.Record)]
+        records = [p for p in self.module.parts if isinstance(p, x.RecordClass)]
+        rest = [p for p in self.module.parts if not isinstance(p, x.RecordClass)]
         for record in records:
             self.record(record)
         if rest:
@@ -96,7 +96,7 @@ class CSharp(Braces):
     )  # names that comprehensions bring, and how they are reached
     in_record = False  # else functions and constants of the module are near
 
-    def record(self, node: x.Record) -> None:
+    def record(self, node: x.RecordClass) -> None:
         self.in_record = True
         self.out.append("")
         self.documented(node.about)
@@ -106,7 +106,7 @@ class CSharp(Braces):
         for f in node.fields:
             self.line(f"public {'' if node.changes else 'readonly '}{self.type(f.type)} {pascal(f.name)};")
         self.out.append("")
-        self.line((f"public {node.name}", listed("(", [self.parameter(f) for f in node.fields], ")")))
+        self.line((f"public {node.name}", bracket_items("(", [self.parameter(f) for f in node.fields], ")")))
         self.line("{")
         self.depth += 1
         for f in node.fields:
@@ -146,7 +146,7 @@ class CSharp(Braces):
             self.depth -= 1
             self.line("}")
             return
-        self.line((head, listed("(", [self.parameter(p) for p in node.parameters], ")")))
+        self.line((head, bracket_items("(", [self.parameter(p) for p in node.parameters], ")")))
         late = [(self.word(camel(p.name)), made) for p in node.parameters if (made := self.made_later(p))]
         self.line("{")
         self.depth += 1
@@ -276,7 +276,7 @@ class CSharp(Braces):
             of, item, low, key = node.arguments
             return (
                 "PlainLists.Insert",
-                listed("(", [*(self.plain(a) for a in (of, item, low)), self.keyed(key)], ")"),
+                bracket_items("(", [*(self.plain(a) for a in (of, item, low)), self.keyed(key)], ")"),
             ), ALONE
         if node.name in ("sorted_by", "sorted"):
             return self.ordered(node), ALONE
@@ -332,7 +332,7 @@ class CSharp(Braces):
         undo()
         return out, ALONE
 
-    def bound(self, clause: x.Clause) -> tuple[str, Callable[[], None]]:
+    def bound(self, clause: x.ForClause) -> tuple[str, Callable[[], None]]:
         """Return what a lambda calls an item of a clause; names of a tuple's items are reached through it."""
         before = dict(self.aliases)
         if len(clause.names) == 1:
@@ -355,35 +355,40 @@ class CSharp(Braces):
             return self.named(node)
         match node:
             case x.Call():
-                return (self.strong(node.function, ALONE), listed("(", self.given(node), ")")), ALONE
+                return (self.strong(node.function, ALONE), bracket_items("(", self.given(node), ")")), ALONE
             case x.New():
                 return (
                     f"new {node.type.name}",
-                    listed("(", [self.plain(a) for a in node.arguments], ")"),
+                    bracket_items("(", [self.plain(a) for a in node.arguments], ")"),
                 ), ALONE
             case x.Replaced():
                 return self.replaced(node), ALONE
-            case x.Compared():
+            case x.Comparison():
                 return self.compared(node)
             case x.Either():
                 kind = node.type
                 then, other = (self.branch(b, kind) for b in (node.then, node.other))
                 return Group(
-                    Nest((self.strong(node.test, NOT), Break(" "), "? ", then, Break(" "), ": ", other))
+                    Nest(
+                        (self.strong(node.test, NOT), LineBreak(" "), "? ", then, LineBreak(" "), ": ", other)
+                    )
                 ), CHOICE
-            case x.Item():
+            case x.ItemOf():
                 return self.item(node), ALONE
             case x.Slice():
                 ends = ["0" if node.first is None else self.plain(node.first)]
                 ends += [] if node.last is None else [self.plain(node.last)]
-                return ("PlainLists.Part", listed("(", [self.plain(node.of), *ends], ")")), ALONE
+                return ("PlainLists.Part", bracket_items("(", [self.plain(node.of), *ends], ")")), ALONE
             case x.Gathered():
                 return self.gathered(node), ALONE
             case x.Mapped():
                 pairs: list[Document] = [
                     ("{ ", self.plain(k), ", ", self.plain(v), " }") for k, v in node.items
                 ]
-                return (f"new {self.type(node.type)}", listed(" { ", pairs, " }") if pairs else "()"), ALONE
+                return (
+                    f"new {self.type(node.type)}",
+                    bracket_items(" { ", pairs, " }") if pairs else "()",
+                ), ALONE
             case x.Comprehension():
                 return self.comprehension(node), ALONE
             case x.Lambda():
@@ -408,7 +413,7 @@ class CSharp(Braces):
                 return (name if here else f"{self.rules(node.module)}.{name}"), ALONE
             case x.This():
                 return "this", ALONE
-            case x.Known():
+            case x.KnownValue():
                 of = self.strong(node.of, ALONE)
                 return ((of, ".Value") if node.type.kind in VALUES else of), ALONE
             case x.Member():
@@ -437,7 +442,7 @@ class CSharp(Braces):
             return repr(float(str(value))) if "e" not in repr(value) else repr(value)
         return repr(value)
 
-    def compared(self, node: x.Compared) -> tuple[Document, int]:
+    def compared(self, node: x.Comparison) -> tuple[Document, int]:
         left, right = node.left, node.right
         kind = left.type.bare.kind
         word = {"is": "==", "is not": "!="}.get(node.operator, node.operator)
@@ -447,10 +452,10 @@ class CSharp(Braces):
             )
         if kind == "str" and node.operator in ("<", "<=", ">", ">="):
             return ("PlainText.Compare(", self.plain(left), ", ", self.plain(right), f") {word} 0"), COMPARE
-        parts = self.strong(left, PLUS), Break(" "), f"{word} ", self.strong(right, PLUS)
+        parts = self.strong(left, PLUS), LineBreak(" "), f"{word} ", self.strong(right, PLUS)
         return Group(Nest(parts)), COMPARE
 
-    def item(self, node: x.Item) -> Document:
+    def item(self, node: x.ItemOf) -> Document:
         of = self.strong(node.of, ALONE)
         if node.of.type.bare.kind == "tuple":
             assert isinstance(node.place, x.Value)
@@ -467,11 +472,11 @@ class CSharp(Braces):
         given: list[Document] = []
         for f in record.fields:
             given.append(self.plain(changes[f.name]) if f.name in changes else (of, f".{pascal(f.name)}"))
-        return (f"new {node.type.name}", listed("(", given, ")"))
+        return (f"new {node.type.name}", bracket_items("(", given, ")"))
 
     def gathered(self, node: x.Gathered) -> Document:
         if node.type.kind == "tuple":
-            return listed("(", [self.plain(i) for i in node.items], ")")
+            return bracket_items("(", [self.plain(i) for i in node.items], ")")
         kind = self.type(node.type)
         if node.spread:
             parts: list[Document] = []
@@ -483,7 +488,7 @@ class CSharp(Braces):
                 )
                 parts.append(one if n == 0 else (".Concat(", one, ")"))
             return (*parts, ".ToList()")
-        inner = listed(" { ", [self.plain(i) for i in node.items], " }") if node.items else "()"
+        inner = bracket_items(" { ", [self.plain(i) for i in node.items], " }") if node.items else "()"
         return (f"new {kind}", inner)
 
     def comprehension(self, node: x.Comprehension) -> Document:
@@ -539,7 +544,7 @@ class CSharp(Braces):
     def formatted(self, node: x.Formatted) -> tuple[Document, int]:
         out: list[Document] = []
         for n, part in enumerate(node.parts):
-            out += [Break(" "), "+ "] if n else []
+            out += [LineBreak(" "), "+ "] if n else []
             if isinstance(part, str):
                 out.append(json.dumps(part, ensure_ascii=False))
             elif part[1]:

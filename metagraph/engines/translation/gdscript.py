@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from typing import ClassVar
 
 from metagraph.engines.translation import tree as x
-from metagraph.engines.translation.layout import Break, Document, Group, Nest, flat, listed
-from metagraph.engines.translation.lifting import lifted
+from metagraph.engines.translation.layout import Document, Group, LineBreak, Nest, bracket_items, flat
+from metagraph.engines.translation.lifting import lift_comprehensions
 from metagraph.engines.translation.printing import (
     ALONE,
     CHOICE,
@@ -38,7 +38,7 @@ class GDScript(Printer):
         for part in self.module.parts:
             if isinstance(part, x.Constant):
                 self.constant(part)
-            elif isinstance(part, x.Record):
+            elif isinstance(part, x.RecordClass):
                 self.record(part)
             else:
                 self.out += ["", ""]
@@ -72,7 +72,7 @@ class GDScript(Printer):
     def made(self, node: x.Expression) -> bool:
         return any(isinstance(n, x.New) for n in x.walk(node))
 
-    def record(self, node: x.Record) -> None:
+    def record(self, node: x.RecordClass) -> None:
         self.out += ["", ""]
         self.documented(node.about)
         self.line(f"class {node.name}:")
@@ -84,7 +84,7 @@ class GDScript(Printer):
             self.line(f"var {self.word(m.name)}", m.about)
         self.out.append("")
         given = [self.parameter(f, "_") for f in node.fields]
-        self.line(("func _init", listed("(", given, ")"), ":"))
+        self.line(("func _init", bracket_items("(", given, ")"), ":"))
         self.depth += 1
         for f in node.fields:
             name = f"{f.name}_"
@@ -107,14 +107,14 @@ class GDScript(Printer):
         self.depth -= 1
 
     def function(self, node: x.Function, lead: str = "static func ") -> None:
-        node = lifted(node)
+        node = lift_comprehensions(node)
         self.serial = 0
         self.comments(node.comments)
         self.documented(node.about)
         self.line(
             (
                 f"{lead}{self.word(node.name)}",
-                listed("(", [self.parameter(p) for p in node.parameters], ")"),
+                bracket_items("(", [self.parameter(p) for p in node.parameters], ")"),
                 ":",
             )
         )
@@ -189,7 +189,7 @@ class GDScript(Printer):
 
     def held(self, value: x.Expression) -> Document:
         """A value, in brackets where it must be broken over lines and has none of its own."""
-        broken = isinstance(value, x.Logic | x.Compared | x.Binary)
+        broken = isinstance(value, x.Logic | x.Comparison | x.Binary)
         return self.within(value) if broken else self.plain(value)
 
     def body(self, body: tuple[x.Statement, ...]) -> None:
@@ -254,13 +254,13 @@ class GDScript(Printer):
             case x.Call():
                 return (
                     self.strong(node.function, ALONE),
-                    listed("(", [self.plain(a) for a in node.arguments], ")"),
+                    bracket_items("(", [self.plain(a) for a in node.arguments], ")"),
                 ), ALONE
             case x.New():
                 return (
                     self.class_of(node.type),
                     ".new",
-                    listed("(", [self.plain(a) for a in node.arguments], ")"),
+                    bracket_items("(", [self.plain(a) for a in node.arguments], ")"),
                 ), ALONE
             case x.Replaced():
                 changes = dict(node.changes)
@@ -269,8 +269,8 @@ class GDScript(Printer):
                     self.plain(changes[f.name]) if f.name in changes else (of, f".{self.word(f.name)}")
                     for f in self.record_of(node.type).fields
                 ]
-                return (self.class_of(node.type), ".new", listed("(", given, ")")), ALONE
-            case x.Compared():
+                return (self.class_of(node.type), ".new", bracket_items("(", given, ")")), ALONE
+            case x.Comparison():
                 word = {"is": "==", "is not": "!="}.get(node.operator, node.operator)
                 if node.left.type.bare.kind in ("list", "tuple", "map", "record") and node.operator in (
                     "==",
@@ -279,12 +279,17 @@ class GDScript(Printer):
                     raise TranslationError(
                         f"{self.module.name}: whether two {node.left.type.kind}s are equal"
                     )
-                parts = self.strong(node.left, PLUS), Break(" "), f"{word} ", self.strong(node.right, PLUS)
+                parts = (
+                    self.strong(node.left, PLUS),
+                    LineBreak(" "),
+                    f"{word} ",
+                    self.strong(node.right, PLUS),
+                )
                 return Group(Nest(parts)), COMPARE
             case x.Either():
                 test, then = self.strong(node.test, NOT), self.strong(node.then, NOT)
                 return (then, " if ", test, " else ", self.strong(node.other, NOT)), CHOICE
-            case x.Item():
+            case x.ItemOf():
                 return (self.strong(node.of, ALONE), "[", self.plain(node.place), "]"), ALONE
             case x.Slice():
                 self.helpers.add("Util")
@@ -293,12 +298,12 @@ class GDScript(Printer):
                 last: Document = (
                     (self.strong(node.of, ALONE), ".size()") if node.last is None else self.plain(node.last)
                 )
-                return ("Util.part", listed("(", [of, first, last], ")")), ALONE
+                return ("Util.part", bracket_items("(", [of, first, last], ")")), ALONE
             case x.Gathered():
                 return self.gathered(node)
             case x.Mapped():
                 pairs: list[Document] = [(self.plain(k), ": ", self.plain(v)) for k, v in node.items]
-                return listed("{", pairs, "}"), ALONE
+                return bracket_items("{", pairs, "}"), ALONE
             case x.Formatted():
                 return self.formatted(node), PLUS
         return super().expression(node)
@@ -313,7 +318,7 @@ class GDScript(Printer):
                 return self.reached(node), ALONE
             case x.This():
                 return "self", ALONE
-            case x.Known():
+            case x.KnownValue():
                 return self.expression(node.of)
             case x.Member():
                 # A value's properties are worked out when it is made; those of what changes are functions.
@@ -342,9 +347,9 @@ class GDScript(Printer):
 
     def gathered(self, node: x.Gathered) -> tuple[Document, int]:
         if node.type.kind == "set":
-            return listed("{", [(self.plain(i), ": true") for i in node.items], "}"), ALONE
+            return bracket_items("{", [(self.plain(i), ": true") for i in node.items], "}"), ALONE
         if not node.spread:
-            return listed("[", [self.plain(i) for i in node.items], "]"), ALONE
+            return bracket_items("[", [self.plain(i) for i in node.items], "]"), ALONE
         parts: list[Document] = []
         for n, item in enumerate(node.items):
             one: Document = self.strong(item, PLUS) if n in node.spread else ("[", self.plain(item), "]")
@@ -375,4 +380,4 @@ class GDScript(Printer):
                     ("Util.thousandths(", self.plain(part[0]), ")") if exact else self.plain(part[0])
                 )
         pattern = json.dumps(text, ensure_ascii=False)
-        return (pattern, " % ", listed("[", given, "]"))
+        return (pattern, " % ", bracket_items("[", given, "]"))

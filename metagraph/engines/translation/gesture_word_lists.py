@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from metagraph.engines.translation.listing import RUNTIMES
-from metagraph.speech.language_packs import languages
-from metagraph.speech.text_gestures import gesture_words, known_languages
+from metagraph.speech.language_packs import list_language_packs
+from metagraph.speech.text_gestures import list_lexicon_languages, words_for_gesture
 from metagraph.speech.word_gestures import GestureRule
 
 JAVASCRIPT = RUNTIMES / "javascript" / "gesture_words.js"
@@ -27,20 +27,20 @@ def gesture_word_lists() -> dict[Path, str]:
 
 def _javascript() -> str:
     head = f"/**\n * {_ABOUT.format('`word_gestures.js`')}\n *\n * {_MADE}\n */\n\n"
-    parts = [f"  {code}: {{\n{_fields(code, 4, '{}: {}')}  }},\n" for code in known_languages()]
+    parts = [f"  {code}: {{\n{_fields(code, 4, '{}: {}')}  }},\n" for code in list_lexicon_languages()]
     return f"{head}export const GESTURE_WORDS = {{\n{''.join(parts)}}};\n"
 
 
 def _gdscript() -> str:
     head = f"# {_ABOUT.format('word_gestures.gd')}\n#\n# {_MADE}\n\n"
-    texts = {code: _fields(code, 2, _QUOTED, "\t") for code in known_languages()}
+    texts = {code: _fields(code, 2, _QUOTED, "\t") for code in list_lexicon_languages()}
     parts = [f'\t"{code}": {{\n{text}\t}},\n' for code, text in texts.items()]
     return f"{head}const GESTURE_WORDS = {{\n{''.join(parts)}}}\n"
 
 
 def _csharp() -> str:
     """C# has the lists as JSON, which it reads when a language is first spoken."""
-    texts = {code: _json(code).replace('"', '""') for code in known_languages()}
+    texts = {code: _json(code).replace('"', '""') for code in list_lexicon_languages()}
     parts = [f'            {{ "{code}", @"{text}" }},\n' for code, text in texts.items()]
     return (
         f"// {_MADE}\nusing System.Collections.Generic;\n\nnamespace Metagraph\n{{\n"
@@ -54,7 +54,7 @@ def _csharp() -> str:
 def _cpp() -> str:
     """C++ as well, a text for each line: compilers limit how long one is."""
     parts: list[str] = []
-    for code in known_languages():
+    for code in list_lexicon_languages():
         lines = "\n".join(f'            R"json({line})json"' for line in _json(code).splitlines())
         parts.append(f'    if (language == "{code}") {{\n        return\n{lines};\n    }}\n')
     return (
@@ -78,7 +78,7 @@ def _fields(code: str, depth: int, form: str, indent: str = " ") -> str:
     """Return a lexicon's fields, each on lines of its own that end with a comma. form: of a name and what it
     is.
     """
-    lexicon, pack = gesture_words(code), languages().get(code)
+    lexicon, pack = words_for_gesture(code), list_language_packs().get(code)
     edge = indent * depth
     deeper = edge + (indent if indent == "\t" else 2 * indent)
     rules = ",\n".join(f"{deeper}{_rule(rule)}" for rule in lexicon.rules)

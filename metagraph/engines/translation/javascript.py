@@ -6,7 +6,7 @@ import json
 
 from metagraph.engines.translation import tree as x
 from metagraph.engines.translation.braces import Braces
-from metagraph.engines.translation.layout import Break, Document, Group, Nest, listed
+from metagraph.engines.translation.layout import Document, Group, LineBreak, Nest, bracket_items
 from metagraph.engines.translation.printing import (
     ALONE,
     CHOICE,
@@ -31,7 +31,7 @@ class JavaScript(Braces):
         for part in self.module.parts:
             if isinstance(part, x.Constant):
                 self.constant(part)
-            elif isinstance(part, x.Record):
+            elif isinstance(part, x.RecordClass):
                 self.record(part)
             else:
                 self.out.append("")
@@ -46,13 +46,13 @@ class JavaScript(Braces):
                 self.line(
                     (
                         "import ",
-                        listed("{", sorted(names), "}", ","),
+                        bracket_items("{", sorted(names), "}", ","),
                         f' from "./{self.known(module)}.js";',
                     )
                 )
         if self.helpers:
             helpers = sorted(self.helpers)
-            self.line(("import ", listed("{", helpers, "}", ","), ' from "./basics.js";'))
+            self.line(("import ", bracket_items("{", helpers, "}", ","), ' from "./basics.js";'))
         head = [o.replace("{", "{ ").replace("}", " }") if o.startswith("import {") else o for o in self.out]
         gap = [] if not body or body[0] == "" or not (self.used or self.helpers) else [""]
         return "\n".join([*head, *gap, *body]).strip() + "\n"
@@ -66,14 +66,14 @@ class JavaScript(Braces):
             (f"{export}const {self.constant_name(node.name)} = ", self.plain(node.value), ";"), node.beside
         )
 
-    def record(self, node: x.Record) -> None:
+    def record(self, node: x.RecordClass) -> None:
         self.out.append("")
         fields = "; ".join(f"{camel(f.name)}: {self.type(f.type)}" for f in node.fields)
         self.documented(f"{node.about}\n\n{fields}.")
         self.line(f"export class {node.name} {{")
         self.depth += 1
         given = [self.parameter(f) for f in node.fields]
-        self.line(("constructor", listed("(", given, ")", ","), " {"))
+        self.line(("constructor", bracket_items("(", given, ")", ","), " {"))
         self.depth += 1
         for f in node.fields:
             self.line(f"this.{camel(f.name)} = {self.word(camel(f.name))};")
@@ -87,7 +87,7 @@ class JavaScript(Braces):
 
     def method(self, node: x.Function) -> None:
         self.documented(node.about)
-        given = listed("(", [self.parameter(p) for p in node.parameters], ")", ",")
+        given = bracket_items("(", [self.parameter(p) for p in node.parameters], ")", ",")
         self.line((("get " if node.property else "") + camel(node.name), given, " {"))
         self.block(node.body)
         self.line("}")
@@ -101,7 +101,9 @@ class JavaScript(Braces):
         for p in node.parameters:
             given.append(self.parameter(p))
         export = "export " if node.public else ""
-        self.line((f"{export}function {self.function_name(node.name)}", listed("(", given, ")", ","), " {"))
+        self.line(
+            (f"{export}function {self.function_name(node.name)}", bracket_items("(", given, ")", ","), " {")
+        )
         self.block(node.body)
         self.line("}")
 
@@ -158,14 +160,14 @@ class JavaScript(Braces):
 
     def assignment(self, node: x.Assign) -> None:
         item = node.target
-        if isinstance(item, x.Item) and item.of.type.bare.kind == "map":
+        if isinstance(item, x.ItemOf) and item.of.type.bare.kind == "map":
             given = [self.plain(item.place), self.plain(node.value)]
-            self.line((self.strong(item.of, ALONE), listed(".set(", given, ")"), ";"), node.beside)
+            self.line((self.strong(item.of, ALONE), bracket_items(".set(", given, ")"), ";"), node.beside)
         else:
             super().assignment(node)
 
     def unpacked(self, node: x.Unpack) -> None:
-        names = listed("[", [self.target(t) for t in node.targets], "]")
+        names = bracket_items("[", [self.target(t) for t in node.targets], "]")
         word = ("let " if node.changes else "const ") if node.new else ""
         self.line((word, names, " = ", self.plain(node.value), ";"), node.beside)
 
@@ -238,19 +240,22 @@ class JavaScript(Braces):
 
     def arrow(self, names: str, tests: list[x.Expression]) -> Document:
         body = tests[0] if len(tests) == 1 else x.Logic(x.BOOL, "and", tuple(tests))
-        return Group((f"{names} =>", Nest((Break(" "), self.plain(body)))))
+        return Group((f"{names} =>", Nest((LineBreak(" "), self.plain(body)))))
 
     def expression(self, node: x.Expression) -> tuple[Document, int]:
         if isinstance(node, x.Named):
             return self.named(node)
         match node:
             case x.Call():
-                return (self.strong(node.function, ALONE), listed("(", self.given(node), ")", ",")), ALONE
+                return (
+                    self.strong(node.function, ALONE),
+                    bracket_items("(", self.given(node), ")", ","),
+                ), ALONE
             case x.New():
                 self.used.setdefault(node.type.module, set()).add(node.type.name)
                 return (
                     f"new {node.type.name}",
-                    listed("(", [self.plain(a) for a in node.arguments], ")", ","),
+                    bracket_items("(", [self.plain(a) for a in node.arguments], ")", ","),
                 ), ALONE
             case x.Replaced():
                 self.helpers.add("but")
@@ -259,30 +264,30 @@ class JavaScript(Braces):
                     ("{ ", *[d for n, c in enumerate(changes) for d in ((", ", c) if n else (c,))], " }")
                 )
                 return ("but(", self.plain(node.of), ", ", pairs, ")"), ALONE
-            case x.Compared():
+            case x.Comparison():
                 return self.compared(node)
             case x.Either():
                 parts = (
                     self.strong(node.test, NOT),
-                    Break(" "),
+                    LineBreak(" "),
                     "? ",
                     self.strong(node.then, NOT),
-                    Break(" "),
+                    LineBreak(" "),
                     ": ",
                     self.plain(node.other),
                 )
                 return Group(Nest(parts)), CHOICE
-            case x.Item():
+            case x.ItemOf():
                 return self.item(node), ALONE
             case x.Slice():
                 ends = [e for e in (node.first, node.last) if e is not None]
                 first: list[Document] = ["0"] if node.first is None and node.last is not None else []
                 return (
                     self.strong(node.of, ALONE),
-                    listed(".slice(", [*first, *(self.plain(e) for e in ends)], ")"),
+                    bracket_items(".slice(", [*first, *(self.plain(e) for e in ends)], ")"),
                 ), ALONE
             case x.Gathered():
-                inner = listed(
+                inner = bracket_items(
                     "[",
                     [
                         ("...", self.plain(i)) if n in node.spread else self.plain(i)
@@ -293,8 +298,8 @@ class JavaScript(Braces):
                 )
                 return (inner if node.type.kind != "set" else ("new Set(", inner, ")")), ALONE
             case x.Mapped():
-                pairs_ = [listed("[", [self.plain(k), self.plain(v)], "]") for k, v in node.items]
-                return ("new Map(", listed("[", pairs_, "]", ",") if pairs_ else "", ")"), ALONE
+                pairs_ = [bracket_items("[", [self.plain(k), self.plain(v)], "]") for k, v in node.items]
+                return ("new Map(", bracket_items("[", pairs_, "]", ",") if pairs_ else "", ")"), ALONE
             case x.Comprehension():
                 return self.comprehension(node), ALONE
             case x.Lambda():
@@ -321,7 +326,7 @@ class JavaScript(Braces):
                 return name, ALONE
             case x.This():
                 return "this", ALONE
-            case x.Known():
+            case x.KnownValue():
                 return self.expression(node.of)
             case x.Member():
                 return (self.strong(node.of, ALONE), f".{camel(node.name)}"), ALONE
@@ -346,7 +351,7 @@ class JavaScript(Braces):
             else repr(value)
         )
 
-    def compared(self, node: x.Compared) -> tuple[Document, int]:
+    def compared(self, node: x.Comparison) -> tuple[Document, int]:
         left, right = node.left, node.right
         kind = left.type.bare.kind
         words = {"==": "===", "!=": "!==", "is": "===", "is not": "!=="}
@@ -358,10 +363,10 @@ class JavaScript(Braces):
         if kind == "str" and node.operator not in words:
             self.helpers.add("compareText")
             return ("compareText(", self.plain(left), ", ", self.plain(right), f") {word} 0"), COMPARE
-        parts = self.strong(left, PLUS), Break(" "), f"{word} ", self.strong(right, PLUS)
+        parts = self.strong(left, PLUS), LineBreak(" "), f"{word} ", self.strong(right, PLUS)
         return Group(Nest(parts)), COMPARE
 
-    def item(self, node: x.Item) -> Document:
+    def item(self, node: x.ItemOf) -> Document:
         of = self.strong(node.of, ALONE)
         if node.of.type.bare.kind == "map":
             return (of, ".get(", self.plain(node.place), ")")
@@ -394,7 +399,7 @@ class JavaScript(Braces):
             return (
                 self.strong(over.arguments[0], ALONE),
                 ".map(",
-                Group((f"({one}, {place}) =>", Nest((Break(" "), self.returned(node.item))))),
+                Group((f"({one}, {place}) =>", Nest((LineBreak(" "), self.returned(node.item))))),
                 ")",
             )
         base: Document = (
@@ -409,12 +414,12 @@ class JavaScript(Braces):
             return (
                 base,
                 ".flatMap(",
-                Group((f"{names} =>", Nest((Break(" "), self.comprehension(inner))))),
+                Group((f"{names} =>", Nest((LineBreak(" "), self.comprehension(inner))))),
                 ")",
             )
         if len(clause.names) == 1 and node.item == clause.names[0]:
             return base if clause.tests or over.type.kind == "map" else ("[...", base, "]")
-        return (base, ".map(", Group((f"{names} =>", Nest((Break(" "), self.returned(node.item))))), ")")
+        return (base, ".map(", Group((f"{names} =>", Nest((LineBreak(" "), self.returned(node.item))))), ")")
 
     def returned(self, node: x.Expression) -> Document:
         return self.plain(node)

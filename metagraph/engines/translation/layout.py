@@ -12,7 +12,7 @@ from itertools import chain
 
 
 @dataclass(frozen=True)
-class Break:
+class LineBreak:
     """A new line where the group is broken, else `flat`."""
 
     flat: str = ""
@@ -38,24 +38,24 @@ class Tail:
     text: str
 
 
-Document = str | Break | Nest | Group | Tail | tuple["Document", ...]
+Document = str | LineBreak | Nest | Group | Tail | tuple["Document", ...]
 
 
-def listed(opening: str, items: Sequence[Document], closing: str, trailing: str = "") -> Document:
+def bracket_items(opening: str, items: Sequence[Document], closing: str, trailing: str = "") -> Document:
     """Return items in brackets, with commas between. trailing: after the last where each has its own line."""
     if not items:
         return opening + closing
     between: list[Document] = []
     for n, item in enumerate(items):
-        between += [item] if n == 0 else [",", Break(" "), item]
-    return Group((opening, Nest((Break(), *between)), Tail(trailing), Break(), closing))
+        between += [item] if n == 0 else [",", LineBreak(" "), item]
+    return Group((opening, Nest((LineBreak(), *between)), Tail(trailing), LineBreak(), closing))
 
 
 def flat(document: Document) -> str:
     """Return a document on one line."""
     if isinstance(document, str):
         return document
-    if isinstance(document, Break):
+    if isinstance(document, LineBreak):
         return document.flat
     if isinstance(document, Tail):
         return ""
@@ -64,7 +64,7 @@ def flat(document: Document) -> str:
     return flat(document.of)
 
 
-def lines(document: Document, indent: int, step: str, width: int, before: int = 0) -> list[str]:
+def break_lines(document: Document, indent: int, step: str, width: int, before: int = 0) -> list[str]:
     """Return a document as lines, the first without its indent. indent: in steps. before: characters in
     front of the first on its line.
     """
@@ -77,7 +77,7 @@ def lines(document: Document, indent: int, step: str, width: int, before: int = 
         """after: characters that must fit behind it on its last line."""
         if isinstance(d, str):
             out[-1] += d
-        elif isinstance(d, Break):
+        elif isinstance(d, LineBreak):
             if broken:
                 out[-1] = out[-1].rstrip(" ")
                 out.append(step * depth)
@@ -95,7 +95,7 @@ def lines(document: Document, indent: int, step: str, width: int, before: int = 
                 rest = chain.from_iterable([] if isinstance(r, tuple) else [r] for r in d[n + 1 :])
                 near = 0
                 for r in rest:
-                    if isinstance(r, Break) and broken:
+                    if isinstance(r, LineBreak) and broken:
                         break
                     near += len(flat(r))
                     if isinstance(r, Group):

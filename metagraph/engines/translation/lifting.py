@@ -14,7 +14,7 @@ from metagraph.engines.translation import tree as x
 SEARCHES = ("any", "all", "first", "first_or")
 
 
-def lifted(function: x.Function) -> x.Function:
+def lift_comprehensions(function: x.Function) -> x.Function:
     """Return a function without comprehensions and lambdas."""
     return replace(function, body=_Lifting(function).block(function.body))
 
@@ -154,13 +154,13 @@ class _Lifting:
             x.Mapped(node.type, ()) if node.type.kind == "map" else x.Gathered(node.type, ())
         )
         if node.key is not None:
-            add: x.Statement = x.Assign(x.Item(node.item.type, made, node.key), node.item)
+            add: x.Statement = x.Assign(x.ItemOf(node.item.type, made, node.key), node.item)
         else:
             word = "set_add" if node.type.kind == "set" else "list_append"
             add = x.Do(x.Builtin(x.NONE, word, (made, node.item)))
         return [x.Declare(made, empty), *self.looped(node.clauses, [add])]
 
-    def looped(self, clauses: Sequence[x.Clause], inner: Sequence[x.Statement]) -> list[x.Statement]:
+    def looped(self, clauses: Sequence[x.ForClause], inner: Sequence[x.Statement]) -> list[x.Statement]:
         clause, *rest = clauses
         body: Sequence[x.Statement] = self.looped(rest, inner) if rest else inner
         if clause.tests:
@@ -195,7 +195,7 @@ class _Lifting:
         before, of = self.lift(node.arguments[0])
         item, key = self.keyed(node.arguments[1], node.type.of[0])
         keys = self.fresh("keys", x.Type("list", (key.type,)))
-        made = self.gathering(x.Comprehension(keys.type, key, (x.Clause((item,), of, ()),)), keys)
+        made = self.gathering(x.Comprehension(keys.type, key, (x.ForClause((item,), of, ()),)), keys)
         return [*before, *made], x.Builtin(node.type, "sorted_by_keys", (of, keys))
 
     def keyed(self, key: x.Expression, item: x.Type) -> tuple[x.Local, x.Expression]:
@@ -215,8 +215,8 @@ class _Lifting:
 
         place = self.fresh("place", x.INT)
         own = self.fresh("own", made.type)
-        last = x.Item(item.type, of, x.Binary(x.INT, "-", place, x.Value(x.INT, 1)))
-        inside = x.Compared(x.BOOL, ">", place, low)
+        last = x.ItemOf(item.type, of, x.Binary(x.INT, "-", place, x.Value(x.INT, 1)))
+        inside = x.Comparison(x.BOOL, ">", place, low)
         before = x.Builtin(x.BOOL, "less", (own, of_item(last)))
         step = x.Assign(place, x.Value(x.INT, 1), "-")
         return [  # from the end on: most are the latest
@@ -242,7 +242,7 @@ def _put(node: x.Expression, name: str, value: x.Expression) -> x.Expression:
 def _mapped(node: Any, change: Any) -> Any:
     if isinstance(node, tuple):
         return tuple(_mapped(n, change) for n in node)
-    if isinstance(node, x.Expression | x.Statement | x.Clause):
+    if isinstance(node, x.Expression | x.Statement | x.ForClause):
         values = {f.name: _mapped(getattr(node, f.name), change) for f in fields(node)}
         return change(replace(node, **values))
     return node

@@ -15,12 +15,12 @@ from mypy.types import get_proper_type
 
 from metagraph.engines.translation import tree as x
 from metagraph.engines.translation.lowering_expressions import Expressions
-from metagraph.engines.translation.scoping import declared
-from metagraph.engines.translation.source import Source, about_of, defined_by
+from metagraph.engines.translation.scoping import declare_variables
+from metagraph.engines.translation.source import SourceModule, about_of, list_defined
 from metagraph.engines.translation.typed import BITS
 
 
-def module_of(source: Source) -> x.Module:
+def module_of(source: SourceModule) -> x.Module:
     """Return a module in the small tree. Raises SubsetError for what is outside the subset."""
     return _Lowering(source).module()
 
@@ -29,12 +29,12 @@ class _Lowering(Expressions):
     """One module being translated: what it holds."""
 
     def module(self) -> x.Module:
-        parts: list[x.Constant | x.Record | x.Function] = []
+        parts: list[x.Constant | x.RecordClass | x.Function] = []
         last = 0
         for node in self.source.tree.defs:
             above = self.above(last, node.line)
             last = node.end_line or node.line
-            if self.source.only and not set(defined_by(node)) & set(self.source.only):
+            if self.source.only and not set(list_defined(node)) & set(self.source.only):
                 continue
             if isinstance(node, m.FuncDef):
                 parts.append(self._function(node, above))
@@ -65,7 +65,7 @@ class _Lowering(Expressions):
         beside = self.source.beside.get(node.end_line or node.line, "")
         return x.Constant(target.name, value, not target.name.startswith("_"), beside, above)
 
-    def _record(self, node: m.ClassDef) -> x.Record:
+    def _record(self, node: m.ClassDef) -> x.RecordClass:
         fields, methods = [], []
         self.owner = node.info
         for one in node.defs.body:
@@ -95,7 +95,7 @@ class _Lowering(Expressions):
         frozen = any(
             isinstance(d, m.CallExpr) and "frozen" in d.arg_names for d in node.decorators
         )  # @dataclass(frozen=True)
-        return x.Record(node.name, tuple(fields), tuple(methods), about_of(node.defs.body), not frozen)
+        return x.RecordClass(node.name, tuple(fields), tuple(methods), about_of(node.defs.body), not frozen)
 
     def _function(self, node: m.FuncDef, above: tuple[str, ...], is_property: bool = False) -> x.Function:
         if node.is_generator or node.is_coroutine:
@@ -125,7 +125,7 @@ class _Lowering(Expressions):
                 else self.fitted(self.expression(argument.initializer), of)
             )
             parameters.append(x.Parameter(name, of, default, argument_kind is m.ARG_STAR))
-        body = declared(_Body(self, node).statements(), [p.name for p in parameters])
+        body = declare_variables(_Body(self, node).statements(), [p.name for p in parameters])
         back = written.ret_type
         returns = (
             x.BITS
@@ -226,7 +226,7 @@ class _Body:
         if isinstance(target, m.NameExpr):
             return x.Local(self.lowering.declared(target.node, target), target.name)
         found = self.lowering.expression(target)
-        return found.of if isinstance(found, x.Known) else found
+        return found.of if isinstance(found, x.KnownValue) else found
 
     def _unpacked(self, node: m.AssignmentStmt, target: m.TupleExpr) -> list[x.Statement]:
         """`a, b = 1, a` becomes one assignment after another where none reads what one before it wrote."""

@@ -90,7 +90,7 @@ class Calls(Typed):
         key = self.expression(node.args[node.arg_names.index("key")])
         if not isinstance(key, x.Lambda):
             raise self.refuse(node, "a key that is no lambda", "write a lambda")
-        clause = x.Clause(key.names, of, ())
+        clause = x.ForClause(key.names, of, ())
         return x.Comprehension(x.Type("list", (key.body.type,)), key.body, (clause,))
 
     def _formatted(self, node: m.CallExpr) -> x.Expression | None:

@@ -94,7 +94,7 @@ class Expressions(Calls):
         here = self.type(now, node)
         if here.kind in ("optional", "none", "any"):
             return found
-        return x.Known(found.type.bare, found)
+        return x.KnownValue(found.type.bare, found)
 
     def _member(self, node: m.MemberExpr) -> x.Expression:
         if node.kind == m.GDEF:
@@ -128,11 +128,11 @@ class Expressions(Calls):
         if kind.kind == "bool":
             return found
         if kind.kind in ("int", "float"):
-            return x.Compared(x.BOOL, "!=", found, x.Value(kind, 0 if kind == x.INT else 0.0))
+            return x.Comparison(x.BOOL, "!=", found, x.Value(kind, 0 if kind == x.INT else 0.0))
         if kind.kind in ("list", "map", "set", "str"):
             return x.Builtin(x.BOOL, "some", (found,))
         if kind.kind == "optional" and kind.bare.kind in ("record", "tuple"):
-            return x.Compared(x.BOOL, "is not", found, x.Value(x.NONE, None))
+            return x.Comparison(x.BOOL, "is not", found, x.Value(x.NONE, None))
         raise self.refuse(node, f"whether a {kind.kind} is true", "compare it with what you mean")
 
     def _operation(self, node: m.OpExpr) -> x.Expression:
@@ -150,7 +150,7 @@ class Expressions(Calls):
             if node.op == "and":
                 return x.Either(kind, test, right, left)
             known = (
-                x.Known(left.type.bare, left)
+                x.KnownValue(left.type.bare, left)
                 if left.type.kind == "optional" and kind.kind != "optional"
                 else left
             )
@@ -176,11 +176,11 @@ class Expressions(Calls):
                     if operator in ("is", "is not")
                     else [left, right]
                 )
-                out.append(x.Compared(x.BOOL, operator, bare[0], bare[1]))
+                out.append(x.Comparison(x.BOOL, operator, bare[0], bare[1]))
         return out[0] if len(out) == 1 else x.Logic(x.BOOL, "and", tuple(out))
 
     def _unknown(self, value: x.Expression) -> x.Expression:
-        return value.of if isinstance(value, x.Known) else value
+        return value.of if isinstance(value, x.KnownValue) else value
 
     def _index(self, node: m.IndexExpr) -> x.Expression:
         of = self.expression(node.base)
@@ -194,8 +194,8 @@ class Expressions(Calls):
             return x.Slice(of.type, of, ends[0], ends[1])
         place = self.expression(node.index)
         if node not in self.source.types and of.type.of:  # what is assigned to has no type of its own
-            return x.Item(of.type.of[-1], of, place)
-        return x.Item(self.of(node), of, place)
+            return x.ItemOf(of.type.of[-1], of, place)
+        return x.ItemOf(self.of(node), of, place)
 
     def _gathered(self, node: m.TupleExpr | m.ListExpr | m.SetExpr) -> x.Expression:
         items, spread = [], set()
@@ -235,9 +235,11 @@ class Expressions(Calls):
         sequences: Sequence[m.Expression],
         indices: Sequence[m.Expression],
         tests: Sequence[list[m.Expression]],
-    ) -> tuple[x.Clause, ...]:
+    ) -> tuple[x.ForClause, ...]:
         return tuple(
-            x.Clause(self.names(i), self.one_by_one(self.expression(s)), tuple(self.truth(c) for c in c_all))
+            x.ForClause(
+                self.names(i), self.one_by_one(self.expression(s)), tuple(self.truth(c) for c in c_all)
+            )
             for s, i, c_all in zip(sequences, indices, tests, strict=True)
         )
 

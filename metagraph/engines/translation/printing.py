@@ -12,7 +12,15 @@ from pathlib import Path, PurePosixPath
 from typing import ClassVar
 
 from metagraph.engines.translation import tree as x
-from metagraph.engines.translation.layout import Break, Document, Group, Nest, flat, lines, listed
+from metagraph.engines.translation.layout import (
+    Document,
+    Group,
+    LineBreak,
+    Nest,
+    bracket_items,
+    break_lines,
+    flat,
+)
 
 LANGUAGES = Path(__file__).with_name("languages.toml")
 # How strongly operators bind, the same in C-like languages but for bits, which are put in brackets always.
@@ -51,7 +59,7 @@ class Printer:
     LOGIC: ClassVar[Mapping[str, str]] = {"and": "&&", "or": "||", "not": "!"}
 
     def __init__(
-        self, module: x.Module, known: Callable[[str], str], record_of: Callable[[x.Type], x.Record],
+        self, module: x.Module, known: Callable[[str], str], record_of: Callable[[x.Type], x.RecordClass],
         constant_of: Callable[[x.Global], x.Expression],
     ) -> None:  # fmt: skip
         """known: the word of a module's file. record_of: a translated record by its type. constant_of: what a
@@ -75,7 +83,7 @@ class Printer:
         if not flat(document) and not text:
             self.out.append("")
             return
-        made = lines(document, self.depth, self.STEP, self.WIDTH, len(indent.expandtabs(4)))
+        made = break_lines(document, self.depth, self.STEP, self.WIDTH, len(indent.expandtabs(4)))
         if (
             len(flat(document)) + len(text) + len(indent.expandtabs(4)) > self.WIDTH
             and text
@@ -132,7 +140,7 @@ class Printer:
                 parts = [self.strong(p, NOT if isinstance(p, x.Logic) else level) for p in node.parts]
                 joined: list[Document] = [parts[0]]
                 for part in parts[1:]:
-                    joined += [Break(" "), f"{word} ", part]
+                    joined += [LineBreak(" "), f"{word} ", part]
                 return Group(Nest(tuple(joined))), level
             case x.Negated(operator="not"):
                 inner = node.of
@@ -154,7 +162,12 @@ class Printer:
         level = STRENGTH[node.operator]
         right = level - 1  # numbers with fractions: a + (b + c) is not (a + b) + c
         left = level - 1 if level == SHIFT else level
-        parts = self.strong(node.left, left), Break(" "), f"{node.operator} ", self.strong(node.right, right)
+        parts = (
+            self.strong(node.left, left),
+            LineBreak(" "),
+            f"{node.operator} ",
+            self.strong(node.right, right),
+        )
         return Group(Nest(parts)), level
 
     def operation(self, node: x.Builtin) -> tuple[Document, int]:
@@ -176,7 +189,7 @@ class Printer:
         parts: list[Document] = []
         for piece in re.split(r"(\{[^}]*\})", pattern):
             if piece == "{*}":
-                parts.append(listed("(", [self.plain(a) for a in node.arguments], ")"))
+                parts.append(bracket_items("(", [self.plain(a) for a in node.arguments], ")"))
             elif piece == "{&}":
                 parts = [self.paired(tuple(parts), node.arguments)]
             elif piece[:1] == "{":
@@ -194,7 +207,7 @@ class Printer:
         """Return calls of what takes two: `most(a, most(b, c))`."""
         out = self.plain(arguments[-1])
         for one in reversed(arguments[:-1]):
-            out = (word, listed("(", [self.plain(one), out], ")"))
+            out = (word, bracket_items("(", [self.plain(one), out], ")"))
         return out
 
     def helper(self, text: str) -> str:

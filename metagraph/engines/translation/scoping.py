@@ -13,7 +13,7 @@ from dataclasses import fields, is_dataclass, replace
 from metagraph.engines.translation import tree as x
 
 
-def declared(body: Sequence[x.Statement], parameters: Collection[str]) -> tuple[x.Statement, ...]:
+def declare_variables(body: Sequence[x.Statement], parameters: Collection[str]) -> tuple[x.Statement, ...]:
     """Return a function's statements with its variables declared."""
     times: Counter[str] = Counter()
     for node in x.walk(tuple(body)):

@@ -17,7 +17,7 @@ class SubsetError(Exception):
 
 
 @dataclass
-class Source:
+class SourceModule:
     """A Python module as mypy has it. only: the parts that are meant, all where empty.
     without: methods that are not. alone:
     comments by their line, those that have it for themselves; beside: those at the end of one.
@@ -51,7 +51,7 @@ def about_of(body: Sequence[m.Statement]) -> str:
     return "\n\n".join(" ".join(p.split()) for p in paragraphs)
 
 
-def defined_by(node: m.Statement) -> list[str]:
+def list_defined(node: m.Statement) -> list[str]:
     """Return the names that a piece of a module makes."""
     if isinstance(node, m.FuncDef | m.ClassDef):
         return [node.name]

@@ -18,7 +18,7 @@ from metagraph.engines.translation.javascript import JavaScript
 from metagraph.engines.translation.listing import LISTING, NATIVE, RUNTIMES, Translated
 from metagraph.engines.translation.lowering import module_of
 from metagraph.engines.translation.printing import Printer, TranslationError, pascal
-from metagraph.engines.translation.source import Source, SubsetError
+from metagraph.engines.translation.source import SourceModule, SubsetError
 
 ROOT = Path(__file__).parents[3]
 PLACES: dict[type[Printer], Callable[[str], str]] = {  # where each language's file of a module is
@@ -30,18 +30,20 @@ PLACES: dict[type[Printer], Callable[[str], str]] = {  # where each language's f
 UNKNOWN = ("numpy.*", "numba.*", "yaml.*")  # nothing translated knows arrays and files; reading is slow
 
 
-def translated() -> dict[Path, str]:
+def translate_runtimes() -> dict[Path, str]:
     """Return every translated file of the runtimes with its text. Raises what `read` and `printed` do."""
-    return {RUNTIMES / path: text for path, text in printed(read(LISTING, ROOT), NATIVE).items()}
+    return {
+        RUNTIMES / path: text for path, text in print_modules(read_modules(LISTING, ROOT), NATIVE).items()
+    }
 
 
-def read(listing: Sequence[Translated], root: Path) -> dict[Translated, x.Module]:
+def read_modules(listing: Sequence[Translated], root: Path) -> dict[Translated, x.Module]:
     """Return listed modules below a folder. Raises SubsetError for what mypy or the subset refuses."""
-    found = understood(listing, root)
+    found = type_modules(listing, root)
     return {one: module_of(source) for one, source in found.items()}
 
 
-def understood(listing: Sequence[Translated], root: Path) -> dict[Translated, Source]:
+def type_modules(listing: Sequence[Translated], root: Path) -> dict[Translated, SourceModule]:
     """Return listed modules as mypy has them. Raises SubsetError with what it finds wrong."""
     options = Options()
     options.export_types = options.preserve_asts = options.local_partial_types = True
@@ -56,7 +58,7 @@ def understood(listing: Sequence[Translated], root: Path) -> dict[Translated, So
     if wrong:  # elsewhere there are errors, too, since arrays are left out
         raise SubsetError("\n".join(wrong))
     return {
-        one: Source(
+        one: SourceModule(
             found.files[one.module],
             found.types,
             path,
@@ -67,13 +69,13 @@ def understood(listing: Sequence[Translated], root: Path) -> dict[Translated, So
     }
 
 
-def printed(modules: Mapping[Translated, x.Module], native: Mapping[str, str]) -> dict[str, str]:
+def print_modules(modules: Mapping[Translated, x.Module], native: Mapping[str, str]) -> dict[str, str]:
     """Return each module's text in each language, by where it belongs. native: modules that are not
     translated, with the word of their files. Raises TranslationError for what a language cannot say.
     """
     words = {**native, **{one.module: one.word for one in modules}}
     parts = [(m.name, p) for m in modules.values() for p in m.parts]
-    records = {(name, p.name): p for name, p in parts if isinstance(p, x.Record)}
+    records = {(name, p.name): p for name, p in parts if isinstance(p, x.RecordClass)}
     constants = {(name, p.name): p.value for name, p in parts if isinstance(p, x.Constant)}
 
     def known(module: str) -> str:
@@ -81,7 +83,7 @@ def printed(modules: Mapping[Translated, x.Module], native: Mapping[str, str]) -
             raise TranslationError(f"'{module}' is used, which is not translated; list it, or make it native")
         return words[module]
 
-    def record_of(kind: x.Type) -> x.Record:
+    def record_of(kind: x.Type) -> x.RecordClass:
         return records[kind.module, kind.name]
 
     def constant_of(node: x.Global) -> x.Expression:

@@ -126,7 +126,7 @@ class Binary(Expression):
 
 
 @dataclass(frozen=True)
-class Compared(Expression):
+class Comparison(Expression):
     """operator: == != < <= > >=, is and is not (only with None)."""
 
     operator: str
@@ -160,7 +160,7 @@ class Either(Expression):
 
 
 @dataclass(frozen=True)
-class Item(Expression):
+class ItemOf(Expression):
     """An item of a list by its place, of a map by its key; -1 the last. Of a tuple by a number."""
 
     of: Expression
@@ -192,7 +192,7 @@ class Mapped(Expression):
 
 
 @dataclass(frozen=True)
-class Clause:
+class ForClause:
     """`for names in over if all tests`."""
 
     names: tuple[Local, ...]
@@ -205,7 +205,7 @@ class Comprehension(Expression):
     """A list, set or map of items; key: of a map's."""
 
     item: Expression
-    clauses: tuple[Clause, ...]
+    clauses: tuple[ForClause, ...]
     key: Expression | None = None
 
 
@@ -223,7 +223,7 @@ class Formatted(Expression):
 
 
 @dataclass(frozen=True)
-class Known(Expression):
+class KnownValue(Expression):
     """An optional value where it is known to be there."""
 
     of: Expression
@@ -232,7 +232,7 @@ class Known(Expression):
 # --- statements
 
 
-Named = Value | Local | Global | This | Known | Member  # what stands there, or has a name
+Named = Value | Local | Global | This | KnownValue | Member  # what stands there, or has a name
 
 
 @dataclass(frozen=True)
@@ -354,7 +354,7 @@ class Constant:
 
 
 @dataclass(frozen=True)
-class Record:
+class RecordClass:
     """A class of fields and methods. changes: its fields are assigned to; else it is a value."""
 
     name: str
@@ -370,7 +370,7 @@ class Module:
 
     name: str
     about: str
-    parts: tuple[Constant | Record | Function, ...]
+    parts: tuple[Constant | RecordClass | Function, ...]
 
     @property
     def word(self) -> str:

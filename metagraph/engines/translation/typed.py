@@ -7,7 +7,7 @@ from mypy import types as t
 from mypy.types import get_proper_type
 
 from metagraph.engines.translation import tree as x
-from metagraph.engines.translation.source import Source, SubsetError
+from metagraph.engines.translation.source import SourceModule, SubsetError
 
 BITS = "Bits"  # `hashing.Bits`: mypy takes it for what it stands for
 LISTS = (
@@ -29,7 +29,7 @@ VOICES = x.Type("record", (), "Voices", "metagraph.playback.life.voice")  # of l
 class Typed:
     """One module being translated: its types."""
 
-    def __init__(self, source: Source) -> None:
+    def __init__(self, source: SourceModule) -> None:
         self.source = source
         self.name = source.tree.fullname
         self.owner: m.TypeInfo | None = None  # the record whose method is translated

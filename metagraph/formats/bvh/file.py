@@ -27,8 +27,8 @@ from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.bvh.decimal_text import decimals
-from metagraph.formats.bvh.space import USUAL, stand, unit, z_up
-from metagraph.formats.takes import UNIT, UP, repaired, without_stray_poses
+from metagraph.formats.bvh.space import USUAL, find_unit, is_z_up, stand_up
+from metagraph.formats.takes import UNIT, UP, drop_stray_poses, note_repair
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip, Repair
 from metagraph.motion.roles import find_roles
@@ -371,7 +371,7 @@ def _rotations(values: Array, joints: list[_Joint], columns: list[list[int]]) ->
         for joint, own in zip(joints, columns, strict=True)
     ]
     orders = ["".join(name[0] for name in joint.channels if name[1] == "r") for joint in joints]
-    out = rotation.identity((frames, len(joints)))
+    out = rotation.identity_rotations((frames, len(joints)))
     for order in set(orders) - {""}:
         same = [i for i, o in enumerate(orders) if o == order]
         angles = np.radians(values[:, [turns[i] for i in same]])
@@ -399,14 +399,14 @@ def _clip(
     columns = _columns(joints)
     placed = _placed(joints, columns, offsets, values)
     rotations = _rotations(values, joints, columns)
-    skeleton = Skeleton(names, parents.copy(), rotation.identity((len(joints),)), offsets)
+    skeleton = Skeleton(names, parents.copy(), rotation.identity_rotations((len(joints),)), offsets)
     roles = find_roles(skeleton)
 
     scale, repairs = _metres(skeleton, roles, scale, notes, as_is)
     offsets = offsets * scale
     placed = {i: p * scale for i, p in placed.items()}
-    up, rest_too = z_up(skeleton, roles, rotations, placed, offsets)
-    rest_rotations = rotation.identity((len(joints),))
+    up, rest_too = is_z_up(skeleton, roles, rotations, placed, offsets)
+    rest_rotations = rotation.identity_rotations((len(joints),))
     if up:
         repairs.append(Repair(UP, "its Z axis points up: turned to Y up", UP not in as_is))
     if up and UP not in as_is:
@@ -414,7 +414,7 @@ def _clip(
         _turn_up(roots, rotations, offsets, placed)
         if rest_too:
             rest_rotations[roots] = _TO_Y_UP
-    stand(
+    stand_up(
         offsets,
         parents,
         rest_rotations,
@@ -425,8 +425,8 @@ def _clip(
     translations = np.stack([placed[i] for i in moving], 1)
     clip = Clip(path.stem, skeleton, fps, rotations, translations, tuple(moving), notes=tuple(notes))
     for repair in repairs:
-        clip = repaired(clip, repair)
-    return without_stray_poses([clip], as_is)[0]
+        clip = note_repair(clip, repair)
+    return drop_stray_poses([clip], as_is)[0]
 
 
 def _columns(joints: list[_Joint]) -> list[list[int]]:
@@ -468,7 +468,7 @@ def _metres(
         if not (scale > 0 and np.isfinite(scale)):
             raise ValueError(f"a scale of {scale} metres per unit")
         return scale, []
-    found, words = unit(skeleton, roles)
+    found, words = find_unit(skeleton, roles)
     if found == USUAL:
         notes.append(words)
         return found, []
@@ -479,10 +479,10 @@ def _metres(
 def _turn_up(roots: Array, rotations: Array, offsets: Array, placed: dict[int, Array]) -> None:
     """Turn the motion of a figure whose Z axis points up."""
     rotations[:, roots] = rotation.multiply(_TO_Y_UP, rotations[:, roots].astype(float))
-    offsets[roots] = rotation.rotate(_TO_Y_UP, offsets[roots])
+    offsets[roots] = rotation.rotate_vectors(_TO_Y_UP, offsets[roots])
     for i in roots.tolist():
         if i in placed:
-            placed[i] = rotation.rotate(_TO_Y_UP, placed[i])
+            placed[i] = rotation.rotate_vectors(_TO_Y_UP, placed[i])
 
 
 def write_bvh(clip: Clip, path: str | Path) -> None:

@@ -24,7 +24,7 @@ _UNITS = (
 )
 
 
-def stand(offsets: Array, parents: Array, rest_rotations: Array, placed: set[int]) -> None:
+def stand_up(offsets: Array, parents: Array, rest_rotations: Array, placed: set[int]) -> None:
     """Give the rest pose a place of its own, in place: over the origin, its lowest joint on the ground.
 
     Exporters leave the first frame's position in the OFFSET of a root, so that files of one actor would all
@@ -48,11 +48,11 @@ def stand(offsets: Array, parents: Array, rest_rotations: Array, placed: set[int
     # root.
     lift = np.array([0.0, -float(positions[:, 1].min()), 0.0])
     offsets[line[-1]] = (
-        rotation.rotate(rotation.conjugate(rest_rotations[0]), lift) if len(line) > 1 else lift
+        rotation.rotate_vectors(rotation.conjugate(rest_rotations[0]), lift) if len(line) > 1 else lift
     )
 
 
-def unit(skeleton: Skeleton, roles: dict[str, int]) -> tuple[float, str]:
+def find_unit(skeleton: Skeleton, roles: dict[str, int]) -> tuple[float, str]:
     """Return metres per unit and a note that says how it was found."""
     bones = np.linalg.norm(skeleton.rest_translations, axis=1)
 
@@ -83,7 +83,7 @@ def unit(skeleton: Skeleton, roles: dict[str, int]) -> tuple[float, str]:
     )
 
 
-def z_up(
+def is_z_up(
     skeleton: Skeleton, roles: dict[str, int], rotations: Array, placed: dict[int, Array], offsets: Array
 ) -> tuple[bool, bool]:
     """Return whether Z points up, and whether it does so in the rest pose too. offsets, placed: metres."""

@@ -13,9 +13,15 @@ from numpy.typing import NDArray
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.conversations.languages import Lists, Speaking, languages_of
-from metagraph.formats.conversations.sounds import Reading, length_of, voices_of
-from metagraph.formats.conversations.words import Told, Voice, sides_of, tell_unheard, within
-from metagraph.formats.store import kept_path
+from metagraph.formats.conversations.sounds import ConversationReading, length_of, read_side_voices
+from metagraph.formats.conversations.words import (
+    SideVoice,
+    TranscribedSide,
+    cut_words_to_sound,
+    sides_of,
+    tell_unheard,
+)
+from metagraph.formats.store import path_for_project
 from metagraph.formats.transcripts.reader import read_transcript
 from metagraph.formats.transcripts.words import count
 from metagraph.graph.conversation.model import (
@@ -29,8 +35,8 @@ from metagraph.graph.conversation.model import (
 )
 from metagraph.playback.planning.choice import key32
 from metagraph.speech.activity import HUSH, LEAST, activity
-from metagraph.speech.clauses import by_sound, peak_of, segments
-from metagraph.speech.language_packs import Language
+from metagraph.speech.clauses import find_stress_time, segment_by_sound, segments
+from metagraph.speech.language_packs import LanguagePack
 from metagraph.speech.pitch import smooth
 from metagraph.speech.sound import HeardSound
 
@@ -85,11 +91,11 @@ def read_conversation(
         raise ValueError(
             phrase("a conversation has one transcript, or one for each of up to {most} who speak", most=most)
         )
-    reading = Reading(cancelled=cancelled)
+    reading = ConversationReading(cancelled=cancelled)
     said = [(path, read_transcript(path)) for path in transcripts]
     for path, transcript in said:
         reading.notes += [phrase("{name}: {note}.", name=path.name, note=note) for note in transcript.notes]
-    voices = voices_of(reading, list(audio), bool(said), most)
+    voices = read_side_voices(reading, list(audio), bool(said), most)
     if len(voices) > 1 and 1 < len(said) != len(voices):
         raise FileError(
             audio[0],
@@ -126,11 +132,11 @@ def read_conversation(
 
 
 def _side(
-    reading: Reading,
+    reading: ConversationReading,
     n: int,
-    found: Sequence[tuple[Voice, Told]],
+    found: Sequence[tuple[SideVoice, TranscribedSide]],
     folder: Path | None,
-    language: Language | None,
+    language: LanguagePack | None,
     lists: Lists,
     own: bool,
 ) -> Side:
@@ -140,21 +146,21 @@ def _side(
     shared = any(v is voice for m, (v, _) in enumerate(found) if m != n)
     partner = _all_of([v.heard for v in dict.fromkeys(v for v, _ in found) if v is not voice])
     called = _called(voice, said)
-    words = within(reading.notes, called, said, length_of(voice))
+    words = cut_words_to_sound(reading.notes, called, said, length_of(voice))
     if said.segments is not None:
         segmented = _kept(reading, called, said, voice, [one.name for _, one in found])
     elif words or not shared:
         if language is not None:
             segmented = segments(words, voice.pitch, voice.heard, *lists, partner, language)
         else:
-            segmented = by_sound(words, voice.pitch, voice.heard, None if shared else partner)
+            segmented = segment_by_sound(words, voice.pitch, voice.heard, None if shared else partner)
     else:
         segmented = ()
     if not words and said.segments is None:
         _tell_wordless(reading, called, voice, shared, segmented, len(found))
     elif words and not shared and said.segments is None:
         tell_unheard(reading.notes, called, words, voice)
-    path = kept_path(voice.path, folder)
+    path = path_for_project(voice.path, folder)
     return Side(
         name=said.name,
         audio=path,
@@ -178,12 +184,12 @@ def _all_of(heard: Sequence[HeardSound]) -> HeardSound | None:
     return replace(longest, level=level)
 
 
-def _called(voice: Voice, said: Told) -> str:
+def _called(voice: SideVoice, said: TranscribedSide) -> str:
     return phrase("{name} ({voice})", name=said.name, voice=voice.called) if said.name else voice.called
 
 
 def _kept(
-    reading: Reading, called: str, said: Told, voice: Voice, names: Sequence[str]
+    reading: ConversationReading, called: str, said: TranscribedSide, voice: SideVoice, names: Sequence[str]
 ) -> tuple[Segment, ...]:
     """Return segments a file holds, as far as the sound goes; clauses that have no peak get theirs. names: of
     the sides.
@@ -198,7 +204,11 @@ def _kept(
             continue
         peak = s.peak
         if s.kind == "clause":
-            peak = peak_of(voice.pitch, tones, voice.heard, s.start, end) if peak is None else min(peak, end)
+            peak = (
+                find_stress_time(voice.pitch, tones, voice.heard, s.start, end)
+                if peak is None
+                else min(peak, end)
+            )
         to = s.to if s.to in (None, EVERYBODY) else sides.get(s.to)
         out.append(Segment(s.kind, s.start, end, peak, s.text, to))
     if len(out) < len(given):
@@ -214,7 +224,12 @@ def _kept(
 
 
 def _tell_wordless(
-    reading: Reading, called: str, voice: Voice, shared: bool, found: Sequence[Segment], sides: int
+    reading: ConversationReading,
+    called: str,
+    voice: SideVoice,
+    shared: bool,
+    found: Sequence[Segment],
+    sides: int,
 ) -> None:
     if shared:
         reading.notes.append(

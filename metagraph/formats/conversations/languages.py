@@ -8,11 +8,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from metagraph.common.wording import phrase
-from metagraph.formats.conversations.words import Told
-from metagraph.formats.transcripts.words import count, listed
+from metagraph.formats.conversations.words import TranscribedSide
+from metagraph.formats.transcripts.words import count, join_as_list
 from metagraph.graph.conversation.model import AUTO
-from metagraph.speech.language_detection import Spoken, language_spoken
-from metagraph.speech.language_packs import ENGLISH, Language, languages
+from metagraph.speech.language_detection import SpokenLanguage, detect_language
+from metagraph.speech.language_packs import ENGLISH, LanguagePack, list_language_packs
 
 _BY_LISTS = phrase(
     "responses, hesitations and clauses go by that language's lists, lips by its letters as English spells. "
@@ -30,7 +30,7 @@ class Speaking:
 
     language: str = AUTO
     otherwise: str = AUTO
-    packs: Mapping[str, Language] = field(default_factory=languages)
+    packs: Mapping[str, LanguagePack] = field(default_factory=list_language_packs)
     lists: tuple[Lists | None, ...] = ()
 
     def __post_init__(self) -> None:
@@ -45,11 +45,11 @@ class Speaking:
             )
 
     @property
-    def usual(self) -> Language:
+    def usual(self) -> LanguagePack:
         """What is taken where words tell nothing."""
         return self.packs.get(self.otherwise) or self.packs.get(ENGLISH) or next(iter(self.packs.values()))
 
-    def lists_for(self, side: int, language: Language | None) -> Lists:
+    def lists_for(self, side: int, language: LanguagePack | None) -> Lists:
         """Return responses and hesitations of a side; none in a language that is not known."""
         given = self.lists[side] if side < len(self.lists) else None
         if given is not None:
@@ -58,8 +58,8 @@ class Speaking:
 
 
 def languages_of(
-    notes: list[str], called: Sequence[str], said: Sequence[Told], speaking: Speaking
-) -> tuple[Language | None, ...]:
+    notes: list[str], called: Sequence[str], said: Sequence[TranscribedSide], speaking: Speaking
+) -> tuple[LanguagePack | None, ...]:
     """Return what each is read in, None where nobody knows; say how that was found."""
     spoken = [_spoken(one, speaking) for one in said]
     if speaking.language != AUTO:
@@ -77,7 +77,7 @@ def languages_of(
                 )
         return (chosen,) * len(said)
     partners = [_partner(spoken, n) for n in range(len(spoken))]
-    out: list[Language | None] = []
+    out: list[LanguagePack | None] = []
     for found, partner in zip(spoken, partners, strict=True):
         as_partner = partner.language if partner is not None else None
         if found is None:  # no words: nothing to read, but the lists are the partner's
@@ -99,7 +99,7 @@ def languages_of(
     return tuple(out)
 
 
-def _partner(spoken: Sequence[Spoken | None], n: int) -> Spoken | None:
+def _partner(spoken: Sequence[SpokenLanguage | None], n: int) -> SpokenLanguage | None:
     """Return what the words of those who talk with one tell: of several, of the first whose language they
     tell.
     """
@@ -107,11 +107,11 @@ def _partner(spoken: Sequence[Spoken | None], n: int) -> Spoken | None:
     return next((s for s in others if s.language is not None), others[0] if others else None)
 
 
-def _all_alike(spoken: Sequence[Spoken]) -> list[str]:
+def _all_alike(spoken: Sequence[SpokenLanguage]) -> list[str]:
     assert spoken[0].language is not None
     if spoken[0].language.code == ENGLISH:
         return []
-    of = listed([phrase("{known:,} of {words:,}", known=s.known, words=s.words) for s in spoken])
+    of = join_as_list([phrase("{known:,} of {words:,}", known=s.known, words=s.words) for s in spoken])
     return [
         phrase(
             "Both speak {language}, as {of} words tell; {lists}"
@@ -124,14 +124,18 @@ def _all_alike(spoken: Sequence[Spoken]) -> list[str]:
     ]
 
 
-def _spoken(said: Told, speaking: Speaking) -> Spoken | None:
+def _spoken(said: TranscribedSide, speaking: Speaking) -> SpokenLanguage | None:
     """Return what one's words tell; None where there are none."""
     texts = [w.text for w in said.words] or [s.text for s in said.segments or () if s.text]
-    return language_spoken(texts, tuple(speaking.packs.values())) if texts else None
+    return detect_language(texts, tuple(speaking.packs.values())) if texts else None
 
 
 def _told(
-    name: str, found: Spoken, read: Language | None, partner: Spoken | None, speaking: Speaking
+    name: str,
+    found: SpokenLanguage,
+    read: LanguagePack | None,
+    partner: SpokenLanguage | None,
+    speaking: Speaking,
 ) -> list[str]:
     if read is None and found.how != "unknown":
         return [

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from metagraph.common.budgets import CONVERSATION_SECONDS as LONGEST
 from metagraph.common.wording import join_phrases, phrase
 from metagraph.errors import FileError
-from metagraph.formats.conversations.words import Voice
+from metagraph.formats.conversations.words import SideVoice
 from metagraph.speech.activity import HUSH
 from metagraph.speech.pitch import pitch
-from metagraph.speech.sound import hear, read_recording
+from metagraph.speech.sound import analyse_sound, read_recording
 
 Array = NDArray[Any]
 
@@ -31,7 +31,7 @@ _NUMBERS = {2: phrase("two"), 3: phrase("three"), 4: phrase("four")}
 
 
 @dataclass
-class Reading:
+class ConversationReading:
     """What is to be said so far, and whether somebody gave up."""
 
     notes: list[str] = field(default_factory=list)
@@ -42,12 +42,14 @@ class Reading:
             raise CancelledError
 
 
-def length_of(voice: Voice) -> float:
+def length_of(voice: SideVoice) -> float:
     """Return how long a sound is in whole milliseconds: nothing that is written down ends after it."""
     return math.floor(voice.heard.duration * 1000 + 1e-6) / 1000
 
 
-def voices_of(reading: Reading, audio: list[Path], worded: bool, most: int) -> tuple[Voice, ...]:
+def read_side_voices(
+    reading: ConversationReading, audio: list[Path], worded: bool, most: int
+) -> tuple[SideVoice, ...]:
     """Return the sound of each side; a single one if all share it."""
     if len(audio) > 1:
         return _files(reading, audio)
@@ -138,7 +140,7 @@ def _sounding(samples: Array) -> list[int]:
     return [n for n in range(len(samples)) if loud[n] > least]
 
 
-def _tell_kind(reading: Reading, path: Path, really: str) -> None:
+def _tell_kind(reading: ConversationReading, path: Path, really: str) -> None:
     if really:
         reading.notes.append(
             phrase(
@@ -150,7 +152,7 @@ def _tell_kind(reading: Reading, path: Path, really: str) -> None:
         )
 
 
-def _files(reading: Reading, audio: list[Path]) -> tuple[Voice, ...]:
+def _files(reading: ConversationReading, audio: list[Path]) -> tuple[SideVoice, ...]:
     out, rates = [], []
     count = _NUMBERS.get(len(audio), len(audio))
     for path in audio:
@@ -201,15 +203,15 @@ def _files(reading: Reading, audio: list[Path]) -> tuple[Voice, ...]:
 
 
 def _voice(
-    reading: Reading, path: Path, channel: int | None, called: str, samples: Array, rate: int
-) -> Voice:
+    reading: ConversationReading, path: Path, channel: int | None, called: str, samples: Array, rate: int
+) -> SideVoice:
     reading.go_on()
-    heard = hear(samples, rate)
+    heard = analyse_sound(samples, rate)
     reading.go_on()
-    return Voice(path, channel, called, heard, pitch(samples, rate))
+    return SideVoice(path, channel, called, heard, pitch(samples, rate))
 
 
-def _tell_clipped(reading: Reading, called: str, clipped: float) -> None:
+def _tell_clipped(reading: ConversationReading, called: str, clipped: float) -> None:
     if clipped > CLIPPED:
         reading.notes.append(
             phrase(

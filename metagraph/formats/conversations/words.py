@@ -15,7 +15,7 @@ import numpy as np
 
 from metagraph.common.wording import join_phrases, phrase
 from metagraph.errors import FileError
-from metagraph.formats.transcripts.words import Transcript, count, listed
+from metagraph.formats.transcripts.words import Transcript, count, join_as_list
 from metagraph.graph.conversation.model import SHORTEST, Segment, Word
 from metagraph.speech.activity import HUSH, activity
 from metagraph.speech.pitch import Pitch
@@ -23,7 +23,7 @@ from metagraph.speech.sound import HeardSound
 
 
 @dataclass(frozen=True, eq=False)
-class Voice:
+class SideVoice:
     """A sound of one side, or of several who share it: where it is from, as it is called in notes, and what
     is heard there.
     """
@@ -41,7 +41,7 @@ class Voice:
 
 
 @dataclass(frozen=True)
-class Told:
+class TranscribedSide:
     """What a transcript says of one side. segments: None where it says nothing of them; whom they are said to
     is a place among `names`, all who speak in the transcript. path: the transcript's, None without one.
     """
@@ -54,8 +54,8 @@ class Told:
 
 
 def sides_of(
-    notes: list[str], voices: Sequence[Voice], said: list[tuple[Path, Transcript]], most: int
-) -> tuple[tuple[Voice, Told], ...]:
+    notes: list[str], voices: Sequence[SideVoice], said: list[tuple[Path, Transcript]], most: int
+) -> tuple[tuple[SideVoice, TranscribedSide], ...]:
     """Return the sides: the sound of each, and what the transcripts say of it. voices: one a channel or file,
     a single one if all share it. most: sides at most.
 
@@ -68,17 +68,19 @@ def sides_of(
     if len(speakers) == 1:
         return _one_speaker(notes, voices, said[0][0], speakers[0])
     if len(voices) == 1:
-        speakers += [Told()] * (2 - len(speakers))
+        speakers += [TranscribedSide()] * (2 - len(speakers))
         return tuple((voices[0], one) for one in speakers)
     if len(speakers) > len(voices):
         return _sharing(notes, voices, said[0][0], speakers)
     of = _best(voices, speakers)
-    return tuple((voice, speakers[of.index(n)] if n in of else Told()) for n, voice in enumerate(voices))
+    return tuple(
+        (voice, speakers[of.index(n)] if n in of else TranscribedSide()) for n, voice in enumerate(voices)
+    )
 
 
 def _sharing(
-    notes: list[str], voices: Sequence[Voice], path: Path, speakers: list[Told]
-) -> tuple[tuple[Voice, Told], ...]:
+    notes: list[str], voices: Sequence[SideVoice], path: Path, speakers: list[TranscribedSide]
+) -> tuple[tuple[SideVoice, TranscribedSide], ...]:
     """Return more speakers than sounds, each with the one it is loudest in."""
     out = []
     for one in speakers:
@@ -96,7 +98,7 @@ def _sharing(
     return tuple(out)
 
 
-def _best(voices: Sequence[Voice], speakers: Sequence[Told]) -> tuple[int, ...]:
+def _best(voices: Sequence[SideVoice], speakers: Sequence[TranscribedSide]) -> tuple[int, ...]:
     """Return the voice of each speaker, no two the same: those in which they are loudest together; as they
     come where that says nothing.
     """
@@ -108,10 +110,10 @@ def _best(voices: Sequence[Voice], speakers: Sequence[Told]) -> tuple[int, ...]:
     )
 
 
-def _speakers(notes: list[str], path: Path, transcript: Transcript, most: int) -> list[Told]:
+def _speakers(notes: list[str], path: Path, transcript: Transcript, most: int) -> list[TranscribedSide]:
     """Return those who speak, in the file's order; of more than there may be, those who say most."""
     found = [
-        Told(name, words, transcript.segments.get(name), path, tuple(transcript.speakers))
+        TranscribedSide(name, words, transcript.segments.get(name), path, tuple(transcript.speakers))
         for name, words in transcript.speakers.items()
     ]
     speaking = [s for s in found if s.words or s.segments]
@@ -137,12 +139,12 @@ def _speakers(notes: list[str], path: Path, transcript: Transcript, most: int) -
 
 
 def _one_a_side(
-    notes: list[str], voices: Sequence[Voice], said: list[tuple[Path, Transcript]]
-) -> tuple[tuple[Voice, Told], ...]:
+    notes: list[str], voices: Sequence[SideVoice], said: list[tuple[Path, Transcript]]
+) -> tuple[tuple[SideVoice, TranscribedSide], ...]:
     out = []
     for path, transcript in said:
         found = _speakers(notes, path, transcript, 1)
-        one = found[0] if found else Told()
+        one = found[0] if found else TranscribedSide()
         out.append(one if one.name else replace(one, name=path.stem[:200]))
     if len(voices) == 1:
         return tuple((voices[0], one) for one in out)
@@ -154,7 +156,7 @@ def _one_a_side(
     if better > here + 3 * sum(bool(s.words) for s in out):
         swapped = [(said[k][0].name, voices[n].called) for k, n in enumerate(of) if k != n]
         each = [phrase("{name} fits {voice}", name=name, voice=voice) for name, voice in swapped]
-        fits = listed(each)
+        fits = join_as_list(each)
         notes.append(
             phrase(
                 "{fits} better than the other way round; they were not swapped. Give them in the "
@@ -166,8 +168,8 @@ def _one_a_side(
 
 
 def _one_speaker(
-    notes: list[str], voices: Sequence[Voice], path: Path, one: Told
-) -> tuple[tuple[Voice, Told], ...]:
+    notes: list[str], voices: Sequence[SideVoice], path: Path, one: TranscribedSide
+) -> tuple[tuple[SideVoice, TranscribedSide], ...]:
     """Return what one speaker's words are to all sides: each word is whose channel is louder then."""
     if len(voices) == 1:
         notes.append(
@@ -177,7 +179,7 @@ def _one_speaker(
                 name=path.name,
             )
         )
-        return (voices[0], one), (voices[0], Told())
+        return (voices[0], one), (voices[0], TranscribedSide())
     if one.segments is not None or not one.words:
         first = _best(voices, [one])[0]
     else:
@@ -192,7 +194,12 @@ def _one_speaker(
                 )
             )
             return tuple(
-                (v, Told(words=tuple(w for w, s in zip(one.words, sides, strict=True) if s == n), path=path))
+                (
+                    v,
+                    TranscribedSide(
+                        words=tuple(w for w, s in zip(one.words, sides, strict=True) if s == n), path=path
+                    ),
+                )
                 for n, v in enumerate(voices)
             )
         first = shares.index(max(shares))
@@ -207,10 +214,10 @@ def _one_speaker(
             rest=rest,
         )
     )
-    return tuple((v, one if n == first else Told()) for n, v in enumerate(voices))
+    return tuple((v, one if n == first else TranscribedSide()) for n, v in enumerate(voices))
 
 
-def _louder(voices: Sequence[Voice], words: Sequence[Word]) -> list[int]:
+def _louder(voices: Sequence[SideVoice], words: Sequence[Word]) -> list[int]:
     """Return the side of each word; words said without a pause between them belong together."""
     levels = [[_level(v, w.start, w.end) for v in voices] for w in words]
     top = [row.index(max(row)) for row in levels]
@@ -224,12 +231,12 @@ def _louder(voices: Sequence[Voice], words: Sequence[Word]) -> list[int]:
     return out
 
 
-def _loudness(voices: Sequence[Voice], words: Sequence[Word], n: int) -> float:
+def _loudness(voices: Sequence[SideVoice], words: Sequence[Word], n: int) -> float:
     """Return how loud a voice is on average while words are said, dB under its loudest; 0 without words."""
     return float(np.mean([_level(voices[n], w.start, w.end) for w in words])) if words else 0.0
 
 
-def _level(voice: Voice, start: float, end: float) -> float:
+def _level(voice: SideVoice, start: float, end: float) -> float:
     heard = voice.heard
     part = heard.level[
         int(np.searchsorted(heard.times, start)) : int(np.searchsorted(heard.times, end, "right"))
@@ -237,7 +244,7 @@ def _level(voice: Voice, start: float, end: float) -> float:
     return max(float(part.mean()) - voice.top, -60.0) if len(part) else -60.0
 
 
-def within(notes: list[str], called: str, said: Told, length: float) -> list[Word]:
+def cut_words_to_sound(notes: list[str], called: str, said: TranscribedSide, length: float) -> list[Word]:
     """Return the words as far as the sound goes, seconds. Raises FileError where it has gone before the
     first.
     """
@@ -259,7 +266,7 @@ def within(notes: list[str], called: str, said: Told, length: float) -> list[Wor
     if gone or cut:
         parts = [phrase("{count} left out", count=count(gone, "word"))] if gone else []
         parts += [phrase("{count} cut", count=count(cut, "word"))] if cut else []
-        does = listed(parts)
+        does = join_as_list(parts)
         notes.append(
             phrase(
                 "{called}: {does}, past the end of the sound at {length:.1f} s. Check that the "
@@ -272,7 +279,7 @@ def within(notes: list[str], called: str, said: Told, length: float) -> list[Wor
     return out
 
 
-def tell_unheard(notes: list[str], called: str, words: Sequence[Word], voice: Voice) -> None:
+def tell_unheard(notes: list[str], called: str, words: Sequence[Word], voice: SideVoice) -> None:
     """Tell of words where nothing is to be heard: the transcript of another recording, or shifted."""
     spoken = activity(voice.heard, None, None)
     heard = sum(any(s.start - 0.2 < (w.start + w.end) / 2 < s.end + 0.2 for s in spoken) for w in words)

@@ -17,7 +17,7 @@ from urllib.parse import quote
 
 import msgspec
 
-from metagraph.common.xml_text import escape, quoted, xml_text
+from metagraph.common.xml_text import escape, quote_xml, xml_text
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.transcripts.words import TO_ALL
 from metagraph.graph.conversation.model import EVERYBODY, Conversation, Side
@@ -45,8 +45,10 @@ def write_elan(conversation: Conversation, path: str | Path, folder: Path | None
         place = Path(sound) if folder is None else folder / sound
         kind = _MEDIA.get(place.suffix.lower(), "audio/x-wav")
         near = _near(place, path.parent)
-        beside = f" RELATIVE_MEDIA_URL={quoted(near)}" if near else ""
-        out.write(f'        <MEDIA_DESCRIPTOR MEDIA_URL={quoted(_url(place))} MIME_TYPE="{kind}"{beside}/>\n')
+        beside = f" RELATIVE_MEDIA_URL={quote_xml(near)}" if near else ""
+        out.write(
+            f'        <MEDIA_DESCRIPTOR MEDIA_URL={quote_xml(_url(place))} MIME_TYPE="{kind}"{beside}/>\n'
+        )
     tiers = [
         (f"{what}@{name}", name, _in_milliseconds(rows)) for name, what, rows in _tiers(conversation, _PEAK)
     ]
@@ -69,7 +71,7 @@ def write_elan(conversation: Conversation, path: str | Path, folder: Path | None
     out.write("    </TIME_ORDER>\n")
     number = 0
     for n, (ident, whose, rows) in enumerate(tiers):
-        at = f'LINGUISTIC_TYPE_REF="speech" PARTICIPANT={quoted(whose)} TIER_ID={quoted(ident)}'
+        at = f'LINGUISTIC_TYPE_REF="speech" PARTICIPANT={quote_xml(whose)} TIER_ID={quote_xml(ident)}'
         out.write(f"    <TIER {at}>\n")
         for m, (_, _, text) in enumerate(rows):
             number += 1

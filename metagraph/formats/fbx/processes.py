@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from metagraph.common.programs import python, start
+from metagraph.common.programs import python_command, start
 from metagraph.formats.fbx import child as fbx_child
 
 HEAD = struct.Struct("<Bq")  # code, length
@@ -41,7 +41,7 @@ class _Reader:
         self.count = 0
         self.said = tempfile.TemporaryFile()  # noqa: SIM115 (closed with the process)
         self.process = start(
-            python(fbx_child.__name__),
+            python_command(fbx_child.__name__),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self.said,

@@ -14,7 +14,7 @@ from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.fbx import child as fbx_child
 from metagraph.formats.fbx.processes import ReaderError, convert
-from metagraph.formats.gltf.clips import read_clips
+from metagraph.formats.gltf.clips import read_animations
 from metagraph.formats.gltf.file import parse_gltf
 from metagraph.formats.gltf.skeleton import build_rig
 from metagraph.formats.takes import unique_takes
@@ -49,7 +49,7 @@ def read_fbx_clips(path: str | Path, timeout: float = TIMEOUT, as_is: Collection
             phrase("Export it with its animation baked."),
         )
     with np.errstate(all="ignore"):
-        clips = read_clips(gltf, build_rig(gltf, as_is), as_is)
+        clips = read_animations(gltf, build_rig(gltf, as_is), as_is)
     if not clips:
         raise FileError(
             path,

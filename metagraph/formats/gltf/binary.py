@@ -16,8 +16,8 @@ from metagraph.formats.gltf.meshopt import MeshoptFilter, MeshoptMode
 from metagraph.formats.gltf.meshopt_encoding import (
     exponential,
     octahedral,
-    packed_attributes,
-    packed_indices,
+    pack_attributes,
+    pack_indices,
     quaternions,
 )
 from metagraph.motion import rotation
@@ -52,7 +52,7 @@ class Packing:
     def packed(self, raw: bytes, stride: int) -> bytes:
         """Return a view's bytes packed; normals and turns as they are stored without."""
         if self.mode != "ATTRIBUTES":
-            return packed_indices(np.frombuffer(raw, "<u2" if stride == 2 else "<u4"))
+            return pack_indices(np.frombuffer(raw, "<u2" if stride == 2 else "<u4"))
         if self.filter == "EXPONENTIAL":
             raw = exponential(np.frombuffer(raw, "<f4"), self.amount)
         elif self.filter == "QUATERNION":
@@ -60,7 +60,7 @@ class Packing:
             raw = quaternions(rotation.normalize(turns), self.amount)
         elif self.filter == "OCTAHEDRAL":
             raw = octahedral(np.frombuffer(raw, "<i1").reshape(-1, 4)[:, :3], self.amount)
-        return packed_attributes(raw, stride)
+        return pack_attributes(raw, stride)
 
 
 @dataclass

@@ -78,7 +78,7 @@ class JointChannels:
         return first, after
 
 
-def check(gltf: Gltf, table: ChannelTable, number: int, where: str) -> None:
+def check_channels(gltf: Gltf, table: ChannelTable, number: int, where: str) -> None:
     """Fail for the first channel of an animation that makes no sense."""
     if number not in table.odd:
         return
@@ -93,7 +93,7 @@ def check(gltf: Gltf, table: ChannelTable, number: int, where: str) -> None:
         gltf.fail(phrase("interpolation '{mode}' is unknown", mode=mode), where)
 
 
-def left_out(gltf: Gltf, table: ChannelTable, number: int) -> list[str]:
+def note_unused_channels(gltf: Gltf, table: ChannelTable, number: int) -> list[str]:
     """Return notes of an animation's channels that move nothing known."""
     if number not in table.odd:
         return []

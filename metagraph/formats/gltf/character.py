@@ -13,10 +13,10 @@ from metagraph.common.budgets import PICTURE_PIXELS, VERTICES
 from metagraph.common.pictures import picture_size
 from metagraph.errors import FileError
 from metagraph.formats.gltf.file import Gltf
-from metagraph.formats.gltf.morphs import morph_names
+from metagraph.formats.gltf.morphs import read_morph_names
 from metagraph.formats.gltf.skeleton import GltfRig
 from metagraph.formats.gltf.values import Primitive
-from metagraph.motion.character_mesh import Character, Material, Surface
+from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, Surface
 
 Array = NDArray[Any]
 
@@ -35,7 +35,7 @@ class _Part:
     held: int = -1  # the joint that carries it whole
 
 
-def character_of(gltf: Gltf, rig: GltfRig) -> Character:
+def character_of(gltf: Gltf, rig: GltfRig) -> CharacterMesh:
     """Return the default scene's meshes on the rig's skeleton. Raises FileError when there are none."""
     doc = gltf.json
     notes = [*rig.notes, *(repair.words for repair in rig.repairs)]
@@ -96,7 +96,7 @@ def character_of(gltf: Gltf, rig: GltfRig) -> Character:
     for place, triangles, material, called in runs:
         surfaces.append(Surface(first, len(triangles), places[material], called, parts[place].held))
         first += len(triangles)
-    return Character(
+    return CharacterMesh(
         gltf.path.stem,
         rig.skeleton,
         np.concatenate([p.positions for p in parts]).astype(np.float32),
@@ -177,7 +177,7 @@ def _part(
     mirrored = bool(np.linalg.det(linear[0]) < 0)
     moved = np.einsum("vab,vb->va", linear, positions) + matrices[:, :3, 3]
     morphs = {}
-    for name, target in zip(morph_names(gltf, node), primitive.targets, strict=False):
+    for name, target in zip(read_morph_names(gltf, node), primitive.targets, strict=False):
         if "POSITION" in target:
             gltf.spend(count * 48, where)
             offsets = _floats(gltf, target["POSITION"], "VEC3", count, f"{where}, target '{name}'")
@@ -298,9 +298,11 @@ def _smooth_normals(positions: Array, triangles: Array) -> Array:
     return np.where(length > 1e-30, normals / np.maximum(length, 1e-30), [0.0, 1.0, 0.0])
 
 
-def _materials(gltf: Gltf, used: list[int], notes: list[str]) -> tuple[tuple[Material, ...], dict[int, int]]:
+def _materials(
+    gltf: Gltf, used: list[int], notes: list[str]
+) -> tuple[tuple[MeshMaterial, ...], dict[int, int]]:
     """Return the materials that are used and where each of the file's went; -1 is glTF's default material."""
-    out: list[Material] = []
+    out: list[MeshMaterial] = []
     places: dict[int, int] = {}
     images: dict[int, bytes | None] = {}
     for index in used:
@@ -308,13 +310,13 @@ def _materials(gltf: Gltf, used: list[int], notes: list[str]) -> tuple[tuple[Mat
             continue
         places[index] = len(out)
         if index < 0:
-            out.append(Material("default"))
+            out.append(MeshMaterial("default"))
             continue
         value = gltf.item(gltf.json.materials, index, "material", "a primitive")
         name = value.name or f"material_{index}"
         pbr = value.pbr_metallic_roughness
         if pbr is None:
-            out.append(Material(name, (1.0, 1.0, 1.0, 1.0), None, 1.0, value.double_sided))
+            out.append(MeshMaterial(name, (1.0, 1.0, 1.0, 1.0), None, 1.0, value.double_sided))
             continue
         image = None
         if pbr.base_color_texture is not None:
@@ -329,7 +331,7 @@ def _materials(gltf: Gltf, used: list[int], notes: list[str]) -> tuple[tuple[Mat
                 notes.append(f"the texture of material '{name}' is in a format that is not read")
         color = tuple(float(np.clip(c, 0, 1)) for c in pbr.base_color_factor)
         out.append(
-            Material(
+            MeshMaterial(
                 name,
                 (color[0], color[1], color[2], color[3]),
                 image,

@@ -11,14 +11,20 @@ from numpy.typing import NDArray
 
 from metagraph.common.budgets import CLIP_SECONDS
 from metagraph.common.wording import phrase
-from metagraph.formats.gltf.channels import JointChannels, check, left_out, morph_channels, sound_times
+from metagraph.formats.gltf.channels import (
+    JointChannels,
+    check_channels,
+    morph_channels,
+    note_unused_channels,
+    sound_times,
+)
 from metagraph.formats.gltf.columns import WEIGHTS, ChannelTable
 from metagraph.formats.gltf.file import Gltf, extras
 from metagraph.formats.gltf.morphs import morph_weights
-from metagraph.formats.gltf.sampling import Grid
+from metagraph.formats.gltf.sampling import FrameGrid
 from metagraph.formats.gltf.skeleton import GltfRig
-from metagraph.formats.gltf.tracks import NotFiniteError, Still, Takes, spend_keys
-from metagraph.formats.takes import frame_rate, noted, take_name, take_repair, without_stray_poses
+from metagraph.formats.gltf.tracks import NotFiniteError, Still, TakeTracks, spend_keys
+from metagraph.formats.takes import drop_stray_poses, frame_rate, repair_note, take_name, take_repair
 from metagraph.motion.clip import Clip
 
 Array = NDArray[Any]
@@ -26,7 +32,7 @@ Array = NDArray[Any]
 AT_ONCE = 1 << 18  # joints times frames of takes that are made together
 
 
-def read_clips(gltf: Gltf, rig: GltfRig, as_is: Collection[str] = ()) -> list[Clip]:
+def read_animations(gltf: Gltf, rig: GltfRig, as_is: Collection[str] = ()) -> list[Clip]:
     """Return all animations that move something of the skeleton. Raises FileError; for takes that are longer
     together than the file's size warrants before any of them is made.
 
@@ -59,7 +65,7 @@ class _Plan:
     after: int
     morphs: list[tuple[int, str, int, int]]
     notes: list[str]
-    grid: Grid
+    grid: FrameGrid
 
 
 def _planned(
@@ -75,9 +81,9 @@ def _planned(
     """
     animation = gltf.json.animations[number]
     where = phrase("animation {a} '{name}'", a=number, name=animation.name)
-    check(gltf, table, number, where)
+    check_channels(gltf, table, number, where)
     first, after = channels.of_take(number)
-    morphs, notes = morph_channels(table, number), left_out(gltf, table, number)
+    morphs, notes = morph_channels(table, number), note_unused_channels(gltf, table, number)
     if first == after and not morphs:
         return None
     inputs = {*channels.sources[first:after].tolist(), *(channel[0] for channel in morphs)}
@@ -94,7 +100,7 @@ def _planned(
     gltf.spend(frames * len(rig.nodes) * 32, where)
     if start * fps > 0.5:
         notes.append(f"it starts at {start:.3f} s in the file; that moment is now 0")
-    grid = Grid(np.minimum(start + np.arange(frames) / fps, end), fps)
+    grid = FrameGrid(np.minimum(start + np.arange(frames) / fps, end), fps)
     return _Plan(number, animation.name, where, first, after, morphs, notes, grid)
 
 
@@ -128,7 +134,7 @@ def _clips(
                     again * len(plan.grid.times) * 192, plan.where
                 )  # others were counted with the clip
     named = [plan.number for plan in plans], [plan.where for plan in plans], [plan.grid for plan in plans]
-    takes = Takes(gltf, rig, still, channels, plans[0].first, plans[-1].after, *named, keys)
+    takes = TakeTracks(gltf, rig, still, channels, plans[0].first, plans[-1].after, *named, keys)
     try:
         rotations = takes.turned()
     except NotFiniteError as error:
@@ -141,7 +147,7 @@ def _clips(
             )
         own = rotations[takes.begins[number] : takes.ends[number]]
         out.append(_clip(gltf, rig, still, plan, keys, own, moved, as_is))
-    return without_stray_poses(out, as_is, [still.pose])
+    return drop_stray_poses(out, as_is, [still.pose])
 
 
 def _not_finite(gltf: Gltf, rig: GltfRig, plan: _Plan, joint: int) -> NoReturn:
@@ -183,7 +189,7 @@ def _clip(
         translated,
         morphs,
         weights,
-        (*rig.notes, *plan.notes, *map(noted, repairs)),
+        (*rig.notes, *plan.notes, *map(repair_note, repairs)),
         repairs,
     )
 

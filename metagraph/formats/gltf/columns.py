@@ -26,7 +26,7 @@ _MOST = 1 << 40  # bytes: what is more is beyond any file just as well, and sums
 _decoder = msgspec.json.Decoder(Document)
 
 
-def decoded(text: bytes | memoryview) -> Document:
+def decode_columns(text: bytes | memoryview) -> Document:
     """Return what a file's JSON says. Raises MsgspecError, RecursionError, ValueError."""
     return _decoder.decode(text)
 

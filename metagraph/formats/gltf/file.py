@@ -20,11 +20,11 @@ from numpy.typing import NDArray
 
 from metagraph.common.budgets import MOTION_FILE, OUT_OF_PROPORTION, PATH_LENGTH, Allowance
 from metagraph.common.files import read_file
-from metagraph.common.network_paths import reason
+from metagraph.common.network_paths import explain_refusal
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
-from metagraph.formats.gltf.columns import WIDTHS, ChannelTable, PlainAccessors, decoded
-from metagraph.formats.gltf.meshopt import MeshoptError, unpacked
+from metagraph.formats.gltf.columns import WIDTHS, ChannelTable, PlainAccessors, decode_columns
+from metagraph.formats.gltf.meshopt import MeshoptError, unpack_buffer
 from metagraph.formats.gltf.values import Accessor, Buffer, BufferView, Document, PackedView, Sparse
 
 Array = NDArray[Any]
@@ -121,7 +121,7 @@ class Gltf:
         name = unquote(uri[:PATH_LENGTH])
         if name in self._named:
             return self._named[name]
-        if (why := reason(name, self.path.parent)) is not None:  # never: its files lie beside it
+        if (why := explain_refusal(name, self.path.parent)) is not None:  # never: its files lie beside it
             self.fail(
                 phrase("'{name}' is not opened: {why}", name=name[:80], why=why),
                 where,
@@ -179,7 +179,7 @@ class Gltf:
                 )
             self.spend(size, where)
             try:
-                raw = unpacked(
+                raw = unpack_buffer(
                     bytes(data[packed.byte_offset : end]),
                     packed.count,
                     packed.byte_stride,
@@ -326,7 +326,7 @@ def parse_gltf(path: Path, data: bytes) -> Gltf:
             phrase("Check that the file has the right ending."),
         )
     try:
-        document = decoded(text)
+        document = decode_columns(text)
     except (msgspec.MsgspecError, RecursionError, ValueError) as error:
         raise FileError(
             path,

@@ -22,7 +22,7 @@ _KNOWN: dict[tuple[bytes, tuple[int, ...], float, bool], list[Array]] = {}
 MOST = 1000  # tracks of clips that are remembered, some 10 kB each
 
 
-def kept_frames(many: Sequence[Array], tolerance: float, turning: bool) -> list[list[Array]]:
+def find_kept_frames(many: Sequence[Array], tolerance: float, turning: bool) -> list[list[Array]]:
     """Return for each of `many`, values of tracks `[F, C, n]`, the frames to keep of each track, ascending:
     what lies between them, on the straight way, is within the tolerance, reckoned in 64 bits; the first alone
     where nothing moves. turning: values are quaternions, and the way is `rotation.slerp`'s. Found frames are

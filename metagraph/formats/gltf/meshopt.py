@@ -37,7 +37,9 @@ def block_elements(stride: int) -> int:
     return min(_BLOCK_BYTES // stride & ~(GROUP - 1), _BLOCK)
 
 
-def unpacked(data: bytes, count: int, stride: int, mode: MeshoptMode, kind: MeshoptFilter = "NONE") -> bytes:
+def unpack_buffer(
+    data: bytes, count: int, stride: int, mode: MeshoptMode, kind: MeshoptFilter = "NONE"
+) -> bytes:
     """Return `count` elements of `stride` bytes. Raises MeshoptError where the data does not hold them, or
     mode, filter and stride do not go together.
     """

@@ -16,7 +16,7 @@ from metagraph.formats.gltf.meshopt import GROUP, block_elements
 Array = NDArray[Any]
 
 
-def packed_attributes(raw: bytes, stride: int) -> bytes:
+def pack_attributes(raw: bytes, stride: int) -> bytes:
     """Return elements of `stride` bytes, a multiple of 4 up to 256, packed; they come back exactly."""
     values = np.frombuffer(raw, np.uint8).reshape(-1, stride)
     first = values[0] if len(values) else np.zeros(stride, np.uint8)
@@ -72,7 +72,7 @@ def _blocks(coded: Array) -> bytes:
     return rows[np.arange(24) < sizes[..., None]].tobytes()
 
 
-def packed_indices(indices: Array) -> bytes:
+def pack_indices(indices: Array) -> bytes:
     """Return indices packed, in their order, each by its distance from one of the two before."""
     last = [0, 0]
     out = bytearray(b"\xd1")

@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 from metagraph.common.wording import phrase
 from metagraph.formats.gltf.file import Gltf, extras
-from metagraph.formats.gltf.sampling import Grid, sample
+from metagraph.formats.gltf.sampling import FrameGrid, sample_channels
 
 Array = NDArray[Any]
 
 
-def morph_names(gltf: Gltf, node: int) -> tuple[str, ...]:
+def read_morph_names(gltf: Gltf, node: int) -> tuple[str, ...]:
     """Return the names of the morph targets of a node's mesh: from `targetNames`, else made from the mesh's
     name.
     """
@@ -38,14 +38,14 @@ def morph_names(gltf: Gltf, node: int) -> tuple[str, ...]:
 
 
 def morph_weights(
-    gltf: Gltf, channels: list[tuple[int, str, int, int]], keys: dict[int, Array], grid: Grid, where: str
+    gltf: Gltf, channels: list[tuple[int, str, int, int]], keys: dict[int, Array], grid: FrameGrid, where: str
 ) -> tuple[tuple[str, ...], Array | None]:
     """Return morph names and weights `[F, K]`; meshes that share a target's name share its weight."""
     columns: dict[str, Array] = {}
     for source, mode, node, output in channels:
         if node >= len(gltf.json.nodes):
             gltf.fail(phrase("its target node {node} does not exist", node=node), where)
-        names = morph_names(gltf, node)
+        names = read_morph_names(gltf, node)
         values = gltf.array(output, where, "SCALAR")
         count = len(keys[source]) * (3 if mode == "CUBICSPLINE" else 1)
         if not names:
@@ -63,7 +63,9 @@ def morph_weights(
             )
         gltf.spend(len(grid.times) * len(names) * 8, where)
         tracks = np.asarray(values, np.float64).reshape(count, len(names)).T[..., None]
-        for name, track in zip(names, sample(keys[source], tracks, grid, mode, False)[..., 0], strict=True):
+        for name, track in zip(
+            names, sample_channels(keys[source], tracks, grid, mode, False)[..., 0], strict=True
+        ):
             columns.setdefault(name, track)
     if not columns:
         return (), None

@@ -9,17 +9,17 @@ from pathlib import Path
 
 import numpy as np
 
-from metagraph.common.files import guarded
+from metagraph.common.files import guard_reader
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.gltf.character import character_of
-from metagraph.formats.gltf.clips import read_clips
+from metagraph.formats.gltf.clips import read_animations
 from metagraph.formats.gltf.file import extras, open_gltf
-from metagraph.formats.gltf.morphs import morph_names
+from metagraph.formats.gltf.morphs import read_morph_names
 from metagraph.formats.gltf.skeleton import build_rig
 from metagraph.formats.gltf.writer import write_glb
 from metagraph.formats.takes import unique_takes
-from metagraph.motion.character_mesh import Character
+from metagraph.motion.character_mesh import CharacterMesh
 from metagraph.motion.clip import Clip
 
 # Numbers out of a broken file overflow on their way to the check that refuses them; that is no reason to
@@ -29,7 +29,7 @@ _QUIET = np.errstate(all="ignore")
 __all__ = ["has_skinned_mesh", "read_character", "read_gltf_clips", "vrm_roles", "write_glb"]
 
 
-@guarded
+@guard_reader
 @_QUIET
 def read_gltf_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
     """Return every animation of a file as a clip; all share one Skeleton.
@@ -47,7 +47,7 @@ def read_gltf_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]
             phrase("Export it with its animation, or open it as a character."),
         )
     rig = build_rig(gltf, as_is)
-    clips = read_clips(gltf, rig, as_is)
+    clips = read_animations(gltf, rig, as_is)
     if not clips:
         raise FileError(
             path,
@@ -58,9 +58,9 @@ def read_gltf_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]
     return unique_takes(clips)
 
 
-@guarded
+@guard_reader
 @_QUIET
-def read_character(path: str | Path) -> Character:
+def read_character(path: str | Path) -> CharacterMesh:
     """Return all meshes of the default scene as one skinned character in its skeleton's rest pose. Raises
     FileError.
     """
@@ -68,22 +68,22 @@ def read_character(path: str | Path) -> Character:
     return character_of(gltf, build_rig(gltf))
 
 
-@guarded
+@guard_reader
 def has_skinned_mesh(path: str | Path) -> bool:
     """Return whether a file holds a mesh on a skeleton: something to draw. Raises FileError."""
     nodes = open_gltf(path).json.nodes
     return any(node.mesh is not None and node.skin is not None for node in nodes)
 
 
-@guarded
+@guard_reader
 def morph_targets(path: str | Path) -> tuple[str, ...]:
     """Return the names of a character's morph targets, as `read_character` has them. Raises FileError."""
     gltf = open_gltf(path)
     nodes = [n for n, node in enumerate(gltf.json.nodes) if node.mesh is not None]
-    return tuple(dict.fromkeys(name for n in nodes for name in morph_names(gltf, n)))
+    return tuple(dict.fromkeys(name for n in nodes for name in read_morph_names(gltf, n)))
 
 
-@guarded
+@guard_reader
 @_QUIET
 def vrm_roles(path: str | Path) -> dict[str, int]:
     """Return role -> joint as a VRM 0.x, VRM 1.0 or VRMA file states it; empty for other files. Raises

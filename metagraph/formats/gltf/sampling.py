@@ -16,7 +16,7 @@ Array = NDArray[Any]
 
 
 @dataclass(frozen=True, eq=False)
-class Grid:
+class FrameGrid:
     """When a clip's frames are, `[F]` seconds in the file, and how many a second."""
 
     times: Array
@@ -32,7 +32,7 @@ class Grid:
         return len(times) == len(self.times) and bool(np.abs(times - self.times).max() < self.near)
 
 
-def sample(times: Array, values: Array, grid: Grid, mode: str, turning: bool) -> Array:
+def sample_channels(times: Array, values: Array, grid: FrameGrid, mode: str, turning: bool) -> Array:
     """Evaluate channels with common key times at the grid: `[C, K, n]` (3 K for splines) -> `[C, F, n]`."""
     at, count = grid.times, len(times)
     spline = mode == "CUBICSPLINE"
@@ -61,10 +61,10 @@ def sample(times: Array, values: Array, grid: Grid, mode: str, turning: bool) ->
         return np.asarray(rotation.normalize(out) if turning else out)
     if not turning:
         return np.asarray(a + (b - a) * u)
-    return slerp(a, b, u)
+    return slerp_exact(a, b, u)
 
 
-def slerp(a: Array, b: Array, u: Array) -> Array:
+def slerp_exact(a: Array, b: Array, u: Array) -> Array:
     """Return what is `u [..., 1]` of the way from rotations a to b `[..., 4]`: keys may be far apart after a
     tool has thinned them out.
     """
@@ -148,7 +148,7 @@ class KeyTable:
         return slice(first, after), slice(begin, begin + len(self.times[group]) * (after - first))
 
 
-def sample_turns(keys: KeyTable, grids: Sequence[Grid], begins: Array, out: Array) -> None:
+def sample_turns(keys: KeyTable, grids: Sequence[FrameGrid], begins: Array, out: Array) -> None:
     """Write rotations to out `[F, J, 4]`, as `sample` evaluates keys with straight ways between them, of
     several takes at once. grids: of the takes; begins: their first frames in out.
     """
@@ -173,7 +173,7 @@ def sample_turns(keys: KeyTable, grids: Sequence[Grid], begins: Array, out: Arra
         used, group = np.unique(keys.groups[some], return_inverse=True)
         low, part = _places([keys.times[g] for g in used], grids[number])
         place = keys.begins[some][:, None] + low[group]
-        turns = slerp(keys.values[place], keys.values[place + 1], part[group][..., None])
+        turns = slerp_exact(keys.values[place], keys.values[place + 1], part[group][..., None])
         own = out[begins[number] : begins[number] + frames[number]]
         own[:, keys.joints[some]] = turns.transpose(1, 0, 2)
 
@@ -184,7 +184,7 @@ def _counted(begins: Array, counts: Array) -> Array:
     return np.asarray(np.repeat(begins - (ends - counts), counts) + np.arange(ends[-1]))
 
 
-def _places(keys: Sequence[Array], grid: Grid) -> tuple[Array, Array]:
+def _places(keys: Sequence[Array], grid: FrameGrid) -> tuple[Array, Array]:
     """Return `[G, F]` the key before each frame, but for the last one, and how much of the way to the next
     has gone, of several arrays of two or more key times.
     """

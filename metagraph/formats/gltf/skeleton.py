@@ -136,7 +136,7 @@ def _build(
     lift, shift, turn = (
         _lift(above, rest_s, base_s),
         np.zeros((len(joints), 3)),
-        rotation.identity((len(joints),)),
+        rotation.identity_rotations((len(joints),)),
     )
     lift[roots], shift[roots], turn[roots] = base[roots, :3, :3], base[roots, :3, 3], base_r
     rest_translations = np.einsum("jab,jb->ja", lift, rest_t) + shift

@@ -14,7 +14,7 @@ from metagraph.common.wording import phrase
 from metagraph.formats.gltf.channels import JointChannels
 from metagraph.formats.gltf.columns import LINEAR, MODES, ROTATION, SCALE, TRANSLATION
 from metagraph.formats.gltf.file import Gltf
-from metagraph.formats.gltf.sampling import Grid, KeyTable, sample, sample_turns
+from metagraph.formats.gltf.sampling import FrameGrid, KeyTable, sample_channels, sample_turns
 from metagraph.formats.gltf.skeleton import GltfRig
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
@@ -58,7 +58,7 @@ class NotFiniteError(ValueError):
 
 
 @dataclass(frozen=True, eq=False)
-class Takes:
+class TakeTracks:
     """Takes that are made together. first, after: their groups of `channels`. numbers: theirs among the
     file's animations; wheres: how errors name them. keys: key times by accessor.
     """
@@ -71,7 +71,7 @@ class Takes:
     after: int
     numbers: Sequence[int]
     wheres: Sequence[str]
-    grids: Sequence[Grid]
+    grids: Sequence[FrameGrid]
     keys: dict[int, Array]
 
     @cached_property
@@ -96,7 +96,7 @@ class Takes:
             take, source, mode = self._take(group)
             joints, outputs = self.channels.targets(group)
             values = stack(self.gltf, outputs, len(self.keys[source]), mode, 4, self.wheres[take])
-            sampled = sample(self.keys[source], values, self.grids[take], mode, True)
+            sampled = sample_channels(self.keys[source], values, self.grids[take], mode, True)
             own = out[self.begins[take] : self.ends[take]]
             own[:, joints.tolist()] = sampled.transpose(1, 0, 2)
         return self._finished(out)
@@ -135,7 +135,7 @@ class Takes:
             for j in joints[~loose].tolist():
                 moved[take].pop(j, None)
             if loose.any():
-                sampled = sample(keys[source], lifted[loose], self.grids[take], mode, False)
+                sampled = sample_channels(keys[source], lifted[loose], self.grids[take], mode, False)
                 moved[take].update(zip(joints[loose].tolist(), sampled, strict=True))
         return moved
 
@@ -159,7 +159,7 @@ class Takes:
             channels, keys = table.some(group)
             times, take, chosen = table.times[group], int(table.takes[group]), loose[channels]
             own = lifted[keys].reshape(-1, len(times), 3)[chosen]
-            sampled = sample(times, own, self.grids[take], "LINEAR", False)
+            sampled = sample_channels(times, own, self.grids[take], "LINEAR", False)
             moved[take].update(zip(table.joints[channels][chosen].tolist(), sampled, strict=True))
 
     def scaled(self) -> list[int]:

@@ -24,9 +24,9 @@ from metagraph.formats.gltf.binary import (
     Packing,
     glb_bytes,
 )
-from metagraph.formats.gltf.key_thinning import kept_frames
+from metagraph.formats.gltf.key_thinning import find_kept_frames
 from metagraph.motion import rotation
-from metagraph.motion.character_mesh import Character
+from metagraph.motion.character_mesh import CharacterMesh
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose, Skeleton
 
@@ -91,7 +91,7 @@ PLAIN = ForEngine()
 def write_glb(
     path: str | Path,
     clips: Sequence[Clip],
-    character: Character | None = None,
+    character: CharacterMesh | None = None,
     keys: Keys = SMALL_KEYS,
     engine: ForEngine = PLAIN,
     compress: bool = False,
@@ -130,7 +130,7 @@ class _File:
         self.morphs: tuple[str, ...] = ()
         self.mesh_node: int | None = None
 
-    def add_body(self, character: Character | None) -> None:
+    def add_body(self, character: CharacterMesh | None) -> None:
         """Add the skin, the mesh of a character, and the scene they stand in."""
         roots = [i for i, p in enumerate(self.skeleton.parents) if p < 0]
         # Two roots need a common node above them for the skin to be valid.
@@ -157,8 +157,8 @@ class _File:
         animations = []
         for first in range(0, len(clips), TOGETHER):
             some = clips[first : first + TOGETHER]
-            turns = kept_frames([clip.rotations for clip in some], off, True)
-            moves = kept_frames([clip.translations for clip in some], off, False)
+            turns = find_kept_frames([clip.rotations for clip in some], off, True)
+            moves = find_kept_frames([clip.translations for clip in some], off, False)
             for clip, turned, placed in zip(some, turns, moves, strict=True):
                 animation = _Animation(self, clip)
                 animation.add_turns(turned, posed)
@@ -206,7 +206,7 @@ def _joint_nodes(skeleton: Skeleton, pose: Pose) -> list[dict[str, Any]]:
     return out
 
 
-def _add_character(document: dict[str, Any], body: BinaryChunk, character: Character) -> int:
+def _add_character(document: dict[str, Any], body: BinaryChunk, character: CharacterMesh) -> int:
     """Add mesh, materials and images; return the node that carries the mesh."""
     weights = np.maximum(np.asarray(character.weights, np.float32), 0)
     total = weights.sum(1, keepdims=True)

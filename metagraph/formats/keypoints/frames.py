@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from metagraph.errors import FileError
 from metagraph.mimicry.keypoint_layouts import BY_COUNT, describe_layouts
-from metagraph.mimicry.people import Person
+from metagraph.mimicry.people import SeenPerson
 
 Array = NDArray[Any]
 
@@ -38,8 +38,8 @@ class KeypointFrame:
     where: str
     time: float | None = None
     number: int | None = None
-    flat: list[Person] = field(default_factory=list)
-    space: list[Person] = field(default_factory=list)
+    flat: list[SeenPerson] = field(default_factory=list)
+    space: list[SeenPerson] = field(default_factory=list)
 
 
 def spelt(key: str) -> str:
@@ -50,7 +50,7 @@ def has_people(item: Mapping[str, Any]) -> bool:
     return any(spelt(k) in (*_SPACE, *_FLAT, "people") for k in item)
 
 
-def is_number(value: Any) -> bool:
+def is_json_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
@@ -60,13 +60,13 @@ def is_person(value: Any) -> bool:
     """
     if not isinstance(value, list) or not value:
         return False
-    if is_number(value[0]):
+    if is_json_number(value[0]):
         return (len(value) % 3 == 0 and len(value) // 3 in BY_COUNT) or (
             len(value) % 4 == 0 and len(value) // 4 in BY_COUNT
         )
     first = value[0]
     point = (isinstance(first, dict) and "x" in first) or (
-        isinstance(first, list) and 2 <= len(first) <= 5 and is_number(first[0])
+        isinstance(first, list) and 2 <= len(first) <= 5 and is_json_number(first[0])
     )
     return len(value) in BY_COUNT and point
 
@@ -99,7 +99,7 @@ def _when(path: Path, said: Mapping[str, Any], out: KeypointFrame) -> None:
     for keys, unit in ((_MILLISECONDS, 1e-3), (_SECONDS, 1.0)):
         value = next((said[k] for k in keys if k in said), None)
         if value is not None:
-            if not is_number(value) or not abs(value) <= 1e18:
+            if not is_json_number(value) or not abs(value) <= 1e18:
                 raise FileError(
                     path,
                     f"its time is {str(value)[:40]!r}, not a number",
@@ -112,7 +112,7 @@ def _when(path: Path, said: Mapping[str, Any], out: KeypointFrame) -> None:
     if isinstance(value, str):
         digits = re.findall(r"\d+", value)
         value = int(digits[-1][-15:]) if digits else None
-    if is_number(value) and 0 <= value <= 1e15:  # type: ignore[operator]
+    if is_json_number(value) and 0 <= value <= 1e15:  # type: ignore[operator]
         out.number = int(value)  # type: ignore[arg-type]
 
 
@@ -135,7 +135,7 @@ def _take(path: Path, said: Mapping[str, Any], out: KeypointFrame) -> None:
 
 def _people(
     path: Path, value: Any, where: str, space: bool, ident: int | None = None, said_sure: bool = False
-) -> Iterator[Person]:
+) -> Iterator[SeenPerson]:
     """Yield the people of a list of points, or of a list of such lists. said_sure: rows of three end in the
     confidence.
     """
@@ -147,7 +147,7 @@ def _people(
         raise FileError(path, "its keypoints are not a list", where, REMEDY)
     if is_person(value):
         points, confidence = _points(path, value, where, space, said_sure)
-        yield Person(points, confidence, ident)
+        yield SeenPerson(points, confidence, ident)
         return
     several = [
         v.get("landmark", v.get("landmarks")) if isinstance(v, dict) and "x" not in v else v for v in value
@@ -156,9 +156,9 @@ def _people(
         for one in several[:MOST_PEOPLE]:
             if one:
                 points, confidence = _points(path, one, where, space, said_sure)
-                yield Person(points, confidence)
+                yield SeenPerson(points, confidence)
         return
-    numbers = len(value) // 3 if value and is_number(value[0]) else len(value)
+    numbers = len(value) // 3 if value and is_json_number(value[0]) else len(value)
     raise FileError(
         path, f"{numbers} points are none of the layouts that are known: {describe_layouts()}", where, REMEDY
     )
@@ -168,7 +168,7 @@ def _points(path: Path, value: list[Any], where: str, space: bool, said_sure: bo
     """Return somebody's points `[K, 3]` and confidence `[K]`; what is null or not a number that could be was
     not found.
     """
-    if is_number(value[0]):
+    if is_json_number(value[0]):
         size = 4 if space and len(value) % 4 == 0 and len(value) // 4 in BY_COUNT else 3
         value = [value[n : n + size] for n in range(0, len(value), size)]
         said_sure = True
@@ -186,7 +186,7 @@ def _points(path: Path, value: list[Any], where: str, space: bool, said_sure: bo
             raise FileError(path, f"a point is {str(point)[:40]!r}, not an object or a list", where, REMEDY)
         if len(numbers) < 3 or any(n is None for n in (*numbers, sure)):
             continue
-        if not all(map(is_number, (*numbers, sure))):
+        if not all(map(is_json_number, (*numbers, sure))):
             raise FileError(
                 path, f"a point holds {str(point)[:60]}, which are not all numbers", where, "Correct it."
             )

@@ -21,19 +21,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.budgets import KEYPOINT_FRAMES, KEYPOINT_SECONDS, KEYPOINTS_FILE
-from metagraph.common.files import guarded, read_file
+from metagraph.common.files import guard_reader, read_file
 from metagraph.errors import FileError
 from metagraph.formats.keypoints.frames import (
     REMEDY,
     KeypointFrame,
     has_people,
-    is_number,
+    is_json_number,
     is_person,
     read_frame,
     spelt,
 )
-from metagraph.mimicry.keypoint_layouts import BY_COUNT, LAYOUTS, PLACE, Keypoints, choose
-from metagraph.mimicry.people import Person, follow
+from metagraph.mimicry.keypoint_layouts import BY_COUNT, LAYOUTS, PLACE, KeypointTrack, choose_points
+from metagraph.mimicry.people import SeenPerson, follow_person
 
 Array = NDArray[Any]
 
@@ -55,7 +55,7 @@ class _Head:
 
 def read_keypoints(
     path: str | Path, fps: float | None = None, picture: tuple[float, float] | None = None
-) -> Keypoints:
+) -> KeypointTrack:
     """Read the keypoints of a file, or of a folder of OpenPose frames, and follow one person through them.
 
     fps: frames a second, where the file gives no times. picture: width and height, for coordinates given as
@@ -67,8 +67,8 @@ def read_keypoints(
     return _read(Path(path), fps, picture)
 
 
-@guarded
-def _read(path: str | Path, fps: float | None, picture: tuple[float, float] | None) -> Keypoints:
+@guard_reader
+def _read(path: str | Path, fps: float | None, picture: tuple[float, float] | None) -> KeypointTrack:
     path = Path(path)
     head = _Head()
     found = _folder(path) if path.is_dir() else _file(path, head)
@@ -135,7 +135,7 @@ def _file(path: Path, head: _Head) -> Iterator[KeypointFrame]:
         data = [data]
     if not isinstance(data, list):
         raise FileError(path, "it is neither an object nor a list", "", REMEDY)
-    if is_person(data) or (data and all(is_person(p) for p in data) and is_number(data[0][0])):
+    if is_person(data) or (data and all(is_person(p) for p in data) and is_json_number(data[0][0])):
         data = [data] if is_person(data) else data
     for n, item in enumerate(data):
         yield read_frame(path, item, f"frame {n}")
@@ -187,7 +187,7 @@ def _heading(path: Path, data: Mapping[str, Any], head: _Head) -> None:
     }.items():
         value = next((said[k] for k in keys if k in said), None)
         if value is not None:
-            if not is_number(value) or not 0 < value <= (1000 if name == "fps" else 1e6):
+            if not is_json_number(value) or not 0 < value <= (1000 if name == "fps" else 1e6):
                 raise FileError(
                     path,
                     f"{name} is {str(value)[:40]!r}, not a number that could be",
@@ -226,7 +226,7 @@ def _gathered(
     frames: Sequence[KeypointFrame],
     picture: tuple[float, float] | None,
     notes: list[str],
-) -> Keypoints:
+) -> KeypointTrack:
     """Follow one person and bring them into our axes."""
     deep = sum(bool(f.space) for f in frames) * 2 >= sum(bool(f.space or f.flat) for f in frames) and any(
         f.space for f in frames
@@ -246,20 +246,20 @@ def _gathered(
     scale = np.ones(3) if deep else _stretch(people, picture, notes)
     middle = picture[0] / 2 if picture and not deep else None
     points, confidence = np.zeros((len(frames), count, 3)), np.zeros((len(frames), count))
-    stretched = [[Person(p.points * scale, p.confidence, p.ident) for p in some] for some in people]
-    for n, person in enumerate(follow(times.tolist(), stretched, middle)):
+    stretched = [[SeenPerson(p.points * scale, p.confidence, p.ident) for p in some] for some in people]
+    for n, person in enumerate(follow_person(times.tolist(), stretched, middle)):
         if person is not None:
             points[n], confidence[n] = person.points, person.confidence
     if max(map(len, people)) > 1:
         notes.append("several people are seen; the one who is largest and nearest to the middle is followed")
     names = LAYOUTS[BY_COUNT[count]]
-    return Keypoints(
+    return KeypointTrack(
         times, _upright(points, confidence, deep, notes), confidence, names, 3 if deep else 2, tuple(notes)
     )
 
 
 def _stretch(
-    people: Sequence[Sequence[Person]], picture: tuple[float, float] | None, notes: list[str]
+    people: Sequence[Sequence[SeenPerson]], picture: tuple[float, float] | None, notes: list[str]
 ) -> Array:
     """Return what to multiply points by: shares of a picture become lengths that are as long down as
     across.
@@ -279,7 +279,7 @@ def _upright(points: Array, confidence: Array, deep: bool, notes: list[str]) -> 
     """Return points with y up and z towards the camera, whichever way the file has them: heads are above
     hips, noses before ears.
     """
-    where, sure = zip(*(choose(p, c) for p, c in zip(points, confidence, strict=True)), strict=True)
+    where, sure = zip(*(choose_points(p, c) for p, c in zip(points, confidence, strict=True)), strict=True)
     at, seen = np.array(where), np.array(sure) > 0.2
 
     def middle(*names: str) -> tuple[Array, Array]:

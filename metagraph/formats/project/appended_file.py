@@ -87,7 +87,7 @@ class AppendedFile:
             return None
         path = place / self.path.name
         assert self._handle is not None
-        return path if identity_of(path) == identity(os.fstat(self._handle)) else None
+        return path if identity_of(path) == identity_from(os.fstat(self._handle)) else None
 
     def _write_again(self) -> None:
         """Write what was removed again; what stands in its place is put aside, if it says anything else."""
@@ -142,14 +142,14 @@ def _aside(path: Path) -> Path:
     return place
 
 
-def identity(found: os.stat_result) -> Identity:
+def identity_from(found: os.stat_result) -> Identity:
     return found.st_dev, found.st_ino
 
 
 def identity_of(path: Path) -> Identity | None:
     """Return what a file or folder is known by, whatever its name; None where there is none."""
     try:
-        return identity(path.stat())
+        return identity_from(path.stat())
     except (OSError, ValueError):
         return None
 
@@ -166,7 +166,7 @@ def path_of(handle: int | None) -> Path | None:
         else:
             said = str(Path(f"/proc/self/fd/{handle}").readlink())
         path = Path(said)
-        return path if identity_of(path) == identity(os.fstat(handle)) else None
+        return path if identity_of(path) == identity_from(os.fstat(handle)) else None
     except (OSError, ValueError, ImportError):
         return None
 

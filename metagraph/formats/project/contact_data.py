@@ -5,7 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
 
-from metagraph.formats.project.fields import Data, DataError, floats, get, known, number, one_of, plain
+from metagraph.formats.project.fields import (
+    Data,
+    DataError,
+    as_plain,
+    floats,
+    get,
+    refuse_unknown_fields,
+    require_one_of,
+    round_number,
+)
 from metagraph.motion.contact_spans import EASE, HANDS, PLACES, ContactKey, ContactSpan
 
 _FIELDS = ("hand", "place", "to", "start", "end", "ease_in", "ease_out", "keys")
@@ -16,9 +25,9 @@ def contacts_data(contacts: Iterable[ContactSpan]) -> list[Data]:
     """Return contacts; a key is a row of eight: clip seconds, where the wrist is, how the hand is turned."""
     out = []
     for span in contacts:
-        data = {name: plain(getattr(span, name)) for name in _FIELDS[:5]}
-        data |= {name: plain(x) for name in _FIELDS[5:7] if (x := getattr(span, name)) != EASE}
-        out.append({**data, "keys": [plain((k.time, *k.at, *k.turn)) for k in span.keys]})
+        data = {name: as_plain(getattr(span, name)) for name in _FIELDS[:5]}
+        data |= {name: as_plain(x) for name in _FIELDS[5:7] if (x := getattr(span, name)) != EASE}
+        out.append({**data, "keys": [as_plain((k.time, *k.at, *k.turn)) for k in span.keys]})
     return out
 
 
@@ -36,9 +45,9 @@ def _spans(items: Iterable[Data], where: str) -> Iterator[ContactSpan]:
         start, end = (get(item, name, float, place) for name in ("start", "end"))
         ease_in, ease_out = (get(item, name, float, place, EASE) for name in ("ease_in", "ease_out"))
         rows = get(item, "keys", list, place)
-        known(item, _FIELDS, place)
-        one_of(hand, HANDS, f"{place}.hand")
-        one_of(touching, PLACES, f"{place}.place")
+        refuse_unknown_fields(item, _FIELDS, place)
+        require_one_of(hand, HANDS, f"{place}.hand")
+        require_one_of(touching, PLACES, f"{place}.place")
         if not 0 <= start <= end <= 1e5:
             raise DataError(f"{place}.start", f"should be 0 or more and not after the end, found {start:g}")
         if not (0 <= ease_in <= 1e5 and 0 <= ease_out <= 1e5):
@@ -59,4 +68,4 @@ def _key(row: object, where: str) -> ContactKey:
     if not 0.9 < size < 1.1:
         raise DataError(where, "should end with a quaternion of length 1")
     a, b, c, d = turn if abs(size - 1) < 1e-4 else (q / size for q in turn)
-    return ContactKey(float(number(time)), (x, y, z), (a, b, c, d))
+    return ContactKey(float(round_number(time)), (x, y, z), (a, b, c, d))

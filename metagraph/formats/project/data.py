@@ -15,25 +15,25 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from metagraph.common.network_paths import closed, original
+from metagraph.common.network_paths import close_path, original_path
 from metagraph.formats.clip_identity import without_clip_identity
 from metagraph.formats.project.contact_data import contacts_data, contacts_from
 from metagraph.formats.project.fields import (
     LARGEST,
     Data,
     DataError,
-    fill,
+    as_plain,
+    fill_fields,
     floats,
     get,
     items,
     joint_weights_data,
     joint_weights_from,
-    known,
-    number,
-    one_of,
-    plain,
+    read_texts,
+    refuse_unknown_fields,
+    require_one_of,
+    round_number,
     sparse,
-    texts,
     too_large,
 )
 from metagraph.formats.project.manual_data import manual_data, manual_from
@@ -62,7 +62,7 @@ from metagraph.graph.model import (
     Stance,
     Timing,
 )
-from metagraph.graph.requests import words_of
+from metagraph.graph.requests import explain_invalid_ask
 from metagraph.graph.timeline import Timeline
 from metagraph.graph.touch import Touch
 from metagraph.graph.words import MODES
@@ -88,13 +88,13 @@ _CONTACT = ("upper", "lower", "hand", "to", "first", "last")
 
 def clip_data(entry: ClipEntry) -> Data:
     out = sparse(entry, ("motion", "source", "digest", "retime"))
-    out["path"] = original(entry.path)
+    out["path"] = original_path(entry.path)
     if entry.retime.speed != 1.0:
-        out["speed"] = plain(entry.retime.speed)
+        out["speed"] = as_plain(entry.retime.speed)
     if entry.retime.contacts:
-        out["contacts"] = [{n: plain(getattr(c, n)) for n in _CONTACT} for c in entry.retime.contacts]
+        out["contacts"] = [{n: as_plain(getattr(c, n)) for n in _CONTACT} for c in entry.retime.contacts]
     if entry.retime.holds:
-        out["holds"] = [{"at": plain(h.at), "seconds": plain(h.seconds)} for h in entry.retime.holds]
+        out["holds"] = [{"at": as_plain(h.at), "seconds": as_plain(h.seconds)} for h in entry.retime.holds]
     if entry.digest:
         out["sha256"] = entry.digest
     return out
@@ -128,7 +128,7 @@ def stance_data(stance: Stance) -> Data:
 
 
 def weights_data(graph: MetaGraph) -> Data:
-    return {p: number(graph.weights[p]) for p in PARTS if p in graph.weights}
+    return {p: round_number(graph.weights[p]) for p in PARTS if p in graph.weights}
 
 
 def to_data(project: Project) -> Data:
@@ -149,7 +149,7 @@ def to_data(project: Project) -> Data:
     return {
         "metagraph": FORMAT,
         "name": project.name,
-        "character": plain(project.character),
+        "character": as_plain(project.character),
         **({"hidden": list(project.hidden)} if project.hidden else {}),
         **({"language": project.language} if project.language != AUTO else {}),
         "base": sparse(project.base),
@@ -226,7 +226,7 @@ def _rows_data(rows: tuple[Word | Segment, ...]) -> list[Data]:
 def _rounded(value: Any) -> Any:
     if isinstance(value, dict):
         return {k: _rounded(v) for k, v in value.items()}
-    return [_rounded(v) for v in value] if isinstance(value, list | tuple) else plain(value)
+    return [_rounded(v) for v in value] if isinstance(value, list | tuple) else as_plain(value)
 
 
 def struct_from(data: Any, kind: Any, where: str) -> Any:
@@ -234,7 +234,7 @@ def struct_from(data: Any, kind: Any, where: str) -> Any:
     try:
         return msgspec.convert(_rounded(data), kind)
     except msgspec.ValidationError as error:
-        field, _, rest = words_of(error).rpartition(": ")
+        field, _, rest = explain_invalid_ask(error).rpartition(": ")
         raise DataError(f"{where}.{field}" if field else where, rest) from None
     except (ValueError, TypeError, RecursionError):
         words = f"should be a number from {-LARGEST:g} to {LARGEST:g}"
@@ -245,7 +245,7 @@ def struct_from(data: Any, kind: Any, where: str) -> Any:
 
 
 def _closed(name: str | None) -> str | None:
-    return closed(name) if name else name
+    return close_path(name) if name else name
 
 
 def _with_closed_paths(value: Any) -> Any:
@@ -281,27 +281,27 @@ _PROJECT_FIELDS = ({f.name for f in fields(Project)} | {"metagraph", "layers", "
 
 
 def action_from(data: Data, layer: Layer, where: str) -> Action:
-    known(data, _ACTION_FIELDS, where)
-    values = fill(Action, data, where, ("timing", "layer", "joint_weights", "contacts"))
+    refuse_unknown_fields(data, _ACTION_FIELDS, where)
+    values = fill_fields(Action, data, where, ("timing", "layer", "joint_weights", "contacts"))
     for key in ("id", "clip", "kind", "stance", "name"):
         if key not in values:
             raise DataError(f"{where}.{key}", "is missing")
-    one_of(values["kind"], KINDS, f"{where}.kind")
-    one_of(values.get("limb", "both"), LIMBS, f"{where}.limb")
+    require_one_of(values["kind"], KINDS, f"{where}.kind")
+    require_one_of(values.get("limb", "both"), LIMBS, f"{where}.limb")
     contacts = contacts_from(data, where)
-    timing, weights = Timing(**fill(Timing, data, where)), joint_weights_from(data, where)
+    timing, weights = Timing(**fill_fields(Timing, data, where)), joint_weights_from(data, where)
     return Action(layer=layer, timing=timing, contacts=contacts, joint_weights=weights, **values)
 
 
 def _clip_from(data: Data, where: str) -> ClipEntry:
-    known(data, _CLIP_FIELDS, where)
-    values = fill(ClipEntry, data, where, ("motion", "source", "digest", "retime"))
+    refuse_unknown_fields(data, _CLIP_FIELDS, where)
+    values = fill_fields(ClipEntry, data, where, ("motion", "source", "digest", "retime"))
     for key in ("name", "path"):
         if key not in values:
             raise DataError(f"{where}.{key}", "is missing")
-    values["path"] = closed(values["path"])
+    values["path"] = close_path(values["path"])
     for name in values.get("as_is", ()):
-        one_of(name, REPAIRS, f"{where}.as_is")
+        require_one_of(name, REPAIRS, f"{where}.as_is")
     return ClipEntry(digest=get(data, "sha256", str, where, ""), retime=_retime_from(data, where), **values)
 
 
@@ -314,7 +314,7 @@ def _retime_from(data: Data, where: str) -> Retime:
     for n, item in enumerate(get(data, "holds", list, where, ())):
         place = f"{where}.holds[{n}]"
         at, seconds = get(item, "at", float, place), get(item, "seconds", float, place)
-        known(item, ("at", "seconds"), place)
+        refuse_unknown_fields(item, ("at", "seconds"), place)
         if not 0 <= at <= 1e5:
             raise DataError(f"{place}.at", f"should be 0 or more, found {at:g}")
         if not 0 < seconds <= LONGEST:
@@ -330,7 +330,7 @@ def _contacts_from(data: Data, where: str) -> Iterator[Contact]:
         place = f"{where}.contacts[{n}]"
         upper, lower, hand, to = (get(item, name, str, place) for name in _CONTACT[:4])
         first, last = (get(item, name, float, place) for name in _CONTACT[4:])
-        known(item, _CONTACT, place)
+        refuse_unknown_fields(item, _CONTACT, place)
         if not 0 <= first < last <= 1e5:
             raise DataError(f"{place}.first", f"should be 0 or more and before last, found {first:g}")
         yield Contact(upper, lower, hand, to, first, last)
@@ -345,7 +345,7 @@ def skeleton_from(joints: list[Any], where: str = "skeleton") -> Skeleton | None
     for n, joint in enumerate(joints):
         place = f"{where}[{n}]"
         name = get(joint, "name", str, place)
-        known(joint, ("name", "parent", "at", "turn"), place)
+        refuse_unknown_fields(joint, ("name", "parent", "at", "turn"), place)
         parent = get(joint, "parent", str, place, None)
         if parent is not None and parent not in places:
             raise DataError(f"{place}.parent", f"'{parent}' does not come before joint '{name}'")
@@ -369,10 +369,10 @@ def _graph_from(
 ) -> MetaGraph:
     where = f"layers.{layer}"
     start = get(data, "start", str, where, None)
-    known(data, ("start", "weights", "stances", "actions"), where)
+    refuse_unknown_fields(data, ("start", "weights", "stances", "actions"), where)
     stances: dict[str, Stance] = {}
     for place, item in items(data, "stances", where, stance_ids):
-        known(item, ("id", "name"), place)
+        refuse_unknown_fields(item, ("id", "name"), place)
         stances[item["id"]] = Stance(item["id"], layer, get(item, "name", str, place))
     actions = {
         item["id"]: action_from(without_clip_identity(item, clips), layer, place)
@@ -380,7 +380,7 @@ def _graph_from(
     }
     weights = get(data, "weights", dict, where, {})
     for part in weights:
-        one_of(part, PARTS, f"{where}.weights")
+        require_one_of(part, PARTS, f"{where}.weights")
         get(weights, part, float, f"{where}.weights")
     return MetaGraph(layer, stances, actions, start, {p: float(w) for p, w in weights.items()})
 
@@ -394,10 +394,10 @@ def from_data(data: Any, notes: list[str] | None = None) -> Project:
     if not isinstance(data, Mapping) or "metagraph" not in data:
         raise DataError("metagraph", "is missing: this is not a Metagraph project")
     data = dict(as_text(data))
-    known(data, _PROJECT_FIELDS, "")
+    refuse_unknown_fields(data, _PROJECT_FIELDS, "")
     clips = {item["id"]: _clip_from(item, where) for where, item in items(data, "clips", "", set())}
     layers = get(data, "layers", dict, "", {})
-    known(layers, LAYERS, "layers")
+    refuse_unknown_fields(layers, LAYERS, "layers")
     stance_ids: set[str] = set()
     action_ids: set[str] = set()
     graphs = {
@@ -405,31 +405,31 @@ def from_data(data: Any, notes: list[str] | None = None) -> Project:
         for layer in LAYERS
     }
     machines = get(data, "manual", dict, "", {})
-    known(machines, LAYERS, "manual")
+    refuse_unknown_fields(machines, LAYERS, "manual")
     manual_ids: set[str] = set()
     manual = {
         x: manual_from(x, get(machines, x, dict, "manual"), manual_ids) for x in LAYERS if x in machines
     }
     parts, roles = get(data, "parts", dict, "", {}), get(data, "roles", dict, "", {})
     for joint, part in parts.items():
-        one_of(part, PARTS, f"parts.{joint}")
+        require_one_of(part, PARTS, f"parts.{joint}")
     models = get(data, "markov", dict, "", {})
-    known(models, LAYERS, "markov")
+    refuse_unknown_fields(models, LAYERS, "markov")
     base, settings = get(data, "base", dict, "", {}), get(data, "settings", dict, "", {})
-    known(base, [f.name for f in fields(BasePose)], "base")
-    known(settings, [f.name for f in fields(Settings)], "settings")
+    refuse_unknown_fields(base, [f.name for f in fields(BasePose)], "base")
+    refuse_unknown_fields(settings, [f.name for f in fields(Settings)], "settings")
     return Project(
         name=get(data, "name", str, "", "untitled"),
         skeleton=skeleton_from(get(data, "skeleton", list, "", [])),
         clips=clips,
         graphs=graphs,
-        base=BasePose(**fill(BasePose, base, "base")),
+        base=BasePose(**fill_fields(BasePose, base, "base")),
         roles={r: get(roles, r, str, "roles") for r in roles},
         parts=dict(parts),
         markov={
             layer: markov_from(layer, models[layer], f"markov.{layer}") for layer in LAYERS if layer in models
         },
-        settings=Settings(**fill(Settings, settings, "settings")),
+        settings=Settings(**fill_fields(Settings, settings, "settings")),
         **{
             key: _with_closed_paths(struct_from(data[key], kind, key))
             for key, kind in STRUCTS.items()
@@ -438,7 +438,7 @@ def from_data(data: Any, notes: list[str] | None = None) -> Project:
         joint_maps=_joint_maps_from(data, notes),
         manual=manual,
         character=_closed(get(data, "character", str, "", None)),
-        hidden=texts(data, "hidden"),
+        hidden=read_texts(data, "hidden"),
         language=get(data, "language", str, "", AUTO),
     )
 
@@ -471,9 +471,11 @@ def markov_from(layer: Layer, data: Any, where: str) -> Markov:
     states, tags = [], []
     for text in get(data, "states", list, where):
         limb, kind, tag = (*(text.split(" ", 2) if isinstance(text, str) else ()), "", "", "")[:3]
-        states.append((one_of(limb, LIMBS, f"{where}.states"), one_of(kind, KINDS, f"{where}.states")))
+        states.append(
+            (require_one_of(limb, LIMBS, f"{where}.states"), require_one_of(kind, KINDS, f"{where}.states"))
+        )
         tags.append(tag)
-    known(data, [f.name for f in fields(Markov) if f.name not in ("layer", "tags")], where)
+    refuse_unknown_fields(data, [f.name for f in fields(Markov) if f.name not in ("layer", "tags")], where)
     rows = get(data, "matrix", list, where)
     if not rows or len(rows) != len(states):
         raise DataError(f"{where}.matrix", f"should have {max(1, len(states))} rows, one for each state")
@@ -500,7 +502,7 @@ def markov_from(layer: Layer, data: Any, where: str) -> Markov:
         raise DataError(
             f"{where}.modes", f"should be {len(MODES)} rows ({', '.join(MODES)}) of three shares from 0 to 1"
         )
-    more = fill(Markov, data, where, ("layer", "states", "matrix", "tags", "lengths", "modes"))
+    more = fill_fields(Markov, data, where, ("layer", "states", "matrix", "tags", "lengths", "modes"))
     return Markov(
         layer,
         tuple(states),

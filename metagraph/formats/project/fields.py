@@ -9,7 +9,7 @@ from dataclasses import MISSING, fields
 from functools import cache
 from typing import Any
 
-from metagraph.common.network_paths import original
+from metagraph.common.network_paths import original_path
 
 Data = dict[str, Any]
 LARGEST = 1e15  # no number in a project is larger; up to here whole numbers are exact
@@ -26,7 +26,7 @@ class DataError(ValueError):
 # --- writing
 
 
-def number(value: float) -> float | int:
+def round_number(value: float) -> float | int:
     """Return a number rounded to six decimals, or to six digits where nothing else would be left. Raises
     ValueError.
     """
@@ -36,18 +36,18 @@ def number(value: float) -> float | int:
     return int(rounded) if rounded == int(rounded) else rounded
 
 
-def plain(value: Any) -> Any:
+def as_plain(value: Any) -> Any:
     """Return a value as it can be written. Raises ValueError and TypeError."""
     if isinstance(value, str):
-        return original(value) if value.startswith(".") else value
+        return original_path(value) if value.startswith(".") else value
     if isinstance(value, bool) or value is None:
         return value
     if isinstance(value, int) and abs(value) <= LARGEST:
         return value
     if isinstance(value, int | float):
-        return number(value)
+        return round_number(value)
     if isinstance(value, tuple | list):
-        return [plain(v) for v in value]
+        return [as_plain(v) for v in value]
     raise TypeError(f"{type(value).__name__} has no place in a project file")
 
 
@@ -59,7 +59,7 @@ def sparse(value: Any, skip: tuple[str, ...] = ()) -> Data:
         if v is default or v == default:
             continue
         try:
-            out[name] = v if type(v) is str else plain(v)
+            out[name] = v if type(v) is str else as_plain(v)
         except ValueError as error:
             raise DataError(
                 f"{type(value).__name__.lower()} {getattr(value, 'name', '')!r}, {name}", str(error)
@@ -85,7 +85,7 @@ _WORDS = {
 }
 
 
-def named(value: Any) -> str:
+def name_reference(value: Any) -> str:
     if value is None:
         return "nothing"
     if isinstance(value, list | dict):
@@ -101,7 +101,7 @@ def get(data: Any, key: str, kind: Any, where: str, default: Any = MISSING) -> A
     beyond `LARGEST`, and rounded as they are written: what can be read can be saved.
     """
     if type(data) is not dict and not isinstance(data, Mapping):
-        raise DataError(where, f"should be fields, found {named(data)}")
+        raise DataError(where, f"should be fields, found {name_reference(data)}")
     value = data.get(key, MISSING)
     place = f"{where}.{key}" if where else key
     if value is MISSING and default is MISSING:
@@ -110,15 +110,15 @@ def get(data: Any, key: str, kind: Any, where: str, default: Any = MISSING) -> A
         return default
     wrong = isinstance(value, bool) and kind is not bool
     if wrong or not isinstance(value, (int, float) if kind is float else kind):
-        raise DataError(place, f"should be {_WORDS[kind]}, found {named(value)}")
+        raise DataError(place, f"should be {_WORDS[kind]}, found {name_reference(value)}")
     if kind in (int, float) and not abs(value) <= LARGEST:
-        raise DataError(place, f"should be a finite number, found {named(value)}")
+        raise DataError(place, f"should be a finite number, found {name_reference(value)}")
     if isinstance(value, dict) and not all(isinstance(k, str) for k in value):
         raise DataError(place, "should be fields with names")
-    return float(number(value)) if kind is float else value
+    return float(round_number(value)) if kind is float else value
 
 
-def known(data: Data, allowed: Collection[str], where: str) -> None:
+def refuse_unknown_fields(data: Data, allowed: Collection[str], where: str) -> None:
     """Refuse fields nobody reads: what a slip of the pen was meant to say would be lost."""
     for key in data:
         if key not in allowed:
@@ -142,9 +142,9 @@ def too_large(data: Any, where: str) -> str | None:
     return None
 
 
-def one_of(value: Any, allowed: tuple[str, ...], where: str) -> Any:
+def require_one_of(value: Any, allowed: tuple[str, ...], where: str) -> Any:
     if value not in allowed:
-        raise DataError(where, f"should be one of {', '.join(allowed)}, found {named(value)}")
+        raise DataError(where, f"should be one of {', '.join(allowed)}, found {name_reference(value)}")
     return value
 
 
@@ -167,7 +167,7 @@ _RANGES = {  # field -> least and greatest value of what no check of the graph l
 }
 
 
-def fill(cls: Any, data: Data, where: str, skip: tuple[str, ...] = ()) -> dict[str, Any]:
+def fill_fields(cls: Any, data: Data, where: str, skip: tuple[str, ...] = ()) -> dict[str, Any]:
     """Return a dataclass's simple fields read from data, those that are there."""
     out: dict[str, Any] = {}
     every = kinds(cls)
@@ -189,7 +189,7 @@ def fill(cls: Any, data: Data, where: str, skip: tuple[str, ...] = ()) -> dict[s
             if name in _RANGES and not _RANGES[name][0] <= out[name] <= _RANGES[name][1]:
                 low, high = _RANGES[name]
                 limit = f"{low:g} or more" if high in (1e9, LARGEST) else f"between {low:g} and {high:.10g}"
-                raise DataError(f"{where}.{name}", f"should be {limit}, found {named(data[name])}")
+                raise DataError(f"{where}.{name}", f"should be {limit}, found {name_reference(data[name])}")
     return out
 
 
@@ -230,7 +230,7 @@ def floats(values: list[Any], count: int, where: str, largest: float = LARGEST) 
 
 def joint_weights_data(weights: Iterable[tuple[str, float]]) -> Data:
     """Return how far joints move, by name; nothing where all move wholly."""
-    found = {name: number(weight) for name, weight in weights}
+    found = {name: round_number(weight) for name, weight in weights}
     return {"joint_weights": found} if found else {}
 
 
@@ -253,10 +253,10 @@ def joint_weights_from(data: Data, where: str) -> tuple[tuple[str, float], ...]:
     return tuple(out)
 
 
-def texts(data: Data, key: str) -> tuple[str, ...]:
+def read_texts(data: Data, key: str) -> tuple[str, ...]:
     """Return a list of texts at the top of the data, empty where it is missing."""
     values = get(data, key, list, "", [])
     for n, value in enumerate(values):
         if not isinstance(value, str):
-            raise DataError(f"{key}[{n}]", f"should be text, found {named(value)}")
+            raise DataError(f"{key}[{n}]", f"should be text, found {name_reference(value)}")
     return tuple(values)

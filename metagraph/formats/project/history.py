@@ -19,7 +19,7 @@ UNNAMED = "Recovered edit"
 
 
 @dataclass(frozen=True)
-class Step:
+class UndoStep:
     """One step to undo. text: what was done."""
 
     text: str
@@ -27,7 +27,7 @@ class Step:
     after: Project
 
 
-def history(left: Left) -> tuple[Step, ...]:
+def history(left: Left) -> tuple[UndoStep, ...]:
     """Return the steps a journal leads through, the last to its project; without motion.
 
     What was undone and not done again is no step any more; where nobody knows what was undone, undoing is one
@@ -42,12 +42,12 @@ def history(left: Left) -> tuple[Step, ...]:
     begin = from_data(left.base)
     if to_data(begin) == to_data(left.project):
         return ()
-    return (Step("Recovered edits", begin, left.project),)
+    return (UndoStep("Recovered edits", begin, left.project),)
 
 
-def _steps(base: Data, records: Sequence[Data]) -> list[Step]:
+def _steps(base: Data, records: Sequence[Data]) -> list[UndoStep]:
     replay, now = Replay(base), from_data(base)
-    steps: list[Step] = []
+    steps: list[UndoStep] = []
     for record in records:
         replay.apply(record)
         before, now = now, _next(now, replay, record)
@@ -55,9 +55,9 @@ def _steps(base: Data, records: Sequence[Data]) -> list[Step]:
         if how == "undone" and steps and now == steps[-1].before:
             now = steps.pop().before
         elif how == "merged" and steps:
-            steps[-1] = Step(text, steps[-1].before, now)
+            steps[-1] = UndoStep(text, steps[-1].before, now)
         else:
-            steps.append(Step(f"Undo {text}" if how == "undone" else text, before, now))
+            steps.append(UndoStep(f"Undo {text}" if how == "undone" else text, before, now))
     return steps
 
 
@@ -112,8 +112,8 @@ def _merged(order: Mapping[str, Any], new: Mapping[str, Any], old: Mapping[str, 
 
 
 def with_motion(
-    steps: Sequence[Step], bare: Project, whole: Project, load: Callable[[Project], Project]
-) -> tuple[Step, ...]:
+    steps: Sequence[UndoStep], bare: Project, whole: Project, load: Callable[[Project], Project]
+) -> tuple[UndoStep, ...]:
     """Return the steps with the motion of their clips, the last leading to `whole`.
 
     bare: what the last step leads to, without motion; whole: the same, read. load: reads the clips of a
@@ -147,7 +147,7 @@ def with_motion(
         entries[id(entry)] = whole.clips[i]
     for i, entry in steps[-1].after.clips.items():
         entries[id(entry)] = whole.clips[i]
-    return tuple(Step(s.text, filled(s.before), filled(s.after)) for s in steps)
+    return tuple(UndoStep(s.text, filled(s.before), filled(s.after)) for s in steps)
 
 
 def _source(entry: ClipEntry) -> tuple[Any, ...]:

@@ -39,9 +39,9 @@ from metagraph.formats.project.data import (
     weights_data,
 )
 from metagraph.formats.project.fields import Data, DataError
-from metagraph.formats.project.journal_records import framed
+from metagraph.formats.project.journal_records import frame_record
 from metagraph.formats.project.journal_register import JournalRegister
-from metagraph.formats.project.journal_words import displaced, unsayable, unwritten
+from metagraph.formats.project.journal_words import describe_displacement, unsayable, unwritten
 from metagraph.formats.project.manual_data import alias_data, link_data, manual_data, state_data
 from metagraph.formats.store import content_digest, file_digest
 from metagraph.graph.manual.machine import Manual
@@ -55,7 +55,7 @@ How = Literal["done", "merged", "undone", "redone"]
 # --- what changed
 
 
-def changes(before: Project, after: Project) -> Data:
+def find_changes(before: Project, after: Project) -> Data:
     """Return what differs, as plain data: small for a small edit, however large the project. It is asked for
     more than once of each edit, and is not to be changed.
     """
@@ -248,7 +248,7 @@ class Journal:
             records += [record for edit in done if (record := _record(*edit, "done"))]
         except DataError as error:
             raise unsayable(self.path, error) from None
-        content = b"".join(framed(record, number) for number, record in enumerate(records))
+        content = b"".join(frame_record(record, number) for number, record in enumerate(records))
         with self._turn:
             try:
                 # Until then the old one stands; where none does, and a file holds all but the first edit,
@@ -344,7 +344,7 @@ class Journal:
     def _write(self, record: Data) -> None:
         with self._turn:
             try:
-                self._file.add(framed(record, self._number))
+                self._file.add(frame_record(record, self._number))
                 self._number += 1
                 self._look()  # an edit in a file that was removed is no edit that was kept
             except OSError as error:
@@ -355,7 +355,7 @@ class Journal:
         was = self.path
         what = self._file.look()
         if what:
-            self.notes.append(displaced(what, was, self.path))
+            self.notes.append(describe_displacement(what, was, self.path))
         if what and self._register is not None:
             self._register.remove(was)
             self._register.add(self.path, self._saved, self._head)
@@ -378,7 +378,7 @@ class Journal:
 
 def _record(before: Project, after: Project, step: str, how: How) -> Data:
     """Return what is written of an edit, nothing where it changed nothing that is saved. Raises DataError."""
-    change = changes(before, after)
+    change = find_changes(before, after)
     if not change:
         return {}
     about = ({"step": step} if step else {}) | ({"how": how} if how != "done" else {})

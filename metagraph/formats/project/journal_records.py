@@ -27,7 +27,7 @@ _TIME = re.compile(rb'"at":(\d{1,12})[,}]')
 
 
 @dataclass(frozen=True)
-class Record:
+class JournalRecord:
     """A whole record. number: how many stand before it; None in a journal without checksums."""
 
     data: Data
@@ -49,16 +49,16 @@ class LostEdit:
 class Records:
     """What a journal's bytes hold, in order. head, foundation: the first two lines where they are damaged."""
 
-    entries: tuple[Record | LostEdit, ...]
+    entries: tuple[JournalRecord | LostEdit, ...]
     head: bytes = b""
     foundation: bytes = b""
 
     @property
-    def whole(self) -> tuple[Record, ...]:
-        return tuple(entry for entry in self.entries if isinstance(entry, Record))
+    def whole(self) -> tuple[JournalRecord, ...]:
+        return tuple(entry for entry in self.entries if isinstance(entry, JournalRecord))
 
 
-def framed(record: Data, number: int) -> bytes:
+def frame_record(record: Data, number: int) -> bytes:
     """Return a record as it is written."""
     body = b"%s\t%d" % (_encoded(record), number)
     return b"%s\t%08x\n\n" % (body, crc32(body))
@@ -74,25 +74,25 @@ def _encoded(record: Data) -> bytes:
 def read_records(content: bytes) -> Records:
     """Return what a journal's bytes hold. A last line that was cut off while it was written is none."""
     *lines, last = content.split(b"\n")
-    found = [(line, whole_record(line)) for line in lines if line]
-    if last and (whole_record(last) is not None or not last.startswith(b"{")):
-        found.append((last, whole_record(last)))
+    found = [(line, parse_record(line)) for line in lines if line]
+    if last and (parse_record(last) is not None or not last.startswith(b"{")):
+        found.append((last, parse_record(last)))
     if any(record is not None for _, record in found):
         return _numbered(found)
     return _unnumbered([line for line, _ in found])
 
 
-def whole_record(line: bytes) -> Record | None:
+def parse_record(line: bytes) -> JournalRecord | None:
     """Return the record of a line, None where its checksum does not fit."""
     match = _FRAMED.match(line)
     if match is None or crc32(line[: match.start(3) - 1]) != int(match[3], 16):
         return None
     data = _decoded(match[1])
-    return Record(data, int(match[2])) if data is not None else None
+    return JournalRecord(data, int(match[2])) if data is not None else None
 
 
-def _numbered(found: list[tuple[bytes, Record | None]]) -> Records:
-    entries: list[Record | LostEdit] = []
+def _numbered(found: list[tuple[bytes, JournalRecord | None]]) -> Records:
+    entries: list[JournalRecord | LostEdit] = []
     damaged: list[bytes] = []
     head = foundation = b""
     following = HEAD
@@ -141,10 +141,10 @@ def _described(line: bytes) -> LostEdit:
 
 def _unnumbered(lines: list[bytes]) -> Records:
     """Read a journal of before there were checksums."""
-    entries: list[Record | LostEdit] = []
+    entries: list[JournalRecord | LostEdit] = []
     for line in lines:
         data = _decoded(line)
-        entries.append(Record(data) if data is not None else _described(line))
+        entries.append(JournalRecord(data) if data is not None else _described(line))
     return Records(tuple(entries))
 
 

@@ -11,7 +11,14 @@ from metagraph.common.files import is_file
 from metagraph.errors import FileError
 from metagraph.formats.project.appended_file import identity_of
 from metagraph.formats.project.journal_register import JournalRegister, KnownJournal
-from metagraph.formats.recovery import DAMAGED, head_of, in_order, is_left, journals_in, left_journals
+from metagraph.formats.recovery import (
+    DAMAGED,
+    find_journals_in,
+    find_left_journals,
+    is_left,
+    order_journals,
+    read_journal_head,
+)
 from metagraph.formats.store import file_digest
 
 ANY = r"\..+\.(journal|old)"  # `.old`: as those were called at first that could not be read
@@ -24,8 +31,8 @@ def journals_for(saved: Path, register: JournalRegister) -> list[Path]:
     renamed, moved or is opened by another way, by what it holds.
     """
     real = saved.resolve()
-    found = [*left_journals(saved), *left_journals(real)]
-    others = [path for path in journals_in(real.parent, ANY) if path not in found]
+    found = [*find_left_journals(saved), *find_left_journals(real)]
+    others = [path for path in find_journals_in(real.parent, ANY) if path not in found]
     known = {Path(one.journal): one for one in register.known()}
     others += [path for path in known if path not in others and is_file(path) and is_left(path)]
     digest: str | None = None
@@ -34,10 +41,10 @@ def journals_for(saved: Path, register: JournalRegister) -> list[Path]:
     for path in others:
         if _belongs(path, known.get(path), real, digest):
             found.append(path)
-    return in_order(found)
+    return order_journals(found)
 
 
-def journals_beside(saved: Path) -> list[Path]:
+def find_journals_beside(saved: Path) -> list[Path]:
     """Return all journals in a project file's folder that belong to it, by name or by what they hold, the
     latest last: also those that somebody writes to, and those kept as damaged. Nothing is written for that.
     """
@@ -49,7 +56,7 @@ def journals_beside(saved: Path) -> list[Path]:
     beside: list[Path] = []
     with suppress(OSError):
         beside = [p for p in real.parent.iterdir() if re.fullmatch(f"{ANY}({re.escape(DAMAGED)})?", p.name)]
-    return in_order(
+    return order_journals(
         path
         for path in beside
         if is_file(path) and (own.fullmatch(path.name) or _belongs(path, None, real, digest))
@@ -57,7 +64,7 @@ def journals_beside(saved: Path) -> list[Path]:
 
 
 def _belongs(journal: Path, known: KnownJournal | None, saved: Path, digest: str | None) -> bool:
-    named = known.project if known is not None else head_of(journal).get("file")
+    named = known.project if known is not None else read_journal_head(journal).get("file")
     if not isinstance(named, str) or not named:
         return False  # of a project that was never saved
     project = Path(named)
@@ -77,7 +84,7 @@ def _belongs(journal: Path, known: KnownJournal | None, saved: Path, digest: str
     return False
 
 
-def every_journal(register: JournalRegister, folders: Iterable[Path]) -> list[Path]:
+def find_all_journals(register: JournalRegister, folders: Iterable[Path]) -> list[Path]:
     """Return all journals that anybody knows of, the latest last: those listed, wherever their folder has
     come to, and those in `folders`; with them those that were kept as damaged.
     """
@@ -91,11 +98,11 @@ def every_journal(register: JournalRegister, folders: Iterable[Path]) -> list[Pa
             lost.add(path.name)
     places = dict.fromkeys([*near, *folders])
     for folder in places:
-        found += journals_in(folder, rf"{ANY}({re.escape(DAMAGED)})?")
+        found += find_journals_in(folder, rf"{ANY}({re.escape(DAMAGED)})?")
     if lost:
         for folder in _beside(places):
             found += [path for path in map(folder.joinpath, lost) if is_file(path) and is_left(path)]
-    return in_order(found)
+    return order_journals(found)
 
 
 def _beside(folders: Iterable[Path]) -> Iterator[Path]:
@@ -118,5 +125,5 @@ def project_of(journal: Path) -> Path | None:
         beside = journal.with_name(match["name"])
         if is_file(beside):
             return beside
-    named = head_of(journal).get("file")
+    named = read_journal_head(journal).get("file")
     return Path(named) if isinstance(named, str) and named else None

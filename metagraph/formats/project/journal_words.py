@@ -26,7 +26,7 @@ def unsayable(path: Path, error: DataError) -> FileError:
     )
 
 
-def displaced(what: str, was: Path, now: Path) -> str:
+def describe_displacement(what: str, was: Path, now: Path) -> str:
     """Return what to say of a journal that was "removed" or has "moved"."""
     if what == "moved":
         return phrase(

@@ -40,7 +40,7 @@ def try_hold(path: Path) -> IO[bytes] | None:
 
 
 @contextmanager
-def alone(path: Path) -> Iterator[None]:
+def wait_for_turn(path: Path) -> Iterator[None]:
     """Wait until no other process, and no other thread, is in here with the same lock file. Raises FileError
     when that takes too long, rather than go on beside another.
     """

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from metagraph.formats.project.data import FORMAT, from_data
 from metagraph.formats.project.fields import Data, DataError
-from metagraph.formats.project.journal import KEYED, changes
+from metagraph.formats.project.journal import KEYED, find_changes
 from metagraph.formats.project.manual_data import manual_data
 from metagraph.graph.model import Project
 
 
-def refusal(before: Project, after: Project) -> str | None:
+def find_unwritable(before: Project, after: Project) -> str | None:
     """Return why a project file could not hold what an edit has changed, in words; None when it can. Costs
     what the edit is large.
     """
     try:
-        change = changes(before, after)
+        change = find_changes(before, after)
         if change:
             from_data(_part(change, after))
     except DataError as error:

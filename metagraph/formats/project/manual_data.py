@@ -8,13 +8,13 @@ from typing import Any
 from metagraph.formats.project.fields import (
     Data,
     DataError,
-    fill,
+    fill_fields,
     items,
     joint_weights_data,
     joint_weights_from,
-    known,
-    number,
-    one_of,
+    refuse_unknown_fields,
+    require_one_of,
+    round_number,
     sparse,
 )
 from metagraph.graph.manual.machine import ANY, WHENS, Alias, Condition, Link, Manual, State
@@ -43,8 +43,8 @@ def manual_data(manual: Manual) -> Data:
     aliases = {"aliases": [alias_data(a) for a in manual.aliases.values()]} if manual.aliases else {}
     return {
         "start": manual.start,
-        "any_x": number(manual.any_x),
-        "any_y": number(manual.any_y),
+        "any_x": round_number(manual.any_x),
+        "any_y": round_number(manual.any_y),
         "states": [state_data(s) for s in manual.states.values()],
         **aliases,
         "links": [link_data(x) for x in manual.links.values()],
@@ -56,17 +56,17 @@ def manual_from(layer: Layer, data: Any, ids: set[str]) -> Manual:
     DataError.
     """
     where = f"manual.{layer}"
-    known(data, [f.name for f in fields(Manual) if f.name != "layer"], where)
+    refuse_unknown_fields(data, [f.name for f in fields(Manual) if f.name != "layer"], where)
     states: dict[str, State] = {}
     for place, item in items(data, "states", where, ids):
-        known(item, _STATE_FIELDS, place)
+        refuse_unknown_fields(item, _STATE_FIELDS, place)
         values = _with(State, item, place, ("id", "clip", "name"), ("layer", "joint_weights"))
-        one_of(values.get("limb", "both"), LIMBS, f"{place}.limb")
+        require_one_of(values.get("limb", "both"), LIMBS, f"{place}.limb")
         weights = joint_weights_from(item, place)
         states[item["id"]] = State(layer=layer, joint_weights=weights, **values)
     aliases: dict[str, Alias] = {}
     for place, item in items(data, "aliases", where, ids):
-        known(item, _ALIAS_FIELDS, place)
+        refuse_unknown_fields(item, _ALIAS_FIELDS, place)
         values = _with(Alias, item, place, ("id", "name"), ("layer",))
         for n, state in enumerate(values.get("states", ())):
             if state not in states:
@@ -76,24 +76,24 @@ def manual_from(layer: Layer, data: Any, ids: set[str]) -> Manual:
         aliases[item["id"]] = Alias(layer=layer, **values)
     links: dict[str, Link] = {}
     for place, item in items(data, "links", where, ids):
-        known(item, _LINK_FIELDS, place)
+        refuse_unknown_fields(item, _LINK_FIELDS, place)
         values = _with(Link, item, place, ("id", "source", "target"), ("condition",))
         for end, allowed in (("source", values["source"] == ANY), ("target", False)):
             if values[end] not in states and values[end] not in aliases and not allowed:
                 raise DataError(f"{place}.{end}", f"'{values[end]}' is not a state of the {layer} layer")
         if not 0 <= (values.get("exit_part") or 0.0) <= 1:
             raise DataError(f"{place}.exit_part", f"should be between 0 and 1, found {values['exit_part']:g}")
-        condition = fill(Condition, item, place)
-        one_of(condition.get("when", "finished"), WHENS, f"{place}.when")
+        condition = fill_fields(Condition, item, place)
+        require_one_of(condition.get("when", "finished"), WHENS, f"{place}.when")
         links[item["id"]] = Link(condition=Condition(**condition), **values)
-    more = fill(Manual, data, where, ("layer", "states", "links", "aliases"))
+    more = fill_fields(Manual, data, where, ("layer", "states", "links", "aliases"))
     if more.get("start") is not None and more["start"] not in states:
         raise DataError(f"{where}.start", f"'{more['start']}' is not a state of the {layer} layer")
     return Manual(layer, states, links, aliases=aliases, **more)
 
 
 def _with(cls: Any, data: Data, where: str, needed: tuple[str, ...], skip: tuple[str, ...]) -> dict[str, Any]:
-    values = fill(cls, data, where, skip)
+    values = fill_fields(cls, data, where, skip)
     for key in needed:
         if key not in values:
             raise DataError(f"{where}.{key}", "is missing")

@@ -42,7 +42,7 @@ class Merged:
     kept: tuple[str, ...]
 
 
-def merge(
+def merge_projects(
     common: Project, mine: Project, theirs: Project, sides: tuple[str, str] = HERE_AND_ON_DISK
 ) -> Merged:
     """Return what was done in `mine` and in `theirs` since they were `common`.

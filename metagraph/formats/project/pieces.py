@@ -13,7 +13,7 @@ from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.project.data import FORMAT, from_data, to_data
 from metagraph.formats.project.fields import DataError
-from metagraph.formats.store import absolute, load_motions, moved, open_project
+from metagraph.formats.store import absolute, load_motions, move_project, open_project
 from metagraph.graph.editing.taking import Taking, piece_of, take
 from metagraph.graph.model import Project
 
@@ -22,7 +22,7 @@ _MARK = "metagraph_piece"
 
 
 @dataclass(frozen=True)
-class Piece:
+class ProjectPiece:
     """A part of another project. project: with its clips loaded, its paths relative to where it goes.
     actions: those that are wanted; None for all. notes: what was odd about its files, in words.
     """
@@ -38,7 +38,7 @@ class Piece:
 
 def read_other_project(
     path: Path, into: Path | None, progress: Callable[[int, int], None] | None = None
-) -> Piece:
+) -> ProjectPiece:
     """Read another project's file, to be taken into the project at `into`; None: one without a file. Raises
     FileError.
     """
@@ -50,11 +50,11 @@ def read_other_project(
             phrase("Choose another project's file."),
         )
     opened = open_project(path, progress)
-    return Piece(_at(opened.project, path, into), None, opened.notes)
+    return ProjectPiece(_at(opened.project, path, into), None, opened.notes)
 
 
 def _at(project: Project, path: Path, into: Path | None) -> Project:
-    return absolute(project, path.parent) if into is None else moved(project, path, into)
+    return absolute(project, path.parent) if into is None else move_project(project, path, into)
 
 
 def piece_text(
@@ -75,7 +75,7 @@ def is_piece(text: str) -> bool:
     return text.startswith(f'{{"{_MARK}"')
 
 
-def read_piece(text: str, into: Path | None) -> Piece:
+def read_piece(text: str, into: Path | None) -> ProjectPiece:
     """Read what was copied in another window, its clips loaded from their files. Raises FileError."""
     try:
         data = msgspec.json.decode(text)
@@ -91,6 +91,6 @@ def read_piece(text: str, into: Path | None) -> Piece:
             phrase("Copy stances or actions in another window first."),
         ) from None
     if into is not None:
-        project = moved(project, None, into)
+        project = move_project(project, None, into)
     opened = load_motions(project, into.parent if into is not None else None)
-    return Piece(opened.project, wanted, opened.notes)
+    return ProjectPiece(opened.project, wanted, opened.notes)

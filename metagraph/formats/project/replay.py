@@ -97,7 +97,7 @@ def _inserted(items: Data, places: Mapping[str, str | None]) -> Data:
     return {**out, **items}
 
 
-def apply(data: Data, change: Data) -> Data:
+def apply_change(data: Data, change: Data) -> Data:
     """Return project data with one change worked in. Raises KeyError, TypeError or AttributeError when they
     do not fit.
     """

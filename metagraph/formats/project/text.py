@@ -147,16 +147,16 @@ _FLOAT = re.compile(r"[-+]?(?:\.\d+|\d+(?:\.\d*)?)(?:[eE][-+]?\d+)?\Z", re.ASCII
 _INFINITE = re.compile(r"[-+]?\.(?:inf|Inf|INF)\Z|\.(?:nan|NaN|NAN)\Z")
 
 
-def read(text: str) -> tuple[Any, Callable[[], Lines]]:
+def read_text_data(text: str) -> tuple[Any, Callable[[], Lines]]:
     """Return the data of a text, and what tells the line of every field. Raises TextError."""
     data = canonical(text)
     if data is not None:
-        return data, lambda: parse(text)[1]
-    data, lines = parse(text)
+        return data, lambda: parse_yaml(text)[1]
+    data, lines = parse_yaml(text)
     return data, lambda: lines
 
 
-def parse(text: str) -> tuple[Any, Lines]:
+def parse_yaml(text: str) -> tuple[Any, Lines]:
     """Return the data of a text and the line of every field. Raises TextError."""
     import yaml  # a window opens before there is anything to read
 

@@ -9,7 +9,7 @@ from metagraph.errors import FileError
 
 
 @dataclass(frozen=True)
-class Fault:
+class VerificationFault:
     """Something that is not whole. place: the file, or the place in it. remedy: what to do about it."""
 
     place: str
@@ -23,7 +23,7 @@ class VerifiedPart:
 
     name: str
     words: str
-    faults: tuple[Fault, ...] = ()
+    faults: tuple[VerificationFault, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -35,24 +35,24 @@ class Verified:
     parts: tuple[VerifiedPart, ...]
 
     @property
-    def faults(self) -> tuple[Fault, ...]:
+    def faults(self) -> tuple[VerificationFault, ...]:
         return tuple(fault for part in self.parts for fault in part.faults)
 
 
-def fault_of(error: FileError, name: str | None = None, remedy: str | None = None) -> Fault:
+def fault_of(error: FileError, name: str | None = None, remedy: str | None = None) -> VerificationFault:
     """Return a file's error as a fault. name: what the file is called where that is more than its name;
     remedy: what to do where that is known better.
     """
     name = name or error.path.name
     place = f"{name}, {error.where}" if error.where else name
-    return Fault(place, f"{error.cause}.", str(error.remedy) if remedy is None else remedy)
+    return VerificationFault(place, f"{error.cause}.", str(error.remedy) if remedy is None else remedy)
 
 
-def counted(count: int, one: str, many: str | None = None) -> str:
+def count_in_words(count: int, one: str, many: str | None = None) -> str:
     """Return a number of things in words."""
     return f"1 {one}" if count == 1 else f"{count:,} {many or f'{one}s'}"
 
 
-def whole_of(count: int, faults: Sequence[object], whole: str) -> str:
+def describe_whole(count: int, faults: Sequence[object], whole: str) -> str:
     """Return how many of the parts are whole, "none" where there are none."""
     return f"{count - len(faults):,} of {count:,} {whole}" if count else "none"

@@ -9,19 +9,26 @@ from pathlib import Path
 
 from metagraph.common.budgets import TEXT_FILE
 from metagraph.common.files import is_file, read_file
-from metagraph.errors import FileError, shown
-from metagraph.formats.atomic import forsaken
+from metagraph.errors import FileError, clean_text
+from metagraph.formats.atomic import find_forsaken_files
 from metagraph.formats.locking import Owner, holder, is_gone, lock_path
 from metagraph.formats.project.data import FORMAT, to_data
 from metagraph.formats.project.journal_records import LostEdit
-from metagraph.formats.project.journal_search import journals_beside
-from metagraph.formats.project.text import TextError, read
-from metagraph.formats.project.verified import Fault, Verified, VerifiedPart, counted, fault_of, whole_of
+from metagraph.formats.project.journal_search import find_journals_beside
+from metagraph.formats.project.text import TextError, read_text_data
+from metagraph.formats.project.verified import (
+    VerificationFault,
+    Verified,
+    VerifiedPart,
+    count_in_words,
+    describe_whole,
+    fault_of,
+)
 from metagraph.formats.project.verifying_clips import verify_clips, verify_named_files
 from metagraph.formats.project.versions import earlier_versions
-from metagraph.formats.recovery import DAMAGED, Left, head_of, owner_of, read_journal
-from metagraph.formats.store import encoded, from_text, read_project
-from metagraph.graph.check import check
+from metagraph.formats.recovery import DAMAGED, Left, journal_owner, read_journal, read_journal_head
+from metagraph.formats.store import encode_project, parse_project, read_project
+from metagraph.graph.check import check_project
 from metagraph.graph.model import Project
 
 # What `check` says of a graph that does not hold together, as after a merge by hand.
@@ -45,17 +52,17 @@ def verify_project(path: Path) -> Verified:
 def _file(path: Path, content: bytes) -> tuple[Project | None, VerifiedPart]:
     restore = "Undo the last change made by hand, or go back to an earlier version."
     if not content.strip():
-        return None, VerifiedPart("file", "not whole", (Fault(path.name, "is empty.", restore),))
+        return None, VerifiedPart("file", "not whole", (VerificationFault(path.name, "is empty.", restore),))
     notes: list[str] = []
     try:
         project = read_project(path, notes)
     except FileError as error:
         return None, VerifiedPart("file", "not whole", (fault_of(error),))
-    faults = [Fault(path.name, f"{note}.", restore) for note in notes]
+    faults = [VerificationFault(path.name, f"{note}.", restore) for note in notes]
     try:
-        again = from_text(encoded(project, path).decode(), path)
+        again = parse_project(encode_project(project, path).decode(), path)
         if to_data(again) != to_data(project):
-            faults.append(Fault(path.name, "would be saved otherwise than it was read.", restore))
+            faults.append(VerificationFault(path.name, "would be saved otherwise than it was read.", restore))
     except FileError as error:
         faults.append(fault_of(error))
     words = f"format {_format(content)}, can be read and saved again without a change"
@@ -64,7 +71,7 @@ def _file(path: Path, content: bytes) -> tuple[Project | None, VerifiedPart]:
 
 def _format(content: bytes) -> str:
     try:
-        version = read(content.decode("utf-8-sig"))[0]["metagraph"]
+        version = read_text_data(content.decode("utf-8-sig"))[0]["metagraph"]
     except (TextError, UnicodeDecodeError, KeyError, TypeError):
         version = FORMAT
     return f"{version}" if version == FORMAT else f"{version} (the next save writes format {FORMAT})"
@@ -72,29 +79,35 @@ def _format(content: bytes) -> str:
 
 def _graph(project: Project) -> VerifiedPart:
     faults = [
-        Fault(f"{problem.layer} layer" if problem.layer else "project", f"{problem.message}.", problem.remedy)
-        for problem in check(project)
+        VerificationFault(
+            f"{problem.layer} layer" if problem.layer else "project", f"{problem.message}.", problem.remedy
+        )
+        for problem in check_project(project)
         if problem.code in BROKEN
     ]
     if project.base.clip is not None and project.base.clip not in project.clips:
         faults.append(
-            Fault("project", "the clip of the base pose is not in it.", "Choose the base pose again.")
+            VerificationFault(
+                "project", "the clip of the base pose is not in it.", "Choose the base pose again."
+            )
         )
     actions = sum(1 for _ in project.actions())
     words = (
-        f"{counted(actions, 'action')}, each of a clip and a stance that are there" if actions else "empty"
+        f"{count_in_words(actions, 'action')}, each of a clip and a stance that are there"
+        if actions
+        else "empty"
     )
     return VerifiedPart("graph", "not whole" if faults else words, tuple(faults))
 
 
 def _journals(path: Path) -> VerifiedPart:
     words: list[str] = []
-    faults: list[Fault] = []
-    for journal in journals_beside(path):
-        owner = owner_of(head_of(journal))
+    faults: list[VerificationFault] = []
+    for journal in find_journals_beside(path):
+        owner = journal_owner(read_journal_head(journal))
         if journal.name.endswith(DAMAGED):
             remedy = "See 'File > Recover…' for what it holds; discard it there when you no longer need it."
-            faults.append(Fault(journal.name, "is a damaged journal that was kept.", remedy))
+            faults.append(VerificationFault(journal.name, "is a damaged journal that was kept.", remedy))
         elif owner is not None and not is_gone(owner, journal, look_only=True):
             words.append(f"{_who(owner)} has the project open, and a journal of it that is being written")
         else:
@@ -104,7 +117,7 @@ def _journals(path: Path) -> VerifiedPart:
     return VerifiedPart("journals", "; ".join(words) or "no edits wait in them", tuple(faults))
 
 
-def _left(journal: Path, path: Path) -> Iterator[Fault]:
+def _left(journal: Path, path: Path) -> Iterator[VerificationFault]:
     try:
         left = read_journal(journal, path)
     except FileError as error:
@@ -113,17 +126,20 @@ def _left(journal: Path, path: Path) -> Iterator[Fault]:
     if left is None:
         return
     if left.edits:
-        yield Fault(journal.name, f"holds {counted(left.edits, 'edit')} that {_in_no_file(left)}.", RECOVER)
+        yield VerificationFault(
+            journal.name, f"holds {count_in_words(left.edits, 'edit')} that {_in_no_file(left)}.", RECOVER
+        )
     lost = [_lost_words(one) for one in left.lost]
     if lost:
         more = f" and {len(lost) - NAMED} more" if len(lost) > NAMED else ""
-        yield Fault(
+        yield VerificationFault(
             journal.name,
-            f"is damaged; {counted(len(lost), 'edit')} cannot be read: {', '.join(lost[:NAMED])}{more}.",
+            f"is damaged; {count_in_words(len(lost), 'edit')} cannot be read: "
+            f"{', '.join(lost[:NAMED])}{more}.",
             "The others can be recovered in the window. Make those again.",
         )
     if left.doubtful:
-        yield Fault(
+        yield VerificationFault(
             journal.name,
             "is damaged in what its edits begin with; a value in it may be wrong.",
             "Recover it in the window, and look through the project before you save it.",
@@ -137,11 +153,11 @@ def _in_no_file(left: Left) -> str:
 
 
 def _lost_words(edit: LostEdit) -> str:
-    return f"'{shown(edit.step)}'" if edit.step else "one without a name"
+    return f"'{clean_text(edit.step)}'" if edit.step else "one without a name"
 
 
 def _who(owner: Owner) -> str:
-    return f"{shown(owner.user)} on {shown(owner.host)}"
+    return f"{clean_text(owner.user)} on {clean_text(owner.host)}"
 
 
 def _versions(path: Path) -> VerifiedPart:
@@ -152,20 +168,20 @@ def _versions(path: Path) -> VerifiedPart:
             read_project(version.path, [])
         except FileError as error:
             faults.append(fault_of(error, remedy="Remove it; it cannot be gone back to."))
-    return VerifiedPart("versions", whole_of(len(versions), faults, "can be opened"), tuple(faults))
+    return VerifiedPart("versions", describe_whole(len(versions), faults, "can be opened"), tuple(faults))
 
 
 def _leftovers(path: Path) -> VerifiedPart:
     """Look at locks and half-written files; those of programs that still run are none."""
     real = path.resolve()
     words = "none"
-    faults = unfinished_faults(real.parent)
+    faults = find_unfinished_files(real.parent)
     lock = lock_path(real)
     found = holder(lock, look_only=True) if is_file(lock) else None
     if found is not None and found.gone:
         whose = _who(found.owner) if found.owner is not None else "somebody"
         faults.append(
-            Fault(
+            VerificationFault(
                 lock.name,
                 f"is a lock that {whose} left behind; the program is not there any more.",
                 "Open the project in the window: it takes the lock over.",
@@ -176,8 +192,8 @@ def _leftovers(path: Path) -> VerifiedPart:
     return VerifiedPart("leftovers", "found" if faults else words, tuple(faults))
 
 
-def unfinished_faults(folder: Path) -> list[Fault]:
+def find_unfinished_files(folder: Path) -> list[VerificationFault]:
     """Return the files that programs which were killed have left half-written in a folder."""
     remedy = "The next save into this folder removes it; it can be removed by hand as well."
     words = "was left half-written by a program that is not there any more."
-    return [Fault(path.name, words, remedy) for path in sorted(forsaken(folder))]
+    return [VerificationFault(path.name, words, remedy) for path in sorted(find_forsaken_files(folder))]

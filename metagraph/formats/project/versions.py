@@ -16,7 +16,7 @@ from metagraph.common.wording import Phrase, phrase
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.new_file import Access, access_of, open_new
-from metagraph.formats.replacing import sync_folder, unfinished, write_all
+from metagraph.formats.replacing import sync_folder, unfinished_name, write_all
 from metagraph.formats.store import SUFFIX
 
 KEPT = 3  # versions, unless the settings say otherwise
@@ -111,7 +111,7 @@ def _keep(path: Path, content: bytes, versions: int) -> None:
 def _copied(path: Path, content: bytes) -> Path:
     """Return an unfinished copy of a file beside it, on the disk, with its rights and its time."""
     state = path.stat()
-    copy = path.with_name(unfinished())
+    copy = path.with_name(unfinished_name())
     handle = open_new(copy, access_of(path))
     try:
         try:

@@ -9,20 +9,26 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from metagraph.common.files import guarded
+from metagraph.common.files import guard_reader
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.transcripts.json_files import read_json
-from metagraph.formats.transcripts.text_files import is_ctm, is_table, read_ctm, read_cues, read_table
+from metagraph.formats.transcripts.text_files import (
+    is_ctm,
+    is_word_table,
+    read_ctm,
+    read_cues,
+    read_word_table,
+)
 from metagraph.formats.transcripts.tiers import read_elan_tiers, read_textgrid_tiers
-from metagraph.formats.transcripts.words import REMEDY, Transcript, text_of
+from metagraph.formats.transcripts.words import REMEDY, Transcript, read_text_file
 
 
-@guarded
+@guard_reader
 def read_transcript(path: str | Path) -> Transcript:
     """Read a transcript, whatever of `SUFFIXES` it is. Raises FileError."""
     path = Path(path)
-    text = text_of(path)
+    text = read_text_file(path)
     head = text.lstrip("\ufeff \t\n")[:4000]
     if not head:
         return Transcript({}, {}, ("it is empty",))
@@ -36,8 +42,8 @@ def read_transcript(path: str | Path) -> Transcript:
         return read_json(path, text)
     if head.startswith("WEBVTT") or "-->" in text:
         return read_cues(path, text)
-    if is_table(text):
-        return read_table(path, text)
+    if is_word_table(text):
+        return read_word_table(path, text)
     if is_ctm(text):
         return read_ctm(path, text)
     raise FileError(

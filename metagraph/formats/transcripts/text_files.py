@@ -228,7 +228,7 @@ def read_ctm(path: Path, text: str) -> Transcript:
 # --- a table of words
 
 
-def is_table(text: str) -> bool:
+def is_word_table(text: str) -> bool:
     """Whether the first line that is not empty is one of a table: start, end, words, parted by tabs."""
     line = next((x for x in text.split("\n")[:1000] if x.strip()), "")
     return _table_row(line) is not None
@@ -244,7 +244,7 @@ def _table_row(line: str) -> tuple[float, float, str] | None:
         return None
 
 
-def read_table(path: Path, text: str) -> Transcript:
+def read_word_table(path: Path, text: str) -> Transcript:
     """Read a line a word, start and end in seconds, as GENEA's transcripts are. Raises FileError."""
     out = Collected(path)
     for n, line in enumerate(text.split("\n")):

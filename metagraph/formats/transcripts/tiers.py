@@ -12,7 +12,7 @@ from metagraph.formats.elan import read_elan
 from metagraph.formats.transcripts.words import LATEST, TO_ALL, Collected, Transcript, count, is_silent
 from metagraph.graph.conversation.model import EVERYBODY, SHORTEST, SPOKEN, Segment, Spoken
 from metagraph.playback.learning.annotation import IGNORE, guess_role
-from metagraph.playback.learning.annotation import Tier as ElanTier
+from metagraph.playback.learning.annotation import AnnotationTier as ElanTier
 from metagraph.speech.textgrid import read_textgrid
 
 _ROLES = {

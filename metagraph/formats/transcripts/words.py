@@ -120,7 +120,7 @@ class Collected:
         notes = list(self.notes)
         out = {}
         for name, words in self.speakers.items():
-            out[name], done = settled(words)
+            out[name], done = settle_words(words)
             notes += [phrase("'{name}': {note}", name=name, note=note) if name else note for note in done]
         if self.wrong:
             notes.append(
@@ -141,7 +141,7 @@ class Collected:
         return Transcript(out, dict(segments or {}), tuple(notes))
 
 
-def listed(words: Sequence[str]) -> str:
+def join_as_list(words: Sequence[str]) -> str:
     """Return several words as a list in a sentence: commas, and "and" before the last."""
     some = join_phrases(words[:-1], ", ")
     return phrase("{some} and {last}", some=some, last=words[-1]) if len(words) > 1 else words[0]
@@ -161,7 +161,7 @@ def is_silent(text: str) -> bool:
     return bare in _SILENT or (bare != "%hesitation" and _NOISE.fullmatch(bare) is not None)
 
 
-def settled(words: Iterable[Word]) -> tuple[tuple[Word, ...], list[str]]:
+def settle_words(words: Iterable[Word]) -> tuple[tuple[Word, ...], list[str]]:
     """Return words by start, each ending where the next begins at the latest, and what had to be done for
     that, in words.
     """
@@ -201,7 +201,7 @@ def settled(words: Iterable[Word]) -> tuple[tuple[Word, ...], list[str]]:
     return tuple(out), notes
 
 
-def text_of(path: Path) -> str:
+def read_text_file(path: Path) -> str:
     """Return a text file's content. Raises FileError."""
     data = read_file(path, TEXT_FILE)
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):

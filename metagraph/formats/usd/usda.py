@@ -65,7 +65,7 @@ class Names:
         return name
 
 
-def text(value: str) -> str:
+def usda_string(value: str) -> str:
     """Return a string's literal."""
     out = "".join(
         _ESCAPES.get(c, c if c >= " " and c != "\x7f" else f"\\x{ord(c):02x}") for c in value
@@ -73,17 +73,17 @@ def text(value: str) -> str:
     return f'"{out.decode()}"'
 
 
-def texts(values: Iterable[str]) -> str:
+def usda_strings(values: Iterable[str]) -> str:
     """Return an array of strings or tokens."""
-    return f"[{', '.join(map(text, values))}]"
+    return f"[{', '.join(map(usda_string, values))}]"
 
 
-def number(value: float) -> str:
+def usda_number(value: float) -> str:
     """Return a number with the nine digits that tell single precision apart."""
     return f"{float(value):.9g}"
 
 
-def numbers(values: Any) -> str:
+def usda_numbers(values: Any) -> str:
     """Return an array of numbers."""
     flat = np.asarray(values).reshape(-1)
     form = "%d" if flat.dtype.kind in "iu" else "%.7g"
@@ -113,7 +113,7 @@ def matrices(values: Array) -> str:
 
 def samples(times: Sequence[float], values: Iterable[str]) -> str:
     """Return time samples, times in time codes."""
-    inside = ", ".join(f"{number(t)}: {v}" for t, v in zip(times, values, strict=True))
+    inside = ", ".join(f"{usda_number(t)}: {v}" for t, v in zip(times, values, strict=True))
     return f"{{{inside}}}"
 
 

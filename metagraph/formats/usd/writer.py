@@ -22,15 +22,15 @@ from metagraph.formats.usd.usda import (
     each,
     layer,
     matrices,
-    number,
-    numbers,
     samples,
-    text,
-    texts,
     tuples,
+    usda_number,
+    usda_numbers,
+    usda_string,
+    usda_strings,
 )
 from metagraph.motion import rotation
-from metagraph.motion.character_mesh import Character, Material
+from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 
@@ -45,7 +45,7 @@ def write_usd(
     path: str | Path,
     skeleton: Skeleton,
     clips: Sequence[Clip],
-    character: Character | None = None,
+    character: CharacterMesh | None = None,
     playing: str | None = None,
     more: Sequence[Prim] = (),
     metadata: Sequence[str] = (),
@@ -77,8 +77,8 @@ def write_usd(
     end = max((clip.duration * rate for clip in clips), default=0.0)
     head = [
         f'defaultPrim = "{CHARACTER[1:]}"', 'upAxis = "Y"', "metersPerUnit = 1", "startTimeCode = 0",
-        f"endTimeCode = {number(end)}", f"timeCodesPerSecond = {number(rate)}",
-        f"framesPerSecond = {number(rate)}",
+        f"endTimeCode = {usda_number(end)}", f"timeCodesPerSecond = {usda_number(rate)}",
+        f"framesPerSecond = {usda_number(rate)}",
     ]  # fmt: skip
     for place, content in files:
         place.parent.mkdir(parents=True, exist_ok=True)
@@ -102,9 +102,9 @@ def clip_paths(names: Sequence[str]) -> dict[str, str]:
     return {name: f"{CHARACTER}/Clips/{found.of(name, 'clip')}" for name in names}
 
 
-def named(name: str, identifier: str) -> list[str]:
+def keep_name(name: str, identifier: str) -> list[str]:
     """Return the metadata that keeps a name that is no identifier."""
-    return [] if name == identifier else [f"displayName = {text(name)}"]
+    return [] if name == identifier else [f"displayName = {usda_string(name)}"]
 
 
 def _choose(root: Prim, places: dict[str, str], playing: str) -> None:
@@ -134,8 +134,8 @@ def _skeleton(skeleton: Skeleton, joints: list[str]) -> Prim:
         "Skeleton",
         ['prepend apiSchemas = ["SkelBindingAPI"]'],
         [
-            f"uniform token[] joints = {texts(joints)}",
-            f"uniform token[] jointNames = {texts(skeleton.names)}",
+            f"uniform token[] joints = {usda_strings(joints)}",
+            f"uniform token[] jointNames = {usda_strings(skeleton.names)}",
             f"uniform matrix4d[] bindTransforms = {matrices(_matrices(turns, places))}",
             "uniform matrix4d[] restTransforms = "
             + matrices(_matrices(skeleton.rest_rotations, skeleton.rest_translations)),
@@ -156,8 +156,8 @@ def _animation(clip: Clip, place: str, joints: list[str], rate: float) -> Prim:
     turns = clip.rotations[..., [3, 0, 1, 2]]  # USD writes the real part first
     places = clip.skeleton.rest_translations
     properties = [
-        f"custom double metagraph:fps = {number(clip.fps)}",
-        f"uniform token[] joints = {texts(joints)}",
+        f"custom double metagraph:fps = {usda_number(clip.fps)}",
+        f"uniform token[] joints = {usda_strings(joints)}",
         f"quatf[] rotations.timeSamples = {samples(times, _changing(turns))}",
         f"half3[] scales = [{', '.join(['(1, 1, 1)'] * len(joints))}]",
     ]
@@ -175,10 +175,10 @@ def _animation(clip: Clip, place: str, joints: list[str], rate: float) -> Prim:
         properties.append(f"float3[] translations.timeSamples = {samples(times, rows)}")
     if clip.morphs and clip.weights is not None:
         properties += [
-            f"uniform token[] blendShapes = {texts(clip.morphs)}",
-            f"float[] blendShapeWeights.timeSamples = {samples(times, map(numbers, clip.weights))}",
+            f"uniform token[] blendShapes = {usda_strings(clip.morphs)}",
+            f"float[] blendShapeWeights.timeSamples = {samples(times, map(usda_numbers, clip.weights))}",
         ]
-    return Prim("SkelAnimation", own, named(clip.name, own), properties)
+    return Prim("SkelAnimation", own, keep_name(clip.name, own), properties)
 
 
 def _changing(values: Array) -> Iterator[str]:
@@ -191,7 +191,7 @@ def _changing(values: Array) -> Iterator[str]:
         yield f"[{', '.join(row)}]"
 
 
-def _mesh(character: Character, joints: list[str]) -> Prim:
+def _mesh(character: CharacterMesh, joints: list[str]) -> Prim:
     weights = np.maximum(np.asarray(character.weights, np.float64), 0)
     total = weights.sum(1, keepdims=True)
     weights = np.where(total > 0, weights / np.where(total > 0, total, 1), [1.0, 0.0, 0.0, 0.0])
@@ -202,13 +202,13 @@ def _mesh(character: Character, joints: list[str]) -> Prim:
     mesh = Prim(
         "Mesh",
         "Mesh",
-        ['prepend apiSchemas = ["SkelBindingAPI", "MaterialBindingAPI"]', *named(character.name, "Mesh")],
+        ['prepend apiSchemas = ["SkelBindingAPI", "MaterialBindingAPI"]', *keep_name(character.name, "Mesh")],
         [
             'uniform token subdivisionScheme = "none"',
             f"uniform bool doubleSided = {int(both)}",
             f"float3[] extent = {tuples(np.stack([points.min(0), points.max(0)]))}",
-            f"int[] faceVertexCounts = {numbers(np.full(len(character.triangles), 3))}",
-            f"int[] faceVertexIndices = {numbers(np.asarray(character.triangles, int))}",
+            f"int[] faceVertexCounts = {usda_numbers(np.full(len(character.triangles), 3))}",
+            f"int[] faceVertexIndices = {usda_numbers(np.asarray(character.triangles, int))}",
             f"point3f[] points = {tuples(points)}",
             f"normal3f[] primvars:normals = {tuples(np.asarray(character.normals, np.float64))} (",
             '    interpolation = "vertex"',
@@ -216,15 +216,15 @@ def _mesh(character: Character, joints: list[str]) -> Prim:
             f"texCoord2f[] primvars:st = {tuples(uvs)} (",
             '    interpolation = "vertex"',
             ")",
-            f"uniform token[] skel:joints = {texts(joints)}",
+            f"uniform token[] skel:joints = {usda_strings(joints)}",
             f"rel skel:skeleton = <{CHARACTER}/Skeleton>",
             "matrix4d primvars:skel:geomBindTransform = "
             "( (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1) )",
-            f"int[] primvars:skel:jointIndices = {numbers(held)} (",
+            f"int[] primvars:skel:jointIndices = {usda_numbers(held)} (",
             "    elementSize = 4",
             '    interpolation = "vertex"',
             ")",
-            f"float[] primvars:skel:jointWeights = {numbers(weights)} (",
+            f"float[] primvars:skel:jointWeights = {usda_numbers(weights)} (",
             "    elementSize = 4",
             '    interpolation = "vertex"',
             ")",
@@ -242,11 +242,11 @@ def _mesh(character: Character, joints: list[str]) -> Prim:
             Prim(
                 "GeomSubset",
                 own,
-                ['prepend apiSchemas = ["MaterialBindingAPI"]', *named(called, own)],
+                ['prepend apiSchemas = ["MaterialBindingAPI"]', *keep_name(called, own)],
                 [
                     'uniform token elementType = "face"',
                     'uniform token familyName = "materialBind"',
-                    f"int[] indices = {numbers(np.arange(surface.first, surface.first + surface.count))}",
+                    f"int[] indices = {usda_numbers(surface.first + np.arange(surface.count))}",
                     f"rel material:binding = <{CHARACTER}/Materials/{looks[surface.material]}>",
                 ],
             )
@@ -254,13 +254,13 @@ def _mesh(character: Character, joints: list[str]) -> Prim:
     return mesh
 
 
-def _blend_shapes(mesh: Prim, character: Character) -> None:
+def _blend_shapes(mesh: Prim, character: CharacterMesh) -> None:
     if character.morph_positions is None or not character.morphs:
         return
     names = Names()
     own = [names.of(f"shape_{name}") for name in character.morphs]
     mesh.properties += [
-        f"uniform token[] skel:blendShapes = {texts(character.morphs)}",
+        f"uniform token[] skel:blendShapes = {usda_strings(character.morphs)}",
         f"rel skel:blendShapeTargets = [{', '.join(f'<{CHARACTER}/Mesh/{name}>' for name in own)}]",
     ]
     for name, shape, offsets in zip(own, character.morphs, character.morph_positions, strict=True):
@@ -270,21 +270,21 @@ def _blend_shapes(mesh: Prim, character: Character) -> None:
             Prim(
                 "BlendShape",
                 name,
-                named(shape, name),
+                keep_name(shape, name),
                 [
                     f"uniform vector3f[] offsets = {tuples(np.asarray(offsets, np.float64)[there])}",
-                    f"uniform int[] pointIndices = {numbers(there)}",
+                    f"uniform int[] pointIndices = {usda_numbers(there)}",
                 ],
             )
         )
 
 
-def _look_names(character: Character) -> list[str]:
+def _look_names(character: CharacterMesh) -> list[str]:
     names = Names()
     return [names.of(material.name, "material") for material in character.materials]
 
 
-def _materials(character: Character, path: Path) -> tuple[Prim, list[tuple[Path, bytes]]]:
+def _materials(character: CharacterMesh, path: Path) -> tuple[Prim, list[tuple[Path, bytes]]]:
     """Return the materials, and the pictures that they need, in a folder beside the stage."""
     folder = path.with_name(f"{path.stem}_textures")
     known: dict[bytes, Path] = {}
@@ -298,12 +298,12 @@ def _materials(character: Character, path: Path) -> tuple[Prim, list[tuple[Path,
     return looks, [(place, image) for image, place in known.items()]
 
 
-def _look(name: str, material: Material, picture: Path | None) -> Prim:
+def _look(name: str, material: MeshMaterial, picture: Path | None) -> Prim:
     where = f"{CHARACTER}/Materials/{name}"
-    red, green, blue, alpha = (number(x) for x in material.color)
+    red, green, blue, alpha = (usda_number(x) for x in material.color)
     surface = [
         'uniform token info:id = "UsdPreviewSurface"',
-        f"float inputs:roughness = {number(material.roughness)}",
+        f"float inputs:roughness = {usda_number(material.roughness)}",
         "float inputs:metallic = 0",
         f"float inputs:opacity = {alpha}",
         f"color3f inputs:diffuseColor = ({red}, {green}, {blue})"
@@ -314,7 +314,7 @@ def _look(name: str, material: Material, picture: Path | None) -> Prim:
     out = Prim(
         "Material",
         name,
-        named(material.name, name),
+        keep_name(material.name, name),
         [f"token outputs:surface.connect = <{where}/Surface.outputs:surface>"],
         [Prim("Shader", "Surface", [], surface)],
     )

@@ -29,13 +29,13 @@ BUSY = (
 )
 
 
-def tell(event: Mapping[str, Any]) -> None:
+def write_event(event: Mapping[str, Any]) -> None:
     """Write a line; nobody may be listening any more."""
     with suppress(BrokenPipeError, ValueError):
         print(json.dumps(event, allow_nan=False), flush=True)
 
 
-def watch() -> Callable[[], bool]:
+def make_parent_watch() -> Callable[[], bool]:
     """Return what tells whether who began this process has gone."""
     parent, closed = os.getppid(), threading.Event()
 
@@ -59,23 +59,23 @@ def main(
     held = None
     with suppress(OSError):  # where nothing can be written that is told soon enough
         if (folder / PLAN).is_file() and (held := hold(folder)) is None:
-            tell({"event": "error", "text": BUSY})
+            write_event({"event": "error", "text": BUSY})
             return 2
     try:
         from metagraph.generation.training.learner import TrainingError
         from metagraph.generation.training.run import Run
 
         try:
-            run = Run(folder, tell, lambda: bool(asked), "--afresh" not in arguments, deserted)
+            run = Run(folder, write_event, lambda: bool(asked), "--afresh" not in arguments, deserted)
             run.finish(True) if "--export" in arguments else run.go()
         except (TrainingError, ValueError) as error:
-            tell({"event": "error", "text": str(error)})
+            write_event({"event": "error", "text": str(error)})
             return 2
     except FileError as error:
-        tell({"event": "error", "text": str(error)})
+        write_event({"event": "error", "text": str(error)})
         return 2
     except MemoryError:
-        tell(
+        write_event(
             {
                 "event": "error",
                 "text": "too little memory: train a smaller model, or smaller batches",
@@ -83,7 +83,7 @@ def main(
         )
         return 2
     except ImportError as error:
-        tell({"event": "error", "text": f"torch cannot be used ({error})"})
+        write_event({"event": "error", "text": f"torch cannot be used ({error})"})
         return 2
     finally:
         if held is not None:
@@ -91,7 +91,7 @@ def main(
     return 0
 
 
-def alone() -> int:
+def train_alone() -> int:
     """Train in a process that is there for nothing else: behind all others, and stopped by signals."""
     if hasattr(os, "nice"):
         with suppress(OSError):
@@ -99,9 +99,9 @@ def alone() -> int:
     asked: list[int] = []
     for kind in (signal.SIGTERM, signal.SIGINT):
         signal.signal(kind, lambda number, _: asked.append(number))
-    gone = watch() if "--watched" in sys.argv else lambda: False
+    gone = make_parent_watch() if "--watched" in sys.argv else lambda: False
     return main(sys.argv[1:], asked, gone)
 
 
 if __name__ == "__main__":
-    sys.exit(alone())
+    sys.exit(train_alone())

@@ -11,7 +11,7 @@ import msgspec
 import numpy as np
 
 from metagraph.formats.atomic import write_atomically
-from metagraph.generation.standing import CHECKPOINTS, TOLD, UNREADABLE, Told, told_of
+from metagraph.generation.standing import CHECKPOINTS, TOLD, UNREADABLE, CheckpointNote, read_checkpoint_note
 
 Arrays = dict[str, np.ndarray[Any, Any]]
 
@@ -20,7 +20,7 @@ Arrays = dict[str, np.ndarray[Any, Any]]
 class Checkpoint:
     """arrays: `net.NAME`, `mean.NAME` (of weights), `first.NAME`, `second.NAME` (moments), `chance`."""
 
-    told: Told
+    told: CheckpointNote
     arrays: Arrays = field(repr=False)
 
 
@@ -56,7 +56,7 @@ def _read(path: Path) -> Checkpoint:
     # The file is opened here: NumPy leaves open what it cannot read.
     with path.open("rb") as content, np.load(content, allow_pickle=False) as file:
         arrays = {name: file[name] for name in file.files}
-    told = told_of(arrays.pop(TOLD))
+    told = read_checkpoint_note(arrays.pop(TOLD))
     if any(a.dtype.kind == "f" and not np.isfinite(a).all() for a in arrays.values()):
         raise ValueError("it holds a value that is not a number")
     return Checkpoint(told, arrays)

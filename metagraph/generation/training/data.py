@@ -13,9 +13,9 @@ from torch import Tensor
 from metagraph.generation import vae
 from metagraph.generation.features import MELS, STRANGEST, as_heard, with_edges
 from metagraph.generation.networks import ACTIVITY, Control, MatchingSizes, Sizes
-from metagraph.generation.poses import NUMBERS, Scale
+from metagraph.generation.poses import NUMBERS, Standardisation
 from metagraph.generation.takes import Take
-from metagraph.generation.training.voices import sound_otherwise
+from metagraph.generation.training.voices import vary_voices
 
 Array = NDArray[Any]
 
@@ -24,14 +24,16 @@ TURNS = 4  # changes of who speaks in a crop at most: more say nothing more
 AVERAGED = 3  # frames over which speeds are averaged
 
 
-class Corpus:
+class TrainingCorpus:
     """Standardised takes, one after the other. Around each is what is heard and seen before it begins and
     after it ends: silence, and the mean pose. poses: `[N, X]`; heard: `[N, audio + 4]`; speeds: of each joint
     `[N, X / 6]`, logarithms, standardised; first: of each take, the number of its first frame; counts: frames
     of each.
     """
 
-    def __init__(self, takes: Sequence[Take], poses: Scale, audio: Scale, before: int, after: int) -> None:
+    def __init__(
+        self, takes: Sequence[Take], poses: Standardisation, audio: Standardisation, before: int, after: int
+    ) -> None:
         rows, heard, speeds, first, counts, at = [], [], [], [], [], 0
         for take in takes:
             count = len(take.poses)
@@ -91,7 +93,7 @@ class Corpus:
         audio = rows[chosen, :, :-ACTIVITY] * self.audio[1] + self.audio[0]
         count, frames, numbers = audio.shape
         tracks = audio.reshape(count, frames, -1, MELS).transpose(1, 2).reshape(-1, frames, MELS)
-        tracks = sound_otherwise(tracks, chance).reshape(count, -1, frames, MELS).transpose(1, 2)
+        tracks = vary_voices(tracks, chance).reshape(count, -1, frames, MELS).transpose(1, 2)
         other = (tracks.reshape(count, frames, numbers) - self.audio[0]) / self.audio[1]
         rows[chosen, :, :-ACTIVITY] = other.clamp(-STRANGEST, STRANGEST)
         return rows
@@ -119,11 +121,11 @@ def edges_of(sizes: Sizes) -> tuple[int, int]:
     return max(control.before, control.past), control.ahead
 
 
-def stretches(corpus: Corpus, span: int, most: int = 60000) -> Array:
+def take_stretches(corpus: TrainingCorpus, span: int, most: int = 60000) -> Array:
     """Return rows of `span` frames, flat, from evenly spread places: at most about `most`."""
     out = []
     step = max(1, int(corpus.counts.sum()) // most)
     for rows in corpus.each():
         for shift in range(span):
-            out.append(vae.spans(rows[shift:], span)[:: max(1, step)])
+            out.append(vae.list_spans(rows[shift:], span)[:: max(1, step)])
     return np.concatenate(out)

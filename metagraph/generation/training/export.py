@@ -8,18 +8,18 @@ from pathlib import Path
 import torch
 
 from metagraph.generation.networks import Weights
-from metagraph.generation.poses import Scale
+from metagraph.generation.poses import Standardisation
 from metagraph.generation.stored import Model, ModelCard, versions, write_model
 from metagraph.generation.train_plan import TrainingPlan
 from metagraph.generation.training.learner import Learner, check_weights
-from metagraph.generation.training.losses import suited
+from metagraph.generation.training.losses import choose_loss
 
 
 def model_of(
     plan: TrainingPlan,
     weights: Weights,
-    poses: Scale,
-    audio: Scale,
+    poses: Standardisation,
+    audio: Standardisation,
     steps: int,
     statistics: Mapping[str, float] | None = None,
     notes: tuple[str, ...] = (),
@@ -37,7 +37,7 @@ def model_of(
         audio_mean=tuple(audio.mean.tolist()),
         audio_deviation=tuple(audio.deviation.tolist()),
         tracks=plan.tracks,
-        loss=plan.settings.loss or suited(plan.sizes),
+        loss=plan.settings.loss or choose_loss(plan.sizes),
         seed=plan.seed,
         steps=steps,
         hours=round(sum(t.seconds for t in plan.takes) / 3600, 4),
@@ -59,6 +59,6 @@ def model_so_far(
     )
 
 
-def export(model: Model, out: Path) -> None:
+def export_model(model: Model, out: Path) -> None:
     """Write a model, whole or not at all. Raises FileError."""
     write_model(model, out)

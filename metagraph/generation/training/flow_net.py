@@ -12,18 +12,18 @@ from metagraph.generation.networks import Control, CvaeSizes, FlowSizes
 States = list[tuple[Tensor, Tensor]]
 
 
-def told(features: Tensor, share: Tensor) -> Tensor:
+def append_lookahead(features: Tensor, share: Tensor) -> Tensor:
     """Return frames `[N, T, inputs + 1]` with the look-ahead `[N]`, 0..1, as one input more."""
     return torch.cat([features, share[:, None, None].expand(-1, features.shape[1], 1)], -1)
 
 
-def masked(features: Tensor, last: Tensor) -> Tensor:
+def mask_features(features: Tensor, last: Tensor) -> Tensor:
     """Return frames `[N, T, inputs]` with those after number `last [N]` at 0."""
     known = torch.arange(features.shape[1])[None] <= last[:, None]
     return features * known[:, :, None]
 
 
-class Convolutions(nn.Module):
+class NetConvolutions(nn.Module):
     """Convolutions over time. padded: the result is as long as what goes in, zeros around it."""
 
     def __init__(self, inputs: int, width: int, dilations: tuple[int, ...], padded: bool) -> None:
@@ -45,14 +45,14 @@ class Convolutions(nn.Module):
 class ControlNet(nn.Module):
     """What a network hears, and the poses before: `.control` and `.past` are beside each other, as named."""
 
-    control: Convolutions
+    control: NetConvolutions
     past: nn.Sequential
 
     def hears(self, control: Control, pose: int) -> None:
         """Make the layers."""
         self.how = control
         if control.kind == "encoder":
-            self.control = Convolutions(control.inputs + 1, control.width, control.dilations, False)
+            self.control = NetConvolutions(control.inputs + 1, control.width, control.dilations, False)
             if control.past:
                 inner = nn.Linear(control.past * pose, control.width)
                 self.past = nn.Sequential(inner, nn.ReLU(), nn.Linear(control.width, control.width))
@@ -64,17 +64,17 @@ class ControlNet(nn.Module):
         """
         how = self.how
         if how.kind == "encoder" and lookahead is None:
-            return self.control(told(frames, torch.ones(len(frames))))[:, ::span]
+            return self.control(append_lookahead(frames, torch.ones(len(frames))))[:, ::span]
         each = frames.unfold(1, how.frames, span).transpose(2, 3)  # [N, T // span, frames, inputs]
         count, length = each.shape[:2]
         flat = each.reshape(count * length, how.frames, how.inputs)
         if lookahead is not None:
             every = lookahead.repeat_interleave(length)
-            flat = masked(flat, how.before + every)
+            flat = mask_features(flat, how.before + every)
         if how.kind == "window":
             return flat.reshape(count, length, -1)
         share = every / how.ahead if how.ahead else torch.ones(len(flat))
-        return self.control(told(flat, share)).reshape(count, length, -1)
+        return self.control(append_lookahead(flat, share)).reshape(count, length, -1)
 
     def context(self, heard: Tensor, past: Tensor) -> Tensor:
         """Return what enters the network. past: `[..., past, X]`."""
@@ -109,7 +109,7 @@ class Invertible(nn.Module):
         return self.p @ left @ right
 
 
-class Step(nn.Module):
+class FlowStep(nn.Module):
     """One step of the flow."""
 
     def __init__(self, sizes: FlowSizes) -> None:
@@ -128,14 +128,14 @@ class Step(nn.Module):
         return shift, torch.sigmoid(scale + 2) + LEAST, after
 
 
-class Flow(nn.Module):
+class FlowSteps(nn.Module):
     def __init__(self, sizes: FlowSizes) -> None:
         super().__init__()
         self.first = sizes.dims // 2
-        self.steps = nn.ModuleList(Step(sizes) for _ in range(sizes.steps))
+        self.steps = nn.ModuleList(FlowStep(sizes) for _ in range(sizes.steps))
 
-    def _each(self) -> list[Step]:
-        return [step for step in self.steps if isinstance(step, Step)]
+    def _each(self) -> list[FlowStep]:
+        return [step for step in self.steps if isinstance(step, FlowStep)]
 
     def forward(self, codes: Tensor, context: Tensor, begin: bool = False) -> tuple[Tensor, Tensor]:
         """Return noise `[N, T, D]` and the logarithm of the determinant `[N, T]`. begin: set actnorm so that
@@ -203,7 +203,7 @@ class FlowNet(ControlNet):
         if sizes.code != "none":
             self.code = Code(sizes.dims, whole if sizes.code == "pca" else None)
         self.hears(sizes.control, sizes.pose)
-        self.flow = Flow(sizes)
+        self.flow = FlowSteps(sizes)
 
     def to_code(self, poses: Tensor) -> Tensor:
         """Return codes as they are before mean and deviation are taken off. poses: `[..., span X]`."""

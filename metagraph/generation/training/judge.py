@@ -19,7 +19,9 @@ LONGEST = 720.0  # seconds that a finished model is judged by
 SEED = 1
 
 
-def judged(model: Model, held: Sequence[Take], seconds: float = SHORT) -> tuple[dict[str, float], Any]:
+def judge_held_out(
+    model: Model, held: Sequence[Take], seconds: float = SHORT
+) -> tuple[dict[str, float], Any]:
     """Return the statistics of motion to the first `seconds` of takes held out, those that could be had, and
     its landmarks SHOWN times a second `[n, 9, 3]`, metres, to look at.
     """
@@ -30,14 +32,14 @@ def judged(model: Model, held: Sequence[Take], seconds: float = SHORT) -> tuple[
             continue
         left -= len(part.poses)
         poses = poses_to(model, part.features, SEED)
-        made.append(statistics.performance(model.rig, poses, part))
-        true.append(statistics.performance(model.rig, part.poses, part))
+        made.append(statistics.make_motion_sample(model.rig, poses, part))
+        true.append(statistics.make_motion_sample(model.rig, part.poses, part))
         if left <= 0:
             break
     if not made:
         return {}, []
     try:
-        found = statistics.measures(made, true)
+        found = statistics.compute_measures(made, true)
     except ValueError:  # too little to compare; the motion can be looked at all the same
         found = {}
     shown = np.round(made[0].landmarks[:: round(FPS / SHOWN)], 3)

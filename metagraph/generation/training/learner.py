@@ -12,7 +12,7 @@ from metagraph.generation.networks import Weights, shapes_of
 from metagraph.generation.takes import Take, scales_of
 from metagraph.generation.train_plan import TrainingPlan
 from metagraph.generation.training.checkpoint import Arrays
-from metagraph.generation.training.data import Corpus, edges_of
+from metagraph.generation.training.data import TrainingCorpus, edges_of
 from metagraph.generation.training.losses import objective_of
 from metagraph.generation.training.nets import net_of, weights_of
 
@@ -31,7 +31,7 @@ class Learner:
     def __init__(self, plan: TrainingPlan, takes: Sequence[Take]) -> None:
         self.plan, self.step = plan, 0
         self.poses, self.audio = scales_of(takes)
-        self.corpus = Corpus(takes, self.poses, self.audio, *edges_of(plan.sizes))
+        self.corpus = TrainingCorpus(takes, self.poses, self.audio, *edges_of(plan.sizes))
         self.chance = torch.Generator().manual_seed(plan.seed)
         torch.manual_seed(plan.seed)
         self.objective = objective_of(net_of(plan.sizes, initial(plan.sizes, plan.seed)), plan.settings)

@@ -15,8 +15,8 @@ from torch.nn import functional
 from metagraph.generation import chunks, vae
 from metagraph.generation.networks import Control, CvaeSizes, MatchingSizes, Sizes
 from metagraph.generation.poses import NUMBERS
-from metagraph.generation.train_plan import Loss, Settings
-from metagraph.generation.training.data import Corpus, stretches
+from metagraph.generation.train_plan import Loss, TrainingSettings
+from metagraph.generation.training.data import TrainingCorpus, take_stretches
 from metagraph.generation.training.flow_net import CvaeNet, FlowNet
 from metagraph.generation.training.matching_net import MatchingNet
 from metagraph.generation.training.nets import Net, load, weights_of
@@ -26,7 +26,7 @@ THIRD = {"paper": 1.0, "whitened": 0.0, "finished": 0.0}
 RUNNING = 0.02  # what a batch adds to the running mean and variance of a code
 
 
-def suited(sizes: Sizes) -> Loss:
+def choose_loss(sizes: Sizes) -> Loss:
     """Return the loss that suits a model's sizes."""
     if isinstance(sizes, MatchingSizes):
         return "matching"
@@ -42,20 +42,20 @@ class Objective(nn.Module, ABC):
 
     net: Net
 
-    def __init__(self, net: Net, width: int, pose: int, settings: Settings) -> None:
+    def __init__(self, net: Net, width: int, pose: int, settings: TrainingSettings) -> None:
         super().__init__()
         self.net, self.settings = net, settings
         self.speeds = nn.Linear(width, pose // NUMBERS)
 
     @abstractmethod
-    def begin(self, corpus: Corpus, chance: torch.Generator) -> None:
+    def begin(self, corpus: TrainingCorpus, chance: torch.Generator) -> None:
         """Compute what is computed of the data."""
 
-    def resume(self, corpus: Corpus) -> None:
+    def resume(self, corpus: TrainingCorpus) -> None:
         """Compute what is not kept, once weights are as they were."""
 
     @abstractmethod
-    def loss(self, corpus: Corpus, chance: torch.Generator) -> tuple[Tensor, dict[str, float]]:
+    def loss(self, corpus: TrainingCorpus, chance: torch.Generator) -> tuple[Tensor, dict[str, float]]:
         """Return what is made small of one batch, and numbers to show."""
 
     def head(self, heard: Tensor, speeds: Tensor) -> Tensor:
@@ -63,7 +63,7 @@ class Objective(nn.Module, ABC):
         return functional.mse_loss(self.speeds(heard), speeds)
 
     def crops(
-        self, corpus: Corpus, control: Control, chance: torch.Generator
+        self, corpus: TrainingCorpus, control: Control, chance: torch.Generator
     ) -> tuple[Tensor, Tensor, Tensor, Tensor | None]:
         """Return starts `[B]` of crops, their poses `[B, T, X]`, what a control hears of them `[B, before + T
         + ahead, inputs]`, and how far ahead each knows `[B]`; None: all do as far as they can.
@@ -91,12 +91,12 @@ class FlowObjective(Objective):
 
     net: FlowNet
 
-    def __init__(self, net: FlowNet, settings: Settings) -> None:
+    def __init__(self, net: FlowNet, settings: TrainingSettings) -> None:
         sizes = net.sizes
         width = sizes.control.width if sizes.control.kind == "encoder" else sizes.control.context(0)
         super().__init__(net, width, sizes.pose, settings)
         self.sizes = sizes
-        self.what: Loss = settings.loss or suited(sizes)
+        self.what: Loss = settings.loss or choose_loss(sizes)
         if self.what not in ALPHA or (self.what == "finished") != (sizes.code != "autoencoder"):
             raise ValueError(f"the loss '{self.what}' is not for a flow on code '{sizes.code}'")
         self.alpha = ALPHA[self.what] if settings.alpha is None else settings.alpha
@@ -104,10 +104,10 @@ class FlowObjective(Objective):
         self.length = settings.frames
         self.deviation = 1.0  # of the code before it is whitened, to be watched
 
-    def begin(self, corpus: Corpus, chance: torch.Generator) -> None:
+    def begin(self, corpus: TrainingCorpus, chance: torch.Generator) -> None:
         self.resume(corpus)
         if self.sizes.code == "pca":
-            parts = vae.principal(stretches(corpus, self.sizes.span), self.sizes.dims, "code")
+            parts = vae.principal(take_stretches(corpus, self.sizes.span), self.sizes.dims, "code")
             load(self.net, weights_of(self.net) | parts)
         with torch.no_grad():
             poses, context, _, _ = self._batch(corpus, chance)
@@ -117,11 +117,11 @@ class FlowObjective(Objective):
                 self.net.code.deviation.copy_(code.std((0, 1)) + 1e-6)
             self.net.flow(self._whitened(code), context, begin=True)
 
-    def resume(self, corpus: Corpus) -> None:
+    def resume(self, corpus: TrainingCorpus) -> None:
         self.length = corpus.longest_crop(self.settings.frames)
         self.length -= self.length % self.sizes.span
 
-    def loss(self, corpus: Corpus, chance: torch.Generator) -> tuple[Tensor, dict[str, float]]:
+    def loss(self, corpus: TrainingCorpus, chance: torch.Generator) -> tuple[Tensor, dict[str, float]]:
         poses, context, heard, starts = self._batch(corpus, chance)
         code = self.net.to_code(poses)
         self.deviation = float(code.detach().std((0, 1)).mean())
@@ -152,7 +152,9 @@ class FlowObjective(Objective):
             told["speeds"] = float(head.detach())
         return out, told | {"loss": float(out.detach())}
 
-    def _batch(self, corpus: Corpus, chance: torch.Generator) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+    def _batch(
+        self, corpus: TrainingCorpus, chance: torch.Generator
+    ) -> tuple[Tensor, Tensor, Tensor, Tensor]:
         """Return spans of poses `[B, n, span X]`, the context `[B, n, C]`, what is heard, and the starts."""
         control, span, batch = self.sizes.control, self.sizes.span, self.settings.batch
         starts, poses, features, ahead = self.crops(corpus, control, chance)
@@ -189,7 +191,7 @@ class CvaeObjective(Objective):
 
     net: CvaeNet
 
-    def __init__(self, net: CvaeNet, settings: Settings) -> None:
+    def __init__(self, net: CvaeNet, settings: TrainingSettings) -> None:
         sizes = net.sizes
         width = sizes.control.width if sizes.control.kind == "encoder" else sizes.control.context(0)
         super().__init__(net, width, sizes.pose, settings)
@@ -197,13 +199,13 @@ class CvaeObjective(Objective):
         self.length = settings.frames
         net.drop.p = 0.2
 
-    def begin(self, corpus: Corpus, chance: torch.Generator) -> None:
+    def begin(self, corpus: TrainingCorpus, chance: torch.Generator) -> None:
         self.resume(corpus)
 
-    def resume(self, corpus: Corpus) -> None:
+    def resume(self, corpus: TrainingCorpus) -> None:
         self.length = corpus.longest_crop(self.settings.frames)
 
-    def loss(self, corpus: Corpus, chance: torch.Generator) -> tuple[Tensor, dict[str, float]]:
+    def loss(self, corpus: TrainingCorpus, chance: torch.Generator) -> tuple[Tensor, dict[str, float]]:
         _, poses, features, ahead = self.crops(corpus, self.sizes.control, chance)
         heard = self.net.heard(features, ahead)
         mean, spread = self.net.encoded(poses, heard)
@@ -221,25 +223,25 @@ class MatchingObjective(Objective):
 
     net: MatchingNet
 
-    def __init__(self, net: MatchingNet, settings: Settings) -> None:
+    def __init__(self, net: MatchingNet, settings: TrainingSettings) -> None:
         super().__init__(net, net.sizes.width, net.sizes.pose, settings)
         self.sizes = net.sizes
         self.length = net.sizes.new * net.sizes.frames
 
-    def begin(self, corpus: Corpus, chance: torch.Generator) -> None:
+    def begin(self, corpus: TrainingCorpus, chance: torch.Generator) -> None:
         sizes = self.sizes
-        parts = vae.principal(stretches(corpus, sizes.frames), sizes.dims, "tokens")
+        parts = vae.principal(take_stretches(corpus, sizes.frames), sizes.dims, "tokens")
         if sizes.around:
             rows = [poses[n:] for poses in corpus.each() for n in range(sizes.frames)]
             told = (
-                (chunks.tokens_of(parts, sizes, r), vae.spans(r, sizes.frames) - parts["tokens.mean"])
+                (chunks.tokens_of(parts, sizes, r), vae.list_spans(r, sizes.frames) - parts["tokens.mean"])
                 for r in rows
             )
-            parts["tokens.joined"] = chunks.joined(told, sizes.around)
+            parts["tokens.joined"] = chunks.join_by_least_squares(told, sizes.around)
         load(self.net, weights_of(self.net) | parts)
         self.resume(corpus)
 
-    def resume(self, corpus: Corpus) -> None:
+    def resume(self, corpus: TrainingCorpus) -> None:
         # Every frame's token once, and what components weigh.
         sizes, kept = self.sizes, self.net.tokens
         rows = corpus.poses.unfold(0, sizes.frames, 1).transpose(1, 2)
@@ -253,7 +255,7 @@ class MatchingObjective(Objective):
             weight = torch.sqrt(kept.deviation)
             self._weight = weight / weight.mean()
 
-    def loss(self, corpus: Corpus, chance: torch.Generator) -> tuple[Tensor, dict[str, float]]:
+    def loss(self, corpus: TrainingCorpus, chance: torch.Generator) -> tuple[Tensor, dict[str, float]]:
         sizes, s, batch, net = self.sizes, self.settings, self.settings.batch, self.net
         frames = sizes.frames
         starts = corpus.starts(chance, batch, self.length, s.turns)
@@ -289,11 +291,11 @@ class MatchingObjective(Objective):
         return out, shown | {"loss": float(out.detach())}
 
 
-def objective_of(net: Net, settings: Settings) -> Objective:
+def objective_of(net: Net, settings: TrainingSettings) -> Objective:
     """Return what a net learns by. Raises ValueError for a loss that is not for it."""
     if isinstance(net, FlowNet):
         return FlowObjective(net, settings)
-    if settings.loss not in (None, suited(net.sizes)):
+    if settings.loss not in (None, choose_loss(net.sizes)):
         raise ValueError(f"the loss '{settings.loss}' is for a flow")
     if isinstance(net, CvaeNet):
         return CvaeObjective(net, settings)

@@ -7,10 +7,10 @@ from torch import Tensor, nn
 from torch.nn import functional
 
 from metagraph.generation.networks import ACTIVITY, MatchingSizes
-from metagraph.generation.training.flow_net import Code, Convolutions, masked, told
+from metagraph.generation.training.flow_net import Code, NetConvolutions, append_lookahead, mask_features
 
 
-class Hearing(Convolutions):
+class HearingNet(NetConvolutions):
     """Convolutions over a chunk's frames, and the layer from a token's frames to one place."""
 
     def __init__(self, sizes: MatchingSizes) -> None:
@@ -18,7 +18,7 @@ class Hearing(Convolutions):
         self.token = nn.Linear(sizes.frames * sizes.width, sizes.hidden)
 
 
-class Block(nn.Module):
+class MatchingBlock(nn.Module):
     def __init__(self, sizes: MatchingSizes) -> None:
         super().__init__()
         wide, self.heads = sizes.hidden, sizes.heads
@@ -55,7 +55,7 @@ class MatchingNet(nn.Module):
         if sizes.around:
             rows = (2 * sizes.around + 1) * sizes.dims
             self.tokens.register_buffer("joined", torch.zeros(rows, sizes.frames * sizes.pose))
-        self.control = Hearing(sizes)
+        self.control = HearingNet(sizes)
         self.embed_past = nn.Linear(sizes.dims, sizes.hidden)
         self.embed_new = nn.Linear(sizes.dims, sizes.hidden)
         self.place = nn.Parameter(torch.zeros(sizes.tokens, sizes.hidden))
@@ -64,7 +64,7 @@ class MatchingNet(nn.Module):
         self.time = nn.Sequential(
             nn.Linear(sizes.time, sizes.time), nn.SiLU(), nn.Linear(sizes.time, sizes.time)
         )
-        self.blocks = nn.ModuleList(Block(sizes) for _ in range(sizes.layers))
+        self.blocks = nn.ModuleList(MatchingBlock(sizes) for _ in range(sizes.layers))
         self.final = Final(sizes)
 
     def frames(self, features: Tensor, lookahead: Tensor, deaf: Tensor) -> Tensor:
@@ -75,8 +75,8 @@ class MatchingNet(nn.Module):
         sizes = self.sizes
         audio = features[..., : sizes.audio] * ~deaf[:, None, None]
         features = torch.cat([audio, features[..., sizes.audio :]], -1)
-        known = masked(features, sizes.past * sizes.frames + lookahead)
-        return self.control(told(known, lookahead / sizes.most))
+        known = mask_features(features, sizes.past * sizes.frames + lookahead)
+        return self.control(append_lookahead(known, lookahead / sizes.most))
 
     def heard(self, frames: Tensor, deaf: Tensor) -> Tensor:
         """Return what is heard of each token `[N, tokens, hidden]`. deaf: `[N]`, who hears nothing."""

@@ -11,11 +11,11 @@ import torch
 
 from metagraph.errors import FileError
 from metagraph.generation.networks import parameters
-from metagraph.generation.standing import Told, share_of
-from metagraph.generation.train_plan import STOP, TrainingPlan, read_plan, read_takes
+from metagraph.generation.standing import CheckpointNote, training_share
+from metagraph.generation.train_plan import STOP, TrainingPlan, read_planned_takes, read_training_plan
 from metagraph.generation.training.checkpoint import Checkpoint, read_checkpoint, write_checkpoint
-from metagraph.generation.training.export import export, model_so_far
-from metagraph.generation.training.judge import LONGEST, SHORT, judged
+from metagraph.generation.training.export import export_model, model_so_far
+from metagraph.generation.training.judge import LONGEST, SHORT, judge_held_out
 from metagraph.generation.training.learner import Learner
 
 Tell = Callable[[Mapping[str, Any]], None]
@@ -38,10 +38,10 @@ class Run:
         deserted: Callable[[], bool] = lambda: False,
     ) -> None:
         self.folder, self.tell, self._stopped, self._deserted = folder, tell, stopped, deserted
-        self.plan: TrainingPlan = read_plan(folder)
+        self.plan: TrainingPlan = read_training_plan(folder)
         if self.plan.threads:
             torch.set_num_threads(self.plan.threads)
-        takes, self.held = read_takes(folder, self.plan)
+        takes, self.held = read_planned_takes(folder, self.plan)
         self.learner = Learner(self.plan, takes)
         self.seconds = self.minutes = 0.0
         self.numbers: dict[str, float] = {}
@@ -57,7 +57,7 @@ class Run:
     @property
     def share(self) -> float:
         """How much of the training is over, 0..1."""
-        return share_of(self.plan, self.learner.step, self.seconds, self.minutes)
+        return training_share(self.plan, self.learner.step, self.seconds, self.minutes)
 
     def go(self) -> Path | None:
         """Learn until it is over or stopped; return the model's file, None where it was deserted: there is
@@ -120,7 +120,7 @@ class Run:
         """
         if self._kept == self.learner.step:
             return
-        told = Told(
+        told = CheckpointNote(
             plan=self.plan.fingerprint(),
             step=self.learner.step,
             seconds=self.seconds,
@@ -137,7 +137,7 @@ class Run:
 
     def judge(self) -> None:
         """Tell the statistics of a short sample, and some of its poses."""
-        found, poses = judged(model_so_far(self.learner), self.held, SHORT)
+        found, poses = judge_held_out(model_so_far(self.learner), self.held, SHORT)
         self.tell(self._told("statistics", statistics=found))
         self.tell(self._told("poses", landmarks=poses))
 
@@ -148,8 +148,8 @@ class Run:
         model = model_so_far(self.learner, notes=notes)
         found: dict[str, float] = {}
         if self.held:
-            found, _ = judged(model, self.held, SHORT if stopped else LONGEST)
+            found, _ = judge_held_out(model, self.held, SHORT if stopped else LONGEST)
         out = Path(self.plan.out)
-        export(model_so_far(self.learner, found, notes), out)
+        export_model(model_so_far(self.learner, found, notes), out)
         self.tell(self._told("end", path=str(out), statistics=found, stopped=stopped))
         return out

@@ -26,7 +26,7 @@ DECAY = (0.1, 0.5)  # of its power a frame: it takes 0.25 to 0.8 s to fall by 60
 WET = 0.6  # of the sound's power, at most
 
 
-def sound_otherwise(mels: Tensor, chance: torch.Generator) -> Tensor:
+def vary_voices(mels: Tensor, chance: torch.Generator) -> Tensor:
     """Return mels `[B, T, 27]`, natural logarithms of power, each crop as if others spoke elsewhere."""
     count = len(mels)
 

@@ -89,7 +89,7 @@ def _beside_stance(project: Project, skeleton: Skeleton) -> Iterator[Problem]:
     height = skeleton.height
     base_r, base_p = skeleton.globals(base)
     stance_r, stance_p = skeleton.globals(stance)
-    roles = anatomy.roles(project)
+    roles = anatomy.project_roles(project)
     feet = [roles[r] for r in ("left_foot", "right_foot", "left_toes", "right_toes") if r in roles]
     lift = float(base_p[feet, 1].min() - stance_p[feet, 1].min()) if feet else 0.0
     if abs(lift) > FLOATS * height:

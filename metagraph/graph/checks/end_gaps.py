@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from metagraph.common.wording import phrase
 from metagraph.graph import anatomy
-from metagraph.graph.expand import ends_in
+from metagraph.graph.expand import find_end_stance
 from metagraph.graph.model import PARTS, Action, MetaGraph, Part, Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.features import pose_distance
@@ -32,7 +32,7 @@ UNHURRIED = 1.0  # metres a second, on average, that the farthest joint may go o
 
 
 @dataclass(frozen=True)
-class Gap:
+class EndGap:
     """edge: of the clip. stance: beside which, by id. metres: of the farthest joint. most: metres that do not
     show, for how long it blends there.
     """
@@ -53,7 +53,7 @@ class Gap:
         return self.blend >= LONG and not self.far
 
 
-def gap_words(gap: Gap, stance: str) -> str:
+def describe_gap(gap: EndGap, stance: str) -> str:
     """Say a gap, in the words of every place that warns of one. stance: its name."""
     far = gap.metres * 100
     if gap.edge == "begins":
@@ -76,13 +76,13 @@ def slow(metres: Array, height: float, blend: float) -> Array:
     return np.asarray((blend >= LONG) & (metres <= hidden(height, blend)))
 
 
-def distances(project: Project, action: Action, times: Array) -> tuple[Array, Array]:
+def distances_to_stance(project: Project, action: Action, times: Array) -> tuple[Array, Array]:
     """Return how far the pose at each of `times` `[F]`, seconds of an action's clip, is from the stance it
     leaves and from the one it enters, metres `[F]`; infinite where that cannot be measured.
     """
     motion = motion_of(project, action)
     graph, out = project.graphs[action.layer], []
-    for stance in (action.stance, ends_in(action)):
+    for stance in (action.stance, find_end_stance(action)):
         loop = next(iter(graph.of(stance, "stance")), None) if stance else None
         target = motion_of(project, loop)
         if motion is None or loop is None or target is None:
@@ -94,7 +94,7 @@ def distances(project: Project, action: Action, times: Array) -> tuple[Array, Ar
     return out[0], out[1]
 
 
-def gaps(project: Project, graph: MetaGraph, action: Action) -> list[Gap]:
+def find_end_gaps(project: Project, graph: MetaGraph, action: Action) -> list[EndGap]:
     """Return the gaps at both ends of an action that is no loop, on the joints its layer moves; those that
     can be measured.
     """
@@ -106,18 +106,18 @@ def gaps(project: Project, graph: MetaGraph, action: Action) -> list[Gap]:
     t, out = action.timing, []
     ends: tuple[tuple[Edge, str | None, float, float], ...] = (
         ("begins", action.stance, start, t.blend_in),
-        ("ends", ends_in(action), end, t.blend_out),
+        ("ends", find_end_stance(action), end, t.blend_out),
     )
     for edge, stance, moment, blend in ends:
         loop = next(iter(graph.of(stance, "stance")), None) if stance else None
         target = motion_of(project, loop)
         if stance is not None and loop is not None and target is not None:
             metres = _gap(ref(motion), moment, ref(target), project.span(loop)[0], joints)
-            out.append(Gap(edge, stance, metres, hidden(height, blend), blend))
+            out.append(EndGap(edge, stance, metres, hidden(height, blend), blend))
     return out
 
 
-def seam(project: Project, graph: MetaGraph, loop: Action) -> Gap | None:
+def measure_seam(project: Project, graph: MetaGraph, loop: Action) -> EndGap | None:
     """Return how far a loop's ends are apart, on the joints its layer moves, against what shows where it is
     not blended; None where that cannot be measured.
     """
@@ -126,7 +126,7 @@ def seam(project: Project, graph: MetaGraph, loop: Action) -> Gap | None:
         return None
     start, end = project.span(loop)
     metres = _gap(ref(motion), start, ref(motion), end, _reached(project, graph, loop))
-    return Gap("ends", loop.stance, metres, OPEN_LOOP * project.skeleton.height / TALL, 0.0)
+    return EndGap("ends", loop.stance, metres, OPEN_LOOP * project.skeleton.height / TALL, 0.0)
 
 
 def motion_of(project: Project, action: Action | None) -> Clip | None:
@@ -137,9 +137,9 @@ def motion_of(project: Project, action: Action | None) -> Clip | None:
 
 
 def _reached(project: Project, graph: MetaGraph, action: Action) -> tuple[int, ...]:
-    moved = anatomy.mask(project, action)
+    moved = anatomy.action_mask(project, action)
     weighty = tuple(part for part in PARTS if part != "face" and graph.weight(part) > 0)
-    reached = _reached_by(project.skeleton, anatomy.parts(project), weighty)
+    reached = _reached_by(project.skeleton, anatomy.project_parts(project), weighty)
     if moved is None:
         return reached
     moves = moved.tolist()

@@ -30,10 +30,10 @@ from metagraph.graph.conversation.model import (
     lists_of,
 )
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.edits import free_name
+from metagraph.graph.edits import find_free_name
 from metagraph.graph.model import Project
-from metagraph.graph.timeline_edits import without_timeline
-from metagraph.graph.vocabulary import joined, kinds_of_words, tokens
+from metagraph.graph.timeline_edits import remove_timeline
+from metagraph.graph.vocabulary import join_tokens, kinds_of_words, split_tokens
 
 _DIGITS = 3  # of seconds: what is dragged lands on milliseconds
 Lists = tuple[tuple[str, ...], tuple[str, ...]]  # responses and hesitations
@@ -47,7 +47,7 @@ def add_conversation(project: Project, conversation: Conversation) -> tuple[Proj
     """Keep a conversation under a name of its own; return the project and the conversation's id."""
     taken = {c.name for c in project.conversations.values()}
     named = msgspec.structs.replace(
-        conversation, name=free_name(_clean(conversation.name) or "Conversation", taken)
+        conversation, name=find_free_name(_clean(conversation.name) or "Conversation", taken)
     )
     ident = ids.new_id(project, "v", msgspec.json.encode(named))
     return replace(project, conversations={**project.conversations, ident: named}), ident
@@ -55,7 +55,7 @@ def add_conversation(project: Project, conversation: Conversation) -> tuple[Proj
 
 def remove_conversation(project: Project, ident: str) -> Project:
     _conversation(project, ident)
-    project = without_timeline(project, ident)
+    project = remove_timeline(project, ident)
     return replace(project, conversations={i: c for i, c in project.conversations.items() if i != ident})
 
 
@@ -120,9 +120,9 @@ def set_word_lists(
 
 def _labelled(segment: Segment, before: Lists, after: Lists) -> Segment:
     """Return a segment as other lists label it, if it is what the lists before said."""
-    if not tokens(segment.text):
+    if not split_tokens(segment.text):
         return segment
-    was, now = kind_of(segment.text, *before), kind_of(segment.text, *after)
+    was, now = kind_of_words(segment.text, *before), kind_of_words(segment.text, *after)
     return msgspec.structs.replace(segment, kind=now) if segment.kind == was != now else segment
 
 
@@ -131,11 +131,11 @@ def set_language(project: Project, language: str) -> Project:
     return replace(project, language=_clean(language) or AUTO)
 
 
-def kind_of(text: str, responses: Collection[str], hesitations: Collection[str]) -> Sound:
+def kind_of_words(text: str, responses: Collection[str], hesitations: Collection[str]) -> Sound:
     """Return what words are by two lists: a hesitation or a response where nothing else is said, else a
     clause. Said of both, it is a response: the partner is answered.
     """
-    words = [tokens(text)]
+    words = [split_tokens(text)]
     answers, pauses, either, _ = kinds_of_words(tuple(responses), tuple(hesitations))
     if not either.made_of(words):
         return "clause"
@@ -242,7 +242,7 @@ def merge_segments(project: Project, ident: str, side: int, first: int, last: in
         raise EditError(phrase("there is no segment after this one to merge it with"))
     kind: Sound = "clause" if any(s.kind == "clause" for s in some) else some[0].kind
     peaks = [s.peak for s in sorted(some, key=lambda s: s.kind != "clause") if s.peak is not None]
-    text = joined(s.text for s in some if s.text)
+    text = join_tokens(s.text for s in some if s.text)
     made = Segment(kind, some[0].start, some[-1].end, peaks[0] if peaks else None, text)
     return _replaced(project, ident, side, first, last + 1, (made,))
 
@@ -327,7 +327,7 @@ def _spoken(kind: Sound) -> None:
 
 def _text(words: Sequence[Word], start: float, end: float) -> str:
     """Return the words whose middles lie in a stretch."""
-    return joined(w.text for w in words if start <= (w.start + w.end) / 2 < end)
+    return join_tokens(w.text for w in words if start <= (w.start + w.end) / 2 < end)
 
 
 def _clean(words: str) -> str:

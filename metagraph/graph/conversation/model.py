@@ -238,7 +238,7 @@ def side_name(conversation: Conversation, side: int) -> str:
     return conversation.sides[side].name or f"Speaker {side + 1}"
 
 
-def heard_by(conversation: Conversation, side: int) -> tuple[Segment, ...]:
+def segments_heard_by(conversation: Conversation, side: int) -> tuple[Segment, ...]:
     """Return what a side moves with, by start and never overlapping: its own clauses and responses, and what
     is left of the others' hesitations where it does not speak itself. Its own hesitations are idle. kind
     "hesitation" here is another's.

@@ -28,7 +28,9 @@ PROPERTIES: Mapping[str, tuple[str, ...]] = {
 FIELDS = ("name", "clip", "kind", "layer", "stance", "end", "limb", "n")
 
 
-def paste(project: Project, source: str, targets: Collection[str], groups: Collection[str]) -> Project:
+def paste_properties(
+    project: Project, source: str, targets: Collection[str], groups: Collection[str]
+) -> Project:
     """Give actions the chosen properties of one. groups: of `PROPERTIES`. Times are cut to each target's
     clip.
 
@@ -150,7 +152,7 @@ def _named(name: str, origin: str) -> str:
     return clean
 
 
-def rename(project: Project, names: Mapping[str, str]) -> Project:
+def rename_actions(project: Project, names: Mapping[str, str]) -> Project:
     """Rename actions by id."""
     return edits.update_each(project, {ident: {"name": name} for ident, name in names.items()})
 

@@ -48,7 +48,7 @@ _REST = {
 _UNSEEN = ("id", "digest", "clip_name", "clip_sha256")  # of no use to a reader
 
 
-def differences(before: Project, after: Project) -> list[str]:
+def describe_differences(before: Project, after: Project) -> list[str]:
     """Return what was done to `before` to make it `after`, one line a thing, in the order of the project
     file.
     """

@@ -38,7 +38,7 @@ def _copy_name(name: str, taken: Collection[str]) -> str:
     return out
 
 
-def reordered(project: Project, actions: Collection[str], before: str | None) -> Project:
+def reorder_actions(project: Project, actions: Collection[str], before: str | None) -> Project:
     """List actions of one node in front of another of it, or at its end for None, in the order they have.
     Which of them plays does not change: that is drawn by their ids.
     """
@@ -54,13 +54,13 @@ def reordered(project: Project, actions: Collection[str], before: str | None) ->
     return _listed(project, node, [*rest[:at], *moving, *rest[at:]])
 
 
-def listed_otherwise(before: Project, after: Project) -> bool:
+def is_listed_differently(before: Project, after: Project) -> bool:
     """Return whether two projects that are equal list their actions in another order."""
     graphs = ((before.graphs[layer].actions, after.graphs[layer].actions) for layer in before.graphs)
     return any(one is not other and list(one) != list(other) for one, other in graphs)
 
 
-def shifted(project: Project, actions: Collection[str], steps: int) -> Project:
+def shift_actions(project: Project, actions: Collection[str], steps: int) -> Project:
     """List actions a place earlier in their nodes (-1) or later (1), as far as there is one; those that stand
     beside each other stay so.
     """

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from metagraph.common.wording import phrase
 from metagraph.graph import anatomy, ids
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.edits import free_name
+from metagraph.graph.edits import find_free_name
 from metagraph.graph.model import Action, Limb, Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.features import pose_distance
@@ -49,7 +49,7 @@ def twin_clips(project: Project, actions: Collection[str]) -> list[TwinClip]:
     )
 
 
-def mirrored_clips(project: Project, clips: Collection[str]) -> list[TwinClip]:
+def mirror_clips(project: Project, clips: Collection[str]) -> list[TwinClip]:
     """Return the mirror images of clips, for the library alone. Raises EditError as `twin_clips` does."""
     if not clips:
         raise EditError(phrase("nothing to mirror"))
@@ -60,7 +60,7 @@ def mirrored_clips(project: Project, clips: Collection[str]) -> list[TwinClip]:
 def _mirrored(project: Project, wanted: Mapping[str, tuple[str, tuple[str, ...]]]) -> list[TwinClip]:
     """wanted: clip -> what it is for, in words, and the actions its mirror image is for."""
     skeleton = project.skeleton
-    pairs = pairs_of(skeleton, anatomy.roles(project)) if skeleton is not None else ()
+    pairs = pairs_of(skeleton, anatomy.project_roles(project)) if skeleton is not None else ()
     taken = {entry.name for entry in project.clips.values()}
     out = []
     for clip, (called, actions) in wanted.items():
@@ -82,7 +82,7 @@ def _mirrored(project: Project, wanted: Mapping[str, tuple[str, tuple[str, ...]]
                     far=100 * distance,
                 )
             )
-        name = free_name(twin_name(entry.name), taken)
+        name = find_free_name(twin_name(entry.name), taken)
         taken.add(name)
         out.append(TwinClip(name, twin.renamed(name), actions))
     return out
@@ -170,7 +170,7 @@ def _joint_twin(project: Project, name: str) -> str:
     skeleton = project.skeleton
     if skeleton is None or name not in skeleton:
         return name
-    twin = pairs_of(skeleton, anatomy.roles(project))[skeleton.index(name)]
+    twin = pairs_of(skeleton, anatomy.project_roles(project))[skeleton.index(name)]
     return skeleton.names[twin] if twin >= 0 else name
 
 

@@ -13,10 +13,10 @@ import msgspec
 from metagraph.common.wording import phrase
 from metagraph.graph import ids
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.edits import free_name
+from metagraph.graph.edits import find_free_name
 from metagraph.graph.model import Project
 from metagraph.graph.requests import LONGEST_NAME, AnyRequest, Line, Performance, Point, RequestError
-from metagraph.graph.timeline_edits import without_timeline
+from metagraph.graph.timeline_edits import remove_timeline
 
 
 def add_performance(project: Project, performance: Performance) -> tuple[Project, str]:
@@ -32,8 +32,8 @@ def add_performance(project: Project, performance: Performance) -> tuple[Project
 
 def _own_name(name: str, taken: Collection[str]) -> str:
     """Return a name nobody has, no longer than one may be with a number behind it."""
-    found = free_name(name, taken)
-    return found if len(found) <= LONGEST_NAME else free_name(name[: LONGEST_NAME - 12].rstrip(), taken)
+    found = find_free_name(name, taken)
+    return found if len(found) <= LONGEST_NAME else find_free_name(name[: LONGEST_NAME - 12].rstrip(), taken)
 
 
 def _numbered(asks: Collection[AnyRequest]) -> tuple[AnyRequest, ...]:
@@ -76,7 +76,7 @@ def change_performance(project: Project, ident: str, **changes: Any) -> Project:
 
 def remove_performance(project: Project, ident: str) -> Project:
     _performance(project, ident)
-    project = without_timeline(project, ident)
+    project = remove_timeline(project, ident)
     return replace(project, performances={i: p for i, p in project.performances.items() if i != ident})
 
 
@@ -136,7 +136,7 @@ def remove_requests(project: Project, performance: str, asks: Collection[str] | 
     )
 
 
-def asked_at(ask: AnyRequest) -> float:
+def ask_time(ask: AnyRequest) -> float:
     """Return when an ask is wanted, seconds: its stroke, else its start; 0 for as soon as can be."""
     stroke = getattr(ask, "stroke", None)
     return float(stroke if stroke is not None else ask.at if ask.at is not None else 0.0)
@@ -163,7 +163,7 @@ def close_up_after(
     project = remove_requests(project, performance, asks)
     shifts: dict[float, list[str]] = {}
     for ask in _performance(project, performance).asks:
-        at = asked_at(ask)
+        at = ask_time(ask)
         by = sum(max(0.0, min(end, at) - start) for start, end in gone)
         if by > 0 and ask.id not in still:
             shifts.setdefault(round(by, 3), []).append(ask.id)
@@ -176,9 +176,9 @@ def following(
     performance: Performance, asks: Collection[str], still: Collection[str] = ()
 ) -> tuple[str, ...]:
     """Return some asks and all that are wanted from the first of them on, but for those that stay `still`."""
-    first = min((asked_at(x) for x in performance.asks if x.id in asks), default=0.0)
+    first = min((ask_time(x) for x in performance.asks if x.id in asks), default=0.0)
     return tuple(
-        x.id for x in performance.asks if x.id in asks or (asked_at(x) >= first and x.id not in still)
+        x.id for x in performance.asks if x.id in asks or (ask_time(x) >= first and x.id not in still)
     )
 
 

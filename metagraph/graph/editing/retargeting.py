@@ -9,10 +9,10 @@ from functools import cached_property
 from metagraph.graph import anatomy
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
-from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint, proposed
+from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint, propose_joint_map
 from metagraph.motion.retarget import retarget
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.motion.standing import standing_pose, stands
+from metagraph.motion.standing import is_standing, standing_pose
 
 
 class Bringing:
@@ -22,13 +22,13 @@ class Bringing:
 
     def __init__(self, project: Project) -> None:
         self.project = project
-        self.roles = anatomy.roles(project)
+        self.roles = anatomy.project_roles(project)
 
     @cached_property
     def pose(self) -> Pose | None:
         """How the project's figure stands, None for its rest pose."""
         skeleton = self.project.skeleton
-        if skeleton is None or stands(skeleton, self.roles):
+        if skeleton is None or is_standing(skeleton, self.roles):
             return None
         own = (e.motion for e in self.project.clips.values() if e.motion is not None and not e.brought_from)
         clip = next((motion for motion in own if motion.skeleton == skeleton), None)
@@ -42,7 +42,7 @@ class Bringing:
         """Raises RetargetError in a project without a skeleton."""
         if self.project.skeleton is None:
             raise RetargetError("a project without clips has no skeleton to bring others onto")
-        return proposed(source, self.project.skeleton, target_roles=self.roles)
+        return propose_joint_map(source, self.project.skeleton, target_roles=self.roles)
 
     def bring(self, clip: Clip, joint_map: JointMap) -> Clip:
         """Return the clip on the project's skeleton. Raises RetargetError."""

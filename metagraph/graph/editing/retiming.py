@@ -15,7 +15,7 @@ from metagraph.graph.edit_error import EditError
 from metagraph.graph.manual.machine import Manual
 from metagraph.graph.model import Action, BasePose, Project, Timing
 from metagraph.motion.clip import Clip
-from metagraph.motion.contact_hold import Contact, nearest_joint
+from metagraph.motion.contact_hold import Contact, find_nearest_joint
 from metagraph.motion.contact_spans import ContactSpan
 from metagraph.motion.retime import SHORTEST, Hold, Retime
 
@@ -93,7 +93,7 @@ def keep_hand(project: Project, clip: str, side: str, first: float, last: float)
     """
     entry = project.clips.get(clip)
     source = source_of(entry) if entry is not None else None
-    roles = anatomy.roles(project)
+    roles = anatomy.project_roles(project)
     limb = [roles.get(f"{side}_{part}") for part in ("upper_arm", "lower_arm", "hand")]
     if entry is None or source is None or source.skeleton != project.skeleton:
         raise EditError(phrase("that clip has no motion of this skeleton: find its file"))
@@ -105,7 +105,7 @@ def keep_hand(project: Project, clip: str, side: str, first: float, last: float)
             )
         )
     upper, lower, hand = (int(j) for j in limb if j is not None)
-    to = nearest_joint(source, hand, _touched(project, side), first)
+    to = find_nearest_joint(source, hand, _touched(project, side), first)
     if to is None or last <= first:
         raise EditError(phrase("there is nothing the hand could stay with"))
     names = source.skeleton.names
@@ -138,17 +138,17 @@ def _nearest(project: Project, source: Clip, contact: Contact, seconds: float) -
     """Return the joint that a kept hand is nearest to at a moment; the present one where its side is not
     known.
     """
-    names, roles = source.skeleton.names, anatomy.roles(project)
+    names, roles = source.skeleton.names, anatomy.project_roles(project)
     for side in ("left", "right") if source.skeleton == project.skeleton else ():
         if (hand := roles.get(f"{side}_hand")) is not None and names[hand] == contact.hand:
-            to = nearest_joint(source, hand, _touched(project, side), seconds)
+            to = find_nearest_joint(source, hand, _touched(project, side), seconds)
             return contact.to if to is None else names[to]
     return contact.to
 
 
 def _touched(project: Project, side: str) -> list[int]:
     """Return the joints a hand of a side may stay with."""
-    roles, other = anatomy.roles(project), "right" if side == "left" else "left"
+    roles, other = anatomy.project_roles(project), "right" if side == "left" else "left"
     return [roles[r] for r in (*BODY, f"{other}_hand", f"{other}_lower_arm") if r in roles]
 
 

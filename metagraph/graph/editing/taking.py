@@ -16,7 +16,7 @@ from metagraph.common.wording import join_phrases, phrase
 from metagraph.graph import ids
 from metagraph.graph.clip_source import source_of, with_source
 from metagraph.graph.editing.retargeting import Bringing
-from metagraph.graph.edits import free_name
+from metagraph.graph.edits import find_free_name
 from metagraph.graph.face.takes import is_face_take
 from metagraph.graph.model import LAYERS, Action, ClipEntry, Kind, Layer, MetaGraph, Project, Stance
 from metagraph.motion.adopt import SkeletonMismatchError, adopt
@@ -33,7 +33,7 @@ _NEW: dict[Kind, str] = {
 
 
 @dataclass(frozen=True)
-class Taken:
+class TakenItem:
     """One thing that is taken, or why it is not. layer: None for a clip. name: in the other project. words:
     what becomes of it here.
     """
@@ -50,7 +50,7 @@ class Taking:
     """project: this one with everything taken. things: what was taken, in the order of the other project."""
 
     project: Project
-    things: tuple[Taken, ...]
+    things: tuple[TakenItem, ...]
 
     def count(self, kind: str, becomes: Collection[Becomes] = ("new", "renamed")) -> int:
         """Return how many things of a kind became that."""
@@ -104,7 +104,7 @@ def take(
     project's; else they are left out.
     """
     clips = _Clips(project, other, retarget)
-    things: list[Taken] = []
+    things: list[TakenItem] = []
     graphs = {layer: _take_layer(project, other, layer, actions, clips, things) for layer in LAYERS}
     if actions is None:
         for ident in other.clips:
@@ -128,7 +128,7 @@ def _take_layer(
     layer: Layer,
     actions: Collection[str] | None,
     clips: _Clips,
-    things: list[Taken],
+    things: list[TakenItem],
 ) -> MetaGraph:
     """Return a layer's graph with what the other project has in that layer; say in `things` what became of
     it.
@@ -145,7 +145,7 @@ def _take_layer(
         places[ident] = known[stance.name]
     added: dict[str, Action | None] = {}
     there = {_same(a): a for a in graph.actions.values()}
-    taken: list[Taken] = []
+    taken: list[TakenItem] = []
     for action in source.actions.values():
         if actions is not None and action.id not in actions and action.stance not in new:
             continue  # a loop that only comes along with a stance that is new
@@ -160,14 +160,14 @@ def _take_layer(
     for ident, stance in source.stances.items():
         if ident not in new:
             things.append(
-                Taken("stance", layer, stance.name, "joined", phrase("joins the stance of that name"))
+                TakenItem("stance", layer, stance.name, "joined", phrase("joins the stance of that name"))
             )
         elif places[ident] in needed or ident in empty:
             stances[places[ident]] = new[ident]
-            things.append(Taken("stance", layer, stance.name, "new", phrase("a new stance")))
+            things.append(TakenItem("stance", layer, stance.name, "new", phrase("a new stance")))
         else:
             words = phrase("none of its actions can be taken")
-            things.append(Taken("stance", layer, stance.name, "left out", words))
+            things.append(TakenItem("stance", layer, stance.name, "left out", words))
     things += taken
     if not graph.stances:
         graph = graph.but(weights=source.weights)
@@ -189,11 +189,11 @@ def _action(
     clips: _Clips,
     there: Mapping[tuple[object, ...], Action],
     added: Mapping[str, Action | None],
-) -> tuple[Taken, Action | None]:
+) -> tuple[TakenItem, Action | None]:
     """Return what becomes of an action, and the action as it is added, None where it is not."""
 
-    def thing(becomes: Becomes, words: str) -> Taken:
-        return Taken("action", None, action.name, becomes, words)
+    def thing(becomes: Becomes, words: str) -> TakenItem:
+        return TakenItem("action", None, action.name, becomes, words)
 
     clip = clips.of(action.clip)
     if clip is None:
@@ -220,7 +220,7 @@ class _Clips:
     retarget: bool
     given: dict[str, str] = field(default_factory=dict)
     lost: dict[str, str] = field(default_factory=dict)  # why a clip is left out
-    things: list[Taken] = field(default_factory=list)
+    things: list[TakenItem] = field(default_factory=list)
     joint_maps: dict[str, JointMap] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -265,15 +265,15 @@ class _Clips:
         if same is not None:
             self.given[ident] = same
             words = phrase("is here already, as '{name}'", name=self.entries[same].name)
-            self.things.append(Taken("clip", None, entry.name, "there", words))
+            self.things.append(TakenItem("clip", None, entry.name, "there", words))
             return same
         try:
             entry = self._fitted(entry)
         except (RetargetError, ClipError, SkeletonMismatchError) as error:
             self.lost[ident] = str(error)
-            self.things.append(Taken("clip", None, entry.name, "left out", str(error)))
+            self.things.append(TakenItem("clip", None, entry.name, "left out", str(error)))
             return None
-        name = free_name(entry.name, self.names)
+        name = find_free_name(entry.name, self.names)
         made = ids.new_id(self.project, "c", entry.path, entry.take, name, more=self.entries)
         self.names.add(name)
         self.entries[made] = replace(entry, id=made, name=name)
@@ -281,10 +281,10 @@ class _Clips:
         self.given[ident] = made
         if name != entry.name:
             self.things.append(
-                Taken("clip", None, entry.name, "renamed", phrase("a new clip named '{name}'", name=name))
+                TakenItem("clip", None, entry.name, "renamed", phrase("a new clip named '{name}'", name=name))
             )
         else:
-            self.things.append(Taken("clip", None, name, "new", phrase("a new clip")))
+            self.things.append(TakenItem("clip", None, name, "new", phrase("a new clip")))
         return made
 
     def _fitted(self, entry: ClipEntry) -> ClipEntry:

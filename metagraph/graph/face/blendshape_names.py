@@ -14,7 +14,7 @@ from typing import Any
 
 from metagraph.graph.face.arkit import ARKIT
 from metagraph.graph.face.expression_presets import PRESETS
-from metagraph.graph.face.names import plain
+from metagraph.graph.face.names import plain_curve_name
 
 TABLE = Path(__file__).with_suffix(".toml")
 _PREFIX = re.compile(
@@ -25,7 +25,7 @@ _SIDES = {"Left": ("left", "l"), "Right": ("right", "r")}
 
 
 @dataclass(frozen=True)
-class Meaning:
+class CurveMeaning:
     """What a curve's name stands for: amounts of ARKit's shapes, and of channels of a face
     (`metagraph.graph.face.rig`); neither for an expression that is no change.
     """
@@ -36,7 +36,7 @@ class Meaning:
 
 def meanings(
     names: Iterable[str], own: Mapping[str, str] | None = None
-) -> tuple[dict[str, Meaning], tuple[str, ...]]:
+) -> tuple[dict[str, CurveMeaning], tuple[str, ...]]:
     """Return what each of a clip's names means, and those that mean nothing to anybody.
 
     own: the user's words for names (`Face.names`): one of ARKit's shapes, any other name of the table, or ""
@@ -45,7 +45,7 @@ def meanings(
     every = tuple(names)
     table, vowels = _table(), _vowels()
     spoken = len({key for name in every for key in _keys(name)} & vowels.keys()) >= 3
-    found: dict[str, Meaning] = {}
+    found: dict[str, CurveMeaning] = {}
     lost: list[str] = []
     for name in every:
         said = (own or {}).get(name)
@@ -54,7 +54,7 @@ def meanings(
         keys = _keys(name if said is None else said)
         key = next((k for k in keys if k in table or (spoken and k in vowels)), None)
         if key is not None and key in vowels:
-            found[name] = Meaning({}, {f"viseme_{vowels[key]}": 1.0})
+            found[name] = CurveMeaning({}, {f"viseme_{vowels[key]}": 1.0})
         elif key is None:
             lost.append(name)
         else:
@@ -62,7 +62,7 @@ def meanings(
     return found, tuple(lost)
 
 
-def shape_of(name: str) -> str | None:
+def match_arkit_shape(name: str) -> str | None:
     """Return the one of ARKit's shapes that a name stands for as a whole, None for none or several."""
     meaning = meanings([name])[0].get(name)
     if meaning is None or meaning.channels or len(meaning.shapes) != 1:
@@ -72,7 +72,7 @@ def shape_of(name: str) -> str | None:
 
 
 def _keys(name: str) -> list[str]:
-    out = [plain(name)]
+    out = [plain_curve_name(name)]
     while (found := _PREFIX.match(out[-1])) and len(out[-1]) > found.end():
         out.append(out[-1][found.end() :])
     return out
@@ -91,12 +91,12 @@ def _vowels() -> dict[str, str]:
 
 
 @cache
-def _table() -> dict[str, Meaning]:
+def _table() -> dict[str, CurveMeaning]:
     """Return plain name -> meaning."""
-    out: dict[str, Meaning] = {}
+    out: dict[str, CurveMeaning] = {}
     data = _data()
     for shape in ARKIT:  # as they stand, before all else
-        out[shape.lower()] = Meaning({shape: 1.0}, {})
+        out[shape.lower()] = CurveMeaning({shape: 1.0}, {})
     words = {"#".join(shape.rsplit("Left", 1)) for shape in ARKIT if shape.endswith("Left")}
     words -= {"jaw#", "mouth#"}
     single = {shape for shape in ARKIT if not shape.endswith(("Left", "Right"))}
@@ -113,15 +113,15 @@ def _table() -> dict[str, Meaning]:
         marks = [*(p + viseme.lower() for p in ("viseme", "vis", "v", "")), *forms]
         for mark in marks:
             if len(mark) > 1:  # a letter alone may be anything
-                out.setdefault(mark, Meaning({}, channels))
+                out.setdefault(mark, CurveMeaning({}, channels))
     for preset, forms in data["expressions"].items():
         channels = dict(PRESETS.get(preset, ()))
         for form in (preset, *forms):
-            out.setdefault(form, Meaning({}, channels))
+            out.setdefault(form, CurveMeaning({}, channels))
     return out
 
 
-def _add(out: dict[str, Meaning], form: str, mix: Mapping[str, float]) -> None:
+def _add(out: dict[str, CurveMeaning], form: str, mix: Mapping[str, float]) -> None:
     """Add a name with both of its sides. A shape in the middle of the face that is named with a side is half
     of it.
     """
@@ -131,9 +131,9 @@ def _add(out: dict[str, Meaning], form: str, mix: Mapping[str, float]) -> None:
         for mark in marks:
             where = form.replace("#", mark) if "#" in form else word + mark
             for key in (where, mark + word if len(mark) > 1 else where):
-                out.setdefault(key, Meaning(sided, {}))
+                out.setdefault(key, CurveMeaning(sided, {}))
     both: dict[str, float] = {}
     for shape, amount in mix.items():
         for name in [shape.replace("#", side) for side in _SIDES] if "#" in shape else [shape]:
             both[name] = amount * (2 if "#" in form and "#" not in shape else 1)
-    out.setdefault(word, Meaning(both, {}))
+    out.setdefault(word, CurveMeaning(both, {}))

@@ -16,7 +16,7 @@ from weakref import WeakKeyDictionary, ref
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.graph.face.blendshape_names import Meaning, meanings, shape_of
+from metagraph.graph.face.blendshape_names import CurveMeaning, match_arkit_shape, meanings
 from metagraph.graph.face.rig import CHANNELS, FaceRig, find_face
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
@@ -55,7 +55,7 @@ class Wearing:
         self.face, self.targets, self.names = face, tuple(targets), dict(names or {})
         self.same: dict[str, str] = {}
         for target in self.targets:
-            shape = shape_of(target)
+            shape = match_arkit_shape(target)
             if shape is not None:
                 self.same.setdefault(shape, target)
         self.by_joints = set(face.joint_channels())
@@ -83,7 +83,7 @@ class Wearing:
                     idle.append(name)
         return out, tuple(n for n in lost if n not in out), tuple(idle)
 
-    def _jointed(self, meaning: Meaning | None) -> bool:
+    def _jointed(self, meaning: CurveMeaning | None) -> bool:
         """Whether joints do what a target of the character's would do again."""
         return meaning is not None and any(
             shape.startswith(("eyeBlink", "eyeWide")) and self._lids(_side(shape)) for shape in meaning.shapes
@@ -92,7 +92,7 @@ class Wearing:
     def _lids(self, side: str) -> bool:
         return f"upper_lid_{side}" in self.by_joints
 
-    def _moved(self, meaning: Meaning) -> Amounts:
+    def _moved(self, meaning: CurveMeaning) -> Amounts:
         out: Amounts = {}
 
         def add(more: Mapping[str, float], amount: float) -> None:
@@ -101,7 +101,7 @@ class Wearing:
                     out[channel] = out.get(channel, 0.0) + amount * share
 
         for shape, amount in meaning.shapes.items():
-            if shape in self.same and not self._jointed(Meaning({shape: amount}, {})):
+            if shape in self.same and not self._jointed(CurveMeaning({shape: amount}, {})):
                 add({f"={self.same[shape]}": 1.0}, amount)
             else:
                 add(self._instead(shape), amount)
@@ -196,7 +196,7 @@ def wearing(project: Project) -> Wearing:
     return made
 
 
-def worn(project: Project, clip: Clip) -> Clip:
+def fit_curves_to_face(project: Project, clip: Clip) -> Clip:
     """Return a clip as the project's face wears it; the same one where it has no curves, or nothing is known
     of the face it is for.
     """
@@ -215,7 +215,7 @@ _wearings: dict[int, tuple[ref[FaceRig], Mapping[str, str], Wearing]] = {}
 _worn: WeakKeyDictionary[Clip, tuple[Wearing, Clip | None]] = WeakKeyDictionary()
 
 
-def curves_told(project: Project, clips: Iterable[Clip]) -> tuple[str, ...]:
+def describe_unused_curves(project: Project, clips: Iterable[Clip]) -> tuple[str, ...]:
     """Return, for the user, which curves of clips the project's face leaves, in words."""
     lost: dict[str, None] = {}
     idle: dict[str, None] = {}

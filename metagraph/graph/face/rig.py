@@ -23,7 +23,7 @@ from metagraph.graph.life import FacePose
 from metagraph.graph.model import ClipEntry, Project
 from metagraph.graph.remembered import Remembered
 from metagraph.motion import rotation
-from metagraph.motion.joint_names import take_apart
+from metagraph.motion.joint_names import split_joint_name
 from metagraph.motion.skeleton import Skeleton
 
 Array = NDArray[Any]
@@ -124,15 +124,15 @@ def find_face(project: Project, morphs: Sequence[str] = ()) -> FaceRig:
     return _found.of(project, tuple(morphs), lambda: _find(project, morphs))
 
 
-def made_of(project: Project) -> tuple[object, ...]:
+def parts_for_face(project: Project) -> tuple[object, ...]:
     """Return the parts of a project that faces and bodies are found in."""
     return project.skeleton, project.roles, project.parts, project.face, project.clips
 
 
-_found: Remembered[FaceRig] = Remembered(made_of)
+_found: Remembered[FaceRig] = Remembered(parts_for_face)
 
 
-def morph_names(project: Project, morphs: Sequence[str] = ()) -> tuple[str, ...]:
+def list_morph_names(project: Project, morphs: Sequence[str] = ()) -> tuple[str, ...]:
     """Return the names of all morph targets that are known of: the character's, else those that clips move
     where no character is drawn.
     """
@@ -157,7 +157,7 @@ def with_morphs(project: Project, names: Iterable[str]) -> Project:
 
 def _find(project: Project, morphs: Sequence[str]) -> FaceRig:
     bound = project.face.channels
-    targets = find_morphs(morph_names(project, morphs), bound)
+    targets = find_morphs(list_morph_names(project, morphs), bound)
     skeleton = project.skeleton
     if skeleton is None:
         return _rig((), {}, [-1] * 4, targets, None)
@@ -188,10 +188,10 @@ class _Reader:
 
     def __init__(self, project: Project, skeleton: Skeleton) -> None:
         self.project, self.skeleton = project, skeleton
-        self.roles = dict(anatomy.roles(project))
+        self.roles = dict(anatomy.project_roles(project))
         self.turned, self.at = skeleton.globals(skeleton.rest)
         self.axes = axes_of(skeleton, self.roles, self.at)
-        self.face = np.array([p == "face" for p in anatomy.parts(project)])
+        self.face = np.array([p == "face" for p in anatomy.project_parts(project)])
         self.bound = project.face.channels
 
     def joint(self, channel: str, role: str) -> int | None:
@@ -204,7 +204,7 @@ class _Reader:
         return self.skeleton.index(name) if name and name in self.skeleton else None
 
     def local(self, joint: int, axis: Array) -> Array:
-        return rotation.rotate(rotation.conjugate(self.turned[joint]), axis)
+        return rotation.rotate_vectors(rotation.conjugate(self.turned[joint]), axis)
 
     def eyes(self) -> tuple[Eye, ...]:
         found = [(side, self.joint(f"eye_{side}", f"{side}_eye")) for side in SIDES]
@@ -225,7 +225,7 @@ class _Reader:
                 continue
             group = [main]
             for j in sorted(below) if channel not in self.bound else ():
-                words = take_apart(self.skeleton.names[j])
+                words = split_joint_name(self.skeleton.names[j])
                 low = bool({"low", "lower", "bottom", "dwn", "down"} & set(words.words))
                 helper = bool({"adj", "adjust", "ctrl", "end"} & set(words.words))
                 if (
@@ -264,9 +264,11 @@ class _Reader:
     def _about(self, joint: int, centre: Array, angle: float) -> tuple[Array, Array]:
         """Return turn and shift of a joint that goes round a centre, about the axis to the left."""
         arm = self.at[joint] - centre
-        moved = rotation.rotate(rotation.from_axis_angle(self.axes[0], angle), arm) - arm
+        moved = rotation.rotate_vectors(rotation.from_axis_angle(self.axes[0], angle), arm) - arm
         parent = int(self.skeleton.parents[joint])
-        shift = moved if parent < 0 else rotation.rotate(rotation.conjugate(self.turned[parent]), moved)
+        shift = (
+            moved if parent < 0 else rotation.rotate_vectors(rotation.conjugate(self.turned[parent]), moved)
+        )
         return angle * self.local(joint, self.axes[0]), shift
 
     def mouth(self) -> dict[str, Shape]:

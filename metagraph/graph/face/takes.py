@@ -35,13 +35,13 @@ def is_face_take(clip: Clip) -> bool:
     return clip.skeleton == FACE_SKELETON
 
 
-def on_body(project: Project, clip: Clip) -> Clip:
+def put_on_body(project: Project, clip: Clip) -> Clip:
     """Return a face's recording on the project's skeleton. Raises RetargetError where it has no head.
 
     Eyes that are joints turn by the recorded angles, and then not by the shapes that say the same.
     """
     skeleton = project.skeleton
-    roles = anatomy.roles(project)
+    roles = anatomy.project_roles(project)
     if skeleton is None or "head" not in roles:
         raise RetargetError("a face alone needs a character with a head: import a clip of its body first")
     base = anatomy.base_pose(project)
@@ -83,9 +83,11 @@ def face_joints(project: Project) -> tuple[str, ...]:
     """Return the names of the joints that a face's recording moves: the head, and all of the face."""
     if project.skeleton is None:
         return ()
-    head = anatomy.roles(project).get("head")
+    head = anatomy.project_roles(project).get("head")
     return tuple(
         name
-        for j, (name, part) in enumerate(zip(project.skeleton.names, anatomy.parts(project), strict=True))
+        for j, (name, part) in enumerate(
+            zip(project.skeleton.names, anatomy.project_parts(project), strict=True)
+        )
         if part == "face" or j == head
     )

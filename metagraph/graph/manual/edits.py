@@ -14,19 +14,19 @@ from typing import Any
 from metagraph.common.wording import phrase
 from metagraph.graph import ids
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.edits import free_name, limb_of
-from metagraph.graph.manual.machine import ANY, Alias, Condition, Link, Manual, State, without
+from metagraph.graph.edits import find_free_name, guess_limb
+from metagraph.graph.manual.machine import ANY, Alias, Condition, Link, Manual, State, remove_from_machine
 from metagraph.graph.model import BasePose, Layer, Project
 
 WIDE, HIGH = 240.0, 96.0  # how far apart states that are dropped together stand, in units of the editor
 
 
-def machine(project: Project, layer: Layer) -> Manual:
+def get_machine(project: Project, layer: Layer) -> Manual:
     """Return a layer's machine, an empty one where it has none yet."""
     return project.manual.get(layer) or Manual(layer)
 
 
-def refusal(project: Project, clips: Sequence[str]) -> str | None:
+def find_state_refusal(project: Project, clips: Sequence[str]) -> str | None:
     """Return in words why clips cannot become states, or None when they can."""
     if not clips:
         return phrase("nothing to place")
@@ -52,15 +52,15 @@ def add_states(
     The first state of the whole project also gives the base pose, as the first stance does (`edits.place`).
     Raises EditError.
     """
-    why = refusal(project, clips)
+    why = find_state_refusal(project, clips)
     if why is not None:
         raise EditError(why)
-    found = machine(project, layer)
+    found = get_machine(project, layer)
     columns = next(n for n in range(1, len(clips) + 1) if n * n >= len(clips))
     taken = {s.name for s in found.states.values()}
     states = dict(found.states)
     for n, clip in enumerate(clips):
-        name = free_name(project.clips[clip].name, taken)
+        name = find_free_name(project.clips[clip].name, taken)
         ident = ids.new_id(project, "m", layer, clip, name, more=states)
         taken.add(name)
         states[ident] = State(
@@ -68,7 +68,7 @@ def add_states(
             clip,
             name,
             layer,
-            limb=limb_of(project.clips[clip].name) if layer == "arms" else "both",
+            limb=guess_limb(project.clips[clip].name) if layer == "arms" else "both",
             x=_whole(x + n % columns * WIDE),
             y=_whole(y + n // columns * HIGH),
         )
@@ -84,7 +84,7 @@ def add_states(
 
 def link_refusal(project: Project, layer: Layer, source: str, target: str) -> str | None:
     """Return in words why a link cannot be drawn, or None when it can."""
-    found = machine(project, layer)
+    found = get_machine(project, layer)
     if target == ANY:
         return phrase("no link can lead to any state: draw it the other way round")
     group = found.aliases.get(target)
@@ -105,7 +105,7 @@ def add_link(project: Project, layer: Layer, source: str, target: str) -> Projec
     why = link_refusal(project, layer, source, target)
     if why is not None:
         raise EditError(why)
-    found = machine(project, layer)
+    found = get_machine(project, layer)
     return project.with_manual(
         replace(found, links={**found.links, **_new(project, found, [(source, target)])})
     )
@@ -121,7 +121,7 @@ def add_links(project: Project, layer: Layer, sources: Sequence[str], targets: S
         for target in targets:
             if (why := link_refusal(project, layer, source, target)) is not None:
                 raise EditError(why)
-    found = machine(project, layer)
+    found = get_machine(project, layer)
     there = {(x.source, x.target) for x in found.links.values()}
     pairs = [(a, b) for a in sources for b in targets if a != b and (a, b) not in there]
     if not pairs:
@@ -135,13 +135,13 @@ def _new(project: Project, found: Manual, pairs: Sequence[tuple[str, str]]) -> d
     for source, target in pairs:
         ident = ids.new_id(project, "l", found.layer, source, target, more=out)
         waits = source == ANY or source in found.aliases
-        condition = Condition("request", name_of(found, target)) if waits else Condition()
+        condition = Condition("request", manual_name(found, target)) if waits else Condition()
         part = 1.0 if source in found.aliases else None
         out[ident] = Link(ident, source, target, condition, exit_part=part)
     return out
 
 
-def name_of(manual: Manual, ident: str) -> str:
+def manual_name(manual: Manual, ident: str) -> str:
     """Return how a state or alias is called, or its id where it is gone."""
     found = manual.states.get(ident) or manual.aliases.get(ident)
     return found.name if found is not None else ident
@@ -181,7 +181,7 @@ def update_links(project: Project, links: Collection[str], **changes: Any) -> Pr
 
 def move_nodes(project: Project, layer: Layer, places: Mapping[str, tuple[float, float]]) -> Project:
     """Put nodes elsewhere: states and aliases by id, and the node for any state as ANY."""
-    found = machine(project, layer)
+    found = get_machine(project, layer)
     if ANY in places:
         found = replace(found, any_x=_whole(places[ANY][0]), any_y=_whole(places[ANY][1]))
     moved = {
@@ -197,7 +197,7 @@ def move_nodes(project: Project, layer: Layer, places: Mapping[str, tuple[float,
     return project.with_manual(replace(found, states=states, aliases=aliases))
 
 
-def set_start(project: Project, state: str) -> Project:
+def set_start_state(project: Project, state: str) -> Project:
     """Let the layer begin in a state. Raises EditError."""
     found = project.state(state)
     if found is None:
@@ -205,14 +205,14 @@ def set_start(project: Project, state: str) -> Project:
     return project.with_manual(replace(project.manual[found.layer], start=state))
 
 
-def remove(project: Project, states: Collection[str] = (), links: Collection[str] = ()) -> Project:
+def remove_states(project: Project, states: Collection[str] = (), links: Collection[str] = ()) -> Project:
     """Remove states and aliases with the links that touch them, and links; clips stay in the library."""
     machines = dict(project.manual)
     for layer, found in project.manual.items():
         if any(i in found.states or i in found.aliases for i in states) or any(
             i in found.links for i in links
         ):
-            machines[layer] = without(found, states, links)
+            machines[layer] = remove_from_machine(found, states, links)
     return (
         replace(project, manual=machines)
         if any(machines[x] is not project.manual[x] for x in machines)
@@ -229,7 +229,7 @@ class CopiedPiece:
     aliases: tuple[Alias, ...] = ()
 
 
-def copied(project: Project, states: Collection[str]) -> CopiedPiece:
+def copy_states(project: Project, states: Collection[str]) -> CopiedPiece:
     """Return states and aliases with the links among them, to be pasted. Their order is the machine's."""
     chosen = [s for m in project.manual.values() for s in m.states.values() if s.id in states]
     aliases = tuple(a for m in project.manual.values() for a in m.aliases.values() if a.id in states)
@@ -243,7 +243,7 @@ def copied(project: Project, states: Collection[str]) -> CopiedPiece:
     return CopiedPiece(tuple(chosen), tuple(links), aliases)
 
 
-def paste(
+def paste_states(
     project: Project, layer: Layer, piece: CopiedPiece, x: float, y: float
 ) -> tuple[Project, tuple[str, ...]]:
     """Return the project with copies of states and aliases and of the links among them, and the copies' ids.
@@ -255,16 +255,16 @@ def paste(
     nodes: list[State | Alias] = [*piece.states, *piece.aliases]
     if not nodes:
         return project, ()
-    why = refusal(project, [s.clip for s in piece.states]) if piece.states else None
+    why = find_state_refusal(project, [s.clip for s in piece.states]) if piece.states else None
     if why is not None:
         raise EditError(why)
-    found = machine(project, layer)
+    found = get_machine(project, layer)
     left, top = min(s.x for s in nodes), min(s.y for s in nodes)
     states, links = dict(found.states), dict(found.links)
     taken = {s.name for s in states.values()}
     made: dict[str, str] = {}
     for state in piece.states:
-        name = free_name(state.name, taken)
+        name = find_free_name(state.name, taken)
         ident = made[state.id] = ids.new_id(project, "m", layer, state.clip, name, more=states)
         taken.add(name)
         states[ident] = replace(
@@ -279,7 +279,7 @@ def paste(
         aliases[ident] = replace(
             alias,
             id=ident,
-            name=free_name(alias.name, called),
+            name=find_free_name(alias.name, called),
             layer=layer,
             states=members,
             entry=entry if entry in states else None,

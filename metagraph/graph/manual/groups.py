@@ -13,8 +13,8 @@ from typing import Any
 from metagraph.common.wording import phrase
 from metagraph.graph import ids
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.edits import free_name
-from metagraph.graph.manual.edits import HIGH, WIDE, machine, name_of
+from metagraph.graph.edits import find_free_name
+from metagraph.graph.manual.edits import HIGH, WIDE, get_machine, manual_name
 from metagraph.graph.manual.machine import Alias, Link, Manual
 from metagraph.graph.model import Layer, Project
 
@@ -23,14 +23,14 @@ def add_alias(project: Project, layer: Layer, states: Sequence[str], every: bool
     """Make an alias that stands for some states, or for every one, left of them and called by what their
     names share. Raises EditError where there is no state.
     """
-    found = machine(project, layer)
+    found = get_machine(project, layer)
     chosen = tuple(i for i in found.states if i in states)
     if not chosen and not (every and found.states):
         raise EditError(phrase("select the states the alias is to stand for"))
     mine = [found.states[i] for i in chosen or found.states]
     taken = {a.name for a in found.aliases.values()}
-    name = "every state" if every else shared_words([s.name for s in mine]) or "alias"
-    name = free_name(name, taken)
+    name = "every state" if every else find_shared_words([s.name for s in mine]) or "alias"
+    name = find_free_name(name, taken)
     ident = ids.new_id(project, "g", layer, name, *chosen)
     alias = Alias(
         ident,
@@ -47,7 +47,7 @@ def add_alias(project: Project, layer: Layer, states: Sequence[str], every: bool
     return project.with_manual(after)
 
 
-def shared_words(names: Sequence[str]) -> str:
+def find_shared_words(names: Sequence[str]) -> str:
     """Return the words that all names begin with, or where there are none, those that most begin with; "" for
     none.
     """
@@ -78,7 +78,7 @@ def update_aliases(project: Project, aliases: Collection[str], **changes: Any) -
     return replace(project, manual=machines) if machines != dict(project.manual) else project
 
 
-def choose(project: Project, alias: str, states: Collection[str], on: bool = True) -> Project:
+def set_alias_states(project: Project, alias: str, states: Collection[str], on: bool = True) -> Project:
     """Let an alias stand for some states as well, or no longer."""
     found = project.alias(alias)
     if found is None:
@@ -92,19 +92,21 @@ def choose(project: Project, alias: str, states: Collection[str], on: bool = Tru
 # --- links of some states given to others
 
 
-def links_of(manual: Manual, states: Collection[str], into: bool = False) -> tuple[str, ...]:
+def find_links(manual: Manual, states: Collection[str], into: bool = False) -> tuple[str, ...]:
     """Return the links that leave some states or aliases, or lead to them."""
     return tuple(x.id for x in manual.links.values() if (x.target if into else x.source) in states)
 
 
-def paste_links(project: Project, layer: Layer, links: Sequence[Link], nodes: Sequence[str]) -> Project:
+def paste_copied_links(
+    project: Project, layer: Layer, links: Sequence[Link], nodes: Sequence[str]
+) -> Project:
     """Draw copied links anew for other states or aliases, with all their settings: those that left one state
     leave each of these, those that led to one lead to each of these.
 
     What the links share tells which: their source, or where they have several, their target. Raises EditError
     where neither is shared, or nothing is left to draw.
     """
-    found = machine(project, layer)
+    found = get_machine(project, layer)
     sources, targets = Counter(x.source for x in links), Counter(x.target for x in links)
     if len(sources) > 1 and len(targets) > 1:
         raise EditError(phrase("copy links that leave one state, or that lead to one"))
@@ -114,7 +116,7 @@ def paste_links(project: Project, layer: Layer, links: Sequence[Link], nodes: Se
         for link in links:
             one = replace(link, source=node) if len(sources) == 1 else replace(link, target=node)
             if one.condition.when == "request" and len(sources) > 1:
-                one = replace(one, condition=replace(one.condition, trigger=name_of(found, node)))
+                one = replace(one, condition=replace(one.condition, trigger=manual_name(found, node)))
             known = found.states.keys() | found.aliases.keys()
             joins = one.target in known and one.source != one.target and found.end(one) is not None
             if joins and (one.source, one.target) not in there:

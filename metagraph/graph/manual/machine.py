@@ -223,7 +223,7 @@ def links_expanded(manual: Manual) -> frozenset[tuple[str, str]]:
     return frozenset(manual.ways)
 
 
-def without(manual: Manual, states: Collection[str] = (), links: Collection[str] = ()) -> Manual:
+def remove_from_machine(manual: Manual, states: Collection[str] = (), links: Collection[str] = ()) -> Manual:
     """Return the machine without some states and aliases, the links that touch them, and some links."""
     gone = set(states)
     left = {i: s for i, s in manual.states.items() if i not in gone}
@@ -244,9 +244,11 @@ def _alias_without(alias: Alias, gone: Collection[str]) -> Alias:
     return replace(alias, states=tuple(s for s in alias.states if s not in gone), entry=entry)
 
 
-def without_clips(manuals: Mapping[Layer, Manual], clips: Collection[str]) -> Mapping[Layer, Manual]:
+def remove_clips_from_machines(
+    manuals: Mapping[Layer, Manual], clips: Collection[str]
+) -> Mapping[Layer, Manual]:
     """Return the machines without the states that use some clips; the same object where there are none."""
     gone = {layer: [s.id for s in m.states.values() if s.clip in clips] for layer, m in manuals.items()}
     if not any(gone.values()):
         return manuals
-    return {layer: without(m, gone[layer]) for layer, m in manuals.items()}
+    return {layer: remove_from_machine(m, gone[layer]) for layer, m in manuals.items()}

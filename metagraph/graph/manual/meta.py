@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 from metagraph.graph import ids
-from metagraph.graph.expand import connections
+from metagraph.graph.expand import list_connections
 from metagraph.graph.manual.machine import ANY, Link, Manual, State, links_expanded
 from metagraph.graph.manual.timing import exit_moment
 from metagraph.graph.model import Action, Kind, MetaGraph, Project, Stance, Timing
@@ -35,14 +35,14 @@ def as_meta(project: Project) -> tuple[Project, Pairs, Pairs]:
             continue
         graph, names = _graph(out, manual)
         out = out.with_graph(graph)
-        implied = {(names[c.source], names[c.target]) for c in connections(out, graph)}
+        implied = {(names[c.source], names[c.target]) for c in list_connections(out, graph)}
         drawn = links_expanded(manual)
         missing |= implied - drawn
         extra |= drawn - implied
     return out, frozenset(missing), frozenset(extra)
 
 
-def differences(project: Project) -> list[str]:
+def describe_meta_differences(project: Project) -> list[str]:
     """Say in words how the meta-graph differs from the manual machines it is made of; nothing where it does
     not.
     """
@@ -259,7 +259,7 @@ def _likelihood(manual: Manual, state: State, kind: Kind) -> float:
     return weights[0] if weights and kind == "fidget" else 1.0
 
 
-def only_manual(project: Project) -> bool:
+def is_only_manual(project: Project) -> bool:
     """Whether all that a project plays was drawn by hand."""
     return any(m.states for m in project.manual.values()) and not any(True for _ in project.actions())
 
@@ -270,6 +270,6 @@ def exportable(project: Project, manual: bool | None = None) -> tuple[Project, l
     manual: its manual machines, as what they amount to, rather than its meta-graph; None for where there is
     nothing else.
     """
-    if only_manual(project) if manual is None else manual:
-        return as_meta(project)[0], differences(project)
+    if is_only_manual(project) if manual is None else manual:
+        return as_meta(project)[0], describe_meta_differences(project)
     return replace(project, manual={}) if project.manual else project, []

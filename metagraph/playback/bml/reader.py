@@ -17,12 +17,12 @@ import msgspec
 
 from metagraph.graph import requests as a
 from metagraph.graph.model import Project
-from metagraph.playback.bml.times import Behaviour, Timing, seconds_of
-from metagraph.playback.bml.words import SYNCS, BmlWords, spelled
+from metagraph.playback.bml.times import Behaviour, BlockTiming, parse_seconds
+from metagraph.playback.bml.words import SYNCS, BmlWords, spell_word
 from metagraph.playback.bml.writer import write_bml
-from metagraph.playback.bml.xml import Element, parse
+from metagraph.playback.bml.xml import Element, parse_bml
 
-__all__ = ["Block", "read_block", "read_bml", "write_bml"]
+__all__ = ["BmlBlock", "read_block", "read_bml", "write_bml"]
 
 MOST = 500  # behaviours of one block
 Composition = Literal["merge", "append", "replace"]
@@ -40,7 +40,7 @@ NOT_READ = {
 
 
 @dataclass(frozen=True)
-class Block:
+class BmlBlock:
     """What a block says. asks: `at` None for the block's beginning; ids are the behaviours' own, "" without.
     notes: what was left out or guessed, with its line. composition: "replace" has withdrawn all else with its
     first ask.
@@ -61,16 +61,16 @@ def read_bml(
     return read_block(text, at, priority, project).asks
 
 
-def read_block(text: str, at: float = 0.0, priority: int = 1, project: Project | None = None) -> Block:
+def read_block(text: str, at: float = 0.0, priority: int = 1, project: Project | None = None) -> BmlBlock:
     """Return a block with what there is to say about it. project: whose tags, names and clips lexemes and
     lengths are taken from.
     """
-    root = parse(text)
+    root = parse_bml(text)
     if root.name.lower() == "act":
         root = next((e for e in root if e.name.lower() == "bml"), root)
     if root.name.lower() != "bml":
         raise a.RequestError(f"{root.place}: the first element must be <bml>")
-    word = spelled(root.get("composition") or "merge").replace("appendafter", "append")
+    word = spell_word(root.get("composition") or "merge").replace("appendafter", "append")
     if word not in ("merge", "append", "replace"):
         raise a.RequestError(
             f"{root.place}: composition is MERGE, APPEND or REPLACE, not '{root.get('composition')}'"
@@ -84,7 +84,7 @@ def read_block(text: str, at: float = 0.0, priority: int = 1, project: Project |
             f"{root.place}: too many behaviours wait for one another; give some of them times in seconds"
         ) from None
     first: tuple[a.AnyRequest, ...] = (a.Withdraw(),) if word == "replace" else ()
-    return Block(first + asks, tuple(reader.notes), root.get("id"), word)  # type: ignore[arg-type]
+    return BmlBlock(first + asks, tuple(reader.notes), root.get("id"), word)  # type: ignore[arg-type]
 
 
 # An element's asks, and its sync points' seconds after its start; None for as its clip has.
@@ -94,7 +94,7 @@ _Read = tuple[list[Any], dict[str, float] | None]
 class _Reader:
     def __init__(self, words: BmlWords, at: float, priority: int) -> None:
         self.words, self.priority = words, priority
-        self.timing = Timing(at, self._note, words.offsets)
+        self.timing = BlockTiming(at, self._note, words.offsets)
         self.notes: list[str] = []
 
     # --- elements
@@ -121,7 +121,7 @@ class _Reader:
         times = {
             sync: value
             for name, value in element.attributes.items()
-            if (sync := spelled(name)) in SYNCS and value.strip()
+            if (sync := spell_word(name)) in SYNCS and value.strip()
         }
         if len(self.timing.behaviours) >= MOST:
             raise a.RequestError(f"{element.place}: a block has at most {MOST} behaviours; send several")
@@ -152,7 +152,7 @@ class _Reader:
             case "speech":
                 return self._speech(e, common)
             case "face" | "facelexeme" | "faceshift":
-                if spelled(e.get("lexeme", "type")) in BLINKS or spelled(e.get("lexeme")) in BLINKS:
+                if spell_word(e.get("lexeme", "type")) in BLINKS or spell_word(e.get("lexeme")) in BLINKS:
                     return [a.Blink(**common)], {"attackpeak": 0.07, "end": 0.17}
                 self._note(e, "is left out; of the face only BLINK is asked for this way")
                 return [], {}
@@ -190,11 +190,11 @@ class _Reader:
         self, kind: str, e: Element, tags: tuple[str, ...] | None, common: dict[str, Any]
     ) -> a.Gesture | a.Play:
         layer: Any = e.get("metagraph:layer")
-        lexeme = e.get("lexeme") or ("" if spelled(e.get("type")) == "lexeme" else e.get("type"))
+        lexeme = e.get("lexeme") or ("" if spell_word(e.get("type")) == "lexeme" else e.get("type"))
         if kind == "pointing":
             lexeme = lexeme or "point"
             self._note(e, "is a pointing gesture as it was made; it does not aim at its target")
-        hand = spelled(e.get("mode", "hand")).removesuffix("s").removesuffix("hand")
+        hand = spell_word(e.get("mode", "hand")).removesuffix("s").removesuffix("hand")
         if e.get("name") and not lexeme:
             return a.Play(action=self.words.action(e.get("name"), layer), layer=layer or None, **common)
         limb = hand if hand in ("left", "right", "both") else None
@@ -202,7 +202,7 @@ class _Reader:
         return self._gesture(tags, lexeme, layer, common | more)
 
     def _gaze(self, e: Element, common: dict[str, Any]) -> a.Look:
-        amount = INFLUENCE.get(spelled(e.get("influence")), 1.0)
+        amount = INFLUENCE.get(spell_word(e.get("influence")), 1.0)
         if e.get("offsetangle") not in ("", "0", "0.0"):
             self._note(e, "looks straight at its target, without the offset")
         strict = e.get("metagraph:strict") == "true"
@@ -223,7 +223,7 @@ class _Reader:
         lexeme = e.get("lexeme", "type")
         if e.get("repetition", "repeats") not in ("", "1", "1.0"):
             self._note(e, "nods and shakes as often as its clip; the repetition is left out")
-        match spelled(lexeme):
+        match spell_word(lexeme):
             case "nod":
                 return [a.Nod(tags=tags or (), **common)], None
             case "shake":
@@ -267,7 +267,7 @@ class _Reader:
                 pieces.append(piece)
                 length += len(" ".join(piece.split())) + 1
             elif piece.get("id", "name"):
-                marks[spelled(piece.get("id", "name"))] = float(length)
+                marks[spell_word(piece.get("id", "name"))] = float(length)
         text = "".join(pieces) if keep else " ".join("".join(pieces).split())
         line = e.get("metagraph:line", "ref") or self.words.line(e.get("id"))
         if not line and not text:
@@ -287,7 +287,7 @@ class _Reader:
         text = e.get(name)
         if not text:
             return default
-        value = seconds_of(text)
+        value = parse_seconds(text)
         if value is None:
             raise a.RequestError(f"{e.place}: {name} is a number, not '{text}'")
         return value
@@ -300,14 +300,14 @@ class _Reader:
         word = e.get("metagraph:mood") or (e.get("mood") if e.name.lower() == "metagraph:mood" else "")
         own: dict[str, Any] = {}
         if word:
-            values = [seconds_of(x) for x in word.replace(",", " ").split()]
+            values = [parse_seconds(x) for x in word.replace(",", " ").split()]
             own["mood"] = word if None in values else values
         if e.get("metagraph:intensity"):
             own["intensity"] = self._number(e, "metagraph:intensity", 1.0)
         try:
             read = msgspec.convert(own, a.Feel)
         except msgspec.ValidationError as error:
-            raise a.RequestError(f"{e.place}: {a.words_of(error)}") from None
+            raise a.RequestError(f"{e.place}: {a.explain_invalid_ask(error)}") from None
         return {name: getattr(read, name) for name in own}
 
     def _tags(self, e: Element) -> tuple[str, ...] | None:
@@ -322,7 +322,7 @@ class _Reader:
             ) from None
 
     def _point(self, e: Element, text: str) -> tuple[float, ...]:
-        values = [seconds_of(x) for x in text.replace(",", " ").split()]
+        values = [parse_seconds(x) for x in text.replace(",", " ").split()]
         if len(values) != 3 or any(v is None for v in values):
             raise a.RequestError(f"{e.place}: a point is three numbers, metres, not '{text}'")
         return tuple(v for v in values if v is not None)

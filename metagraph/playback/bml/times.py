@@ -11,7 +11,7 @@ from typing import Any
 import msgspec
 
 from metagraph.graph import requests as a
-from metagraph.playback.bml.words import SYNCS, spelled
+from metagraph.playback.bml.words import SYNCS, spell_word
 from metagraph.playback.bml.xml import Element
 
 LONGEST = 250  # characters of a time
@@ -34,7 +34,7 @@ class Behaviour:
 
 
 @dataclass
-class Timing:
+class BlockTiming:
     """Works out all times of a block that begins at `at` seconds. note: takes an element and what to say of
     it. lengths: gives the sync points of what an ask may get.
     """
@@ -152,7 +152,7 @@ class Timing:
         return found is not None and found[0] in ("this", b.ident)
 
     def _said(self, b: Behaviour, sync: str, text: str) -> float:
-        value = seconds_of(text)
+        value = parse_seconds(text)
         if value is not None:
             return self.at + value
         found = reference(text)
@@ -214,7 +214,7 @@ REFERENCE = re.compile(
 )
 
 
-def seconds_of(text: str) -> float | None:
+def parse_seconds(text: str) -> float | None:
     found = SECONDS.fullmatch(text.strip()) if len(text) <= LONGEST else None
     if found is None:
         return None
@@ -227,11 +227,11 @@ def reference(text: str) -> tuple[str, str, float] | None:
     of any other.
     """
     found = REFERENCE.fullmatch(text.strip()) if len(text) <= LONGEST else None
-    if found is None or seconds_of(text) is not None:
+    if found is None or parse_seconds(text) is not None:
         return None
-    offset = seconds_of(re.sub(r"\s", "", found[4])) if found[4] else 0.0
+    offset = parse_seconds(re.sub(r"\s", "", found[4])) if found[4] else 0.0
     if offset is None:
         return None
     if found[2] is not None:
-        return f"{found[1]}:{found[2]}", spelled(found[3]), offset
-    return found[1].strip(), spelled(found[3]), offset
+        return f"{found[1]}:{found[2]}", spell_word(found[3]), offset
+    return found[1].strip(), spell_word(found[3]), offset

@@ -10,7 +10,7 @@ from weakref import ref
 
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Action, Layer, Project
-from metagraph.playback.planning.line_lengths import spoken_seconds
+from metagraph.playback.planning.line_lengths import find_spoken_seconds
 
 SYNCS = ("start", "ready", "strokestart", "stroke", "strokeend", "relax", "end", "attackpeak")
 GUESSED = {
@@ -31,7 +31,7 @@ PARTS: Mapping[str, Layer] = {
 }  # fmt: skip
 
 
-def spelled(text: str) -> str:
+def spell_word(text: str) -> str:
     """Return a word as it is compared: lower case, letters and digits alone."""
     return "".join(c for c in text.lower() if c.isalnum())
 
@@ -51,11 +51,11 @@ class Index:
         for layer in LAYERS:
             tags, called = self.tags.setdefault(layer, {}), self.called.setdefault(layer, {})
             for action in project.graphs[layer].actions.values():
-                self.names.setdefault(spelled(action.name), []).append(action)
+                self.names.setdefault(spell_word(action.name), []).append(action)
                 for word in {action.id, action.name}:
                     self.actions.setdefault(word, []).append(action)
                 if action.kind == "gesture":
-                    tags.update((spelled(tag), tag) for tag in action.tags)
+                    tags.update((spell_word(tag), tag) for tag in action.tags)
                     for word in _beginnings(action.name):
                         called.setdefault(word, []).append(action)
 
@@ -85,15 +85,17 @@ class BmlWords:
         """Return what asks for a gesture with these tags, or called so; arms first, where no layer is
         said.
         """
-        wanted, index = {spelled(w) for w in words} - {""}, self.index
+        wanted, index = {spell_word(w) for w in words} - {""}, self.index
         if not wanted or index is None:
             return a.Gesture(layer=layer or "arms", tags=tuple(words), **fields)  # type: ignore[arg-type]
         order: tuple[Layer, ...] = ("arms", "head", "body")
         for each in (x for x in order if layer in ("", x)):
             tags = index.tags[each]
             if wanted <= tags.keys():
-                return a.Gesture(layer=each, tags=tuple(tags[w] for w in map(spelled, words) if w), **fields)
-            found = index.called[each].get("".join(map(spelled, words)))
+                return a.Gesture(
+                    layer=each, tags=tuple(tags[w] for w in map(spell_word, words) if w), **fields
+                )
+            found = index.called[each].get("".join(map(spell_word, words)))
             if found:
                 # The likeliest one; of equals that of the stance the layer starts in.
                 start, limb = index.starts[each], fields.get("limb")
@@ -105,18 +107,20 @@ class BmlWords:
         """Return an action's name as the project writes it."""
         if self.index is None or any(layer in ("", x.layer) for x in self.index.actions.get(name, ())):
             return name
-        return next((x.name for x in self.index.names.get(spelled(name), ()) if layer in ("", x.layer)), name)
+        return next(
+            (x.name for x in self.index.names.get(spell_word(name), ()) if layer in ("", x.layer)), name
+        )
 
     def stance(self, part: str, word: str, layer: str) -> tuple[str, str]:
         """Return layer ("" for any) and stance of a posture: `part` ARMS and `word` CROSSED find "arms
         crossed".
         """
-        layer = layer or PARTS.get(spelled(part), "")
+        layer = layer or PARTS.get(spell_word(part), "")
         if self.index is not None:
             stances = [s for s in self.index.stances if layer in ("", s.layer)]
             if not any(word in (s.id, s.name) for s in stances):
-                ways = (spelled(word), spelled(part + word), spelled(word + part))
-                found = next((s for s in stances if spelled(s.name) in ways), None)
+                ways = (spell_word(word), spell_word(part + word), spell_word(word + part))
+                found = next((s for s in stances if spell_word(s.name) in ways), None)
                 return (found.layer, found.name) if found is not None else (layer, word)
         return layer, word
 
@@ -129,7 +133,9 @@ class BmlWords:
         if self.project is None:
             return len(text) / SPOKEN if text else UNSAID
         known = self.project.lines.get(line)
-        return spoken_seconds(self.project, line or None, text or (known.text if known is not None else ""))
+        return find_spoken_seconds(
+            self.project, line or None, text or (known.text if known is not None else "")
+        )
 
     def offsets(self, ask: a.Gesture | a.Fidget | a.Play | a.Nod | a.Shake) -> dict[str, float]:
         """Return the sync points of the likeliest action an ask may get; seconds after its start."""
@@ -171,4 +177,4 @@ class BmlWords:
 def _beginnings(name: str) -> set[str]:
     """Return what a name may be called: `shrug_bt_01` is shrug, shrug bt, and all of it."""
     pieces = name.replace("-", "_").replace(" ", "_").split("_")
-    return {spelled(name), *(spelled("".join(pieces[:n])) for n in range(1, len(pieces)))} - {""}
+    return {spell_word(name), *(spell_word("".join(pieces[:n])) for n in range(1, len(pieces)))} - {""}

@@ -39,7 +39,7 @@ class Element:
         return f"line {self.line}, <{self.name}>"
 
 
-def parse(text: str) -> Element:
+def parse_bml(text: str) -> Element:
     """Return the root element. Raises RequestError with line, cause and remedy."""
     parser = expat.ParserCreate("utf-8")
     stack: list[Element] = []

@@ -33,7 +33,7 @@ COVERED = (
 
 
 @dataclass(frozen=True, slots=True)
-class Interval:
+class AnnotationInterval:
     """start, end: seconds, start < end."""
 
     start: float
@@ -42,13 +42,13 @@ class Interval:
 
 
 @dataclass(frozen=True)
-class Tier:
+class AnnotationTier:
     """intervals: ascending by start. participant: whose tier it is, "" where the file does not say. parent:
     the tier it refers to.
     """
 
     name: str
-    intervals: tuple[Interval, ...] = ()
+    intervals: tuple[AnnotationInterval, ...] = ()
     participant: str = ""
     parent: str = ""
 
@@ -69,7 +69,7 @@ class Annotation:
     was left out.
     """
 
-    tiers: tuple[Tier, ...] = ()
+    tiers: tuple[AnnotationTier, ...] = ()
     media: tuple[str, ...] = ()
     vocabularies: Mapping[str, tuple[str, ...]] | None = None
     notes: tuple[str, ...] = ()
@@ -119,7 +119,7 @@ _SPOKEN = _set("speech utterance utterances")
 _SIDES = _set("lh rh linkehand rechtehand left right links rechts")  # enough without a word for hand
 
 
-def guess_role(tier: Tier) -> str:
+def guess_role(tier: AnnotationTier) -> str:
     """Return one of `ROLES` or `IGNORE`, from the tier's name or, where it says nothing, from its labels."""
     words = set(_words(tier.name.partition("@")[0]))
     if words & _ELSE:
@@ -159,7 +159,7 @@ def guess_roles(annotation: Annotation, *remembered: Mapping[str, str]) -> dict[
         if (said[tier.name] or guessed[tier.name]) != IGNORE:
             people[tier.whose] += len(tier.intervals) or 0
     who = people.most_common(1)[0][0] if people else ""
-    best: dict[str, Tier] = {}
+    best: dict[str, AnnotationTier] = {}
     for tier in annotation.tiers:
         spoken = set(_words(tier.name.partition("@")[0])) & _SPOKEN
         if people and said[tier.name] is None and spoken and tier.intervals:
@@ -178,7 +178,7 @@ def guess_roles(annotation: Annotation, *remembered: Mapping[str, str]) -> dict[
     return out
 
 
-def _clarity(tier: Tier) -> tuple[bool, float]:
+def _clarity(tier: AnnotationTier) -> tuple[bool, float]:
     """Return how well a tier's labels say what was done: gestures as a whole come before their phases."""
     total = sum(tier.labels.values())
     known = [(_known(label), count) for label, count in tier.labels.items()]
@@ -284,7 +284,7 @@ def labels(
         role = roles.get(tier.name, IGNORE)
         if role not in ROLES:
             continue
-        layer, stance = ROLES[role][0], role in STANCES and covers(tier)
+        layer, stance = ROLES[role][0], role in STANCES and is_covering(tier)
         for text, count in tier.labels.items():
             found[layer, text] = found.get((layer, text), 0) + count
             guess.setdefault((layer, text), guess_meaning(text, role, stance))
@@ -302,7 +302,7 @@ def labels(
 LAYER_ORDER: Sequence[Layer] = ("arms", "head", "body")
 
 
-def covers(tier: Tier) -> bool:
+def is_covering(tier: AnnotationTier) -> bool:
     """Return whether a tier's intervals fill most of its span and say different things: they are stances, not
     changes.
     """
@@ -317,12 +317,12 @@ def is_meaning(text: str) -> bool:
     return text.split(" ")[0] in MEANINGS
 
 
-def parted(meaning: str) -> tuple[str, tuple[str, ...]]:
+def split_meaning(meaning: str) -> tuple[str, tuple[str, ...]]:
     """Return the kind (or phase) and the tags of a meaning."""
     first, *tags = meaning.split()
     return first, tuple(tags)
 
 
-def told(labels: Iterable[Label]) -> dict[str, str]:
+def label_notes(labels: Iterable[Label]) -> dict[str, str]:
     """Return what to remember of labels."""
     return {label.key: label.meaning for label in labels}

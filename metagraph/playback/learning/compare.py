@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.model import Kind, Markov
-from metagraph.playback.learning.learn import Act, State, acts_of_metas, rests, state_of, states_of
+from metagraph.playback.learning.learn import Act, State, acts_of_metas, model_states, rests, state_of
 from metagraph.playback.planning.markov import write
 
 Array = NDArray[Any]
@@ -77,7 +77,7 @@ def tally(observed: Sequence[Sequence[Act]], states: Sequence[State], tagged: bo
 
 
 @dataclass(frozen=True)
-class Comparison:
+class ModelComparison:
     """observed: None where nothing was; the matrix alone is compared with then. generated: by the model.
     expected [n]: how often each state comes in the long run; deviation [n]: how far the generated shares may
     be off by chance alone, one standard deviation.
@@ -118,15 +118,15 @@ class Comparison:
             )
 
 
-def compare(
+def compare_model(
     model: Markov, observed: Sequence[Sequence[Act]] | None, seconds: float = 3600.0, seed: int = 1
-) -> Comparison:
+) -> ModelComparison:
     """Let a model write for some seconds, and put that beside what was observed."""
-    states, tagged = states_of(model), bool(model.tags)
+    states, tagged = model_states(model), bool(model.tags)
     generated = tally([generate(model, seconds, seed)], states, tagged)
     expected = stationary(model.matrix)
     seen = tally(observed, states, tagged) if observed is not None else None
-    return Comparison(
+    return ModelComparison(
         model, seen, generated, expected, deviation(model.matrix, expected, max(1, generated.count))
     )
 

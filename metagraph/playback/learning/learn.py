@@ -21,10 +21,10 @@ from metagraph.playback.learning.annotation import (
     PHASES,
     ROLES,
     Annotation,
-    Interval,
+    AnnotationInterval,
     Label,
     label_of,
-    parted,
+    split_meaning,
 )
 from metagraph.playback.plan import MetaAction
 
@@ -58,7 +58,7 @@ class Act:
 # --- intervals to sequences
 
 
-def sequences(
+def act_sequences(
     annotation: Annotation, roles: Mapping[str, str], labels: Iterable[Label]
 ) -> dict[Layer, tuple[Act, ...]]:
     """Return what each layer does that some tier is read as, ascending by start.
@@ -75,16 +75,16 @@ def sequences(
             layer, limb = ROLES[role]
             named = [(i, meant.get((layer, label_of(i.text)), IGNORE)) for i in tier.intervals]
             out.setdefault(layer, []).extend(_acts(named, limb))
-    return {layer: merged(acts) for layer, acts in out.items()}
+    return {layer: merge_acts(acts) for layer, acts in out.items()}
 
 
-def _acts(named: Sequence[tuple[Interval, str]], limb: Limb) -> list[Act]:
+def _acts(named: Sequence[tuple[AnnotationInterval, str]], limb: Limb) -> list[Act]:
     """Return the acts of one tier."""
     out: list[Act] = []
-    phases: list[tuple[Interval, str, tuple[str, ...]]] = []
+    phases: list[tuple[AnnotationInterval, str, tuple[str, ...]]] = []
     resting = ""
     for interval, meaning in named:
-        first, tags = parted(meaning)
+        first, tags = split_meaning(meaning)
         if first in PHASES:
             if phases and _begins(first, [p for _, p, _ in phases], interval.start - phases[-1][0].end):
                 out.append(_whole(phases, limb))
@@ -113,7 +113,7 @@ def _begins(phase: str, before: Sequence[str], gap: float) -> bool:
     )
 
 
-def _whole(phases: Sequence[tuple[Interval, str, tuple[str, ...]]], limb: Limb) -> Act:
+def _whole(phases: Sequence[tuple[AnnotationInterval, str, tuple[str, ...]]], limb: Limb) -> Act:
     strokes = [(i.start + i.end) / 2 for i, phase, _ in phases if phase == "stroke"]
     tags = tuple(dict.fromkeys(tag for _, _, some in phases for tag in some))
     return Act(phases[0][0].start, phases[-1][0].end, limb, "gesture", tags, strokes[0] if strokes else None)
@@ -123,7 +123,7 @@ def _kind(word: str) -> Kind:
     return next(kind for kind in KINDS if kind == word)
 
 
-def merged(acts: Iterable[Act]) -> tuple[Act, ...]:
+def merge_acts(acts: Iterable[Act]) -> tuple[Act, ...]:
     """Return acts in order, those of two arms that overlap by more than `OVERLAP` of the shorter as one of
     both.
 
@@ -163,14 +163,14 @@ def state_of(act: Act, tagged: bool) -> State:
     return act.limb, act.kind, " ".join(act.tags) if tagged else ""
 
 
-def state_words(state: State, layer: Layer) -> str:
+def describe_state(state: State, layer: Layer) -> str:
     """Return a state for people: "left gesture, positive"; only arms have sides."""
     limb, kind, tags = state
     words = f"{limb} {kind}" if layer == "arms" else kind
     return f"{words}, {tags.replace(' ', ', ')}" if tags else words
 
 
-def states_of(model: Markov) -> tuple[State, ...]:
+def model_states(model: Markov) -> tuple[State, ...]:
     return tuple((limb, kind, model.tag(n)) for n, (limb, kind) in enumerate(model.states))
 
 
@@ -183,7 +183,7 @@ def _order(state: State) -> tuple[int, int, int, str]:
     return LIMBS.index(limb), ("gesture", "fidget", "transition", "stance").index(kind), rank, tags
 
 
-def learn(
+def learn_model(
     layer: Layer, observed: Sequence[Sequence[Act]], tagged: bool = False, smoothing: float = 0.0
 ) -> Markov:
     """Return the first-order model of sequences of acts of one layer.
@@ -270,10 +270,10 @@ def with_state(model: Markov, state: State) -> Markov:
     """Return the model with another state, which nothing leads to yet and which leads to every state alike;
     as it is if it has it.
     """
-    if state in states_of(model):
+    if state in model_states(model):
         return model
     count = len(model.states) + 1
-    order = sorted(range(count), key=lambda n: _order((*states_of(model), state)[n]))
+    order = sorted(range(count), key=lambda n: _order((*model_states(model), state)[n]))
     rows = [(*row, 0.0) for row in model.matrix] + [(1 / count,) * count]
     tags = [*(model.tags or [""] * (count - 1)), state[2]]
     lengths = [*model.lengths, _typical(model)] if model.lengths else []
@@ -290,7 +290,7 @@ def _typical(model: Markov) -> tuple[float, float]:
     return fmean(mean for mean, _ in model.lengths), fmean(deviation for _, deviation in model.lengths)
 
 
-def without_state(model: Markov, place: int) -> Markov:
+def remove_state(model: Markov, place: int) -> Markov:
     """Return the model without a state; rows that led only there lead to every other state alike. The last
     state stays.
     """
@@ -314,7 +314,7 @@ def without_state(model: Markov, place: int) -> Markov:
 # --- performing what was seen
 
 
-def asks_of(layer: Layer, acts: Sequence[Act]) -> tuple[AnyRequest, ...]:
+def asks_from_acts(layer: Layer, acts: Sequence[Act]) -> tuple[AnyRequest, ...]:
     """Return what to ask for so that a layer does what was seen; which actions that takes is left to chance.
 
     A change of stance does not say which stance it leads to. Only arms are asked for by limb.
@@ -337,14 +337,14 @@ def asks_of(layer: Layer, acts: Sequence[Act]) -> tuple[AnyRequest, ...]:
     return tuple(out)
 
 
-def performance(name: str, observed: Mapping[Layer, Sequence[Act]], seconds: float = 0.0) -> Performance:
+def as_performance(name: str, observed: Mapping[Layer, Sequence[Act]], seconds: float = 0.0) -> Performance:
     """Return what was seen as a performance to keep; other seeds perform it with other actions. Layers that
     were not seen rest.
 
     seconds: how long it was watched, at least; it lasts a second longer than the last act in any case.
     """
     asks = sorted(
-        (ask for layer, acts in observed.items() for ask in asks_of(layer, acts)),
+        (ask for layer, acts in observed.items() for ask in asks_from_acts(layer, acts)),
         key=lambda ask: ask.at or 0.0,
     )
     end = max((act.end for acts in observed.values() for act in acts), default=0.0)

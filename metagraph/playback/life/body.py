@@ -13,9 +13,9 @@ from metagraph.graph import anatomy
 from metagraph.graph.face.rig import CHANNELS, SIDES, FaceRig, axes_of, find_face
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
-from metagraph.motion.joint_map import known_roles
+from metagraph.motion.joint_map import find_known_roles
 from metagraph.motion.skeleton import Skeleton
-from metagraph.playback.life.tension import tensed
+from metagraph.playback.life.tension import find_tension
 
 Array = NDArray[Any]
 
@@ -121,13 +121,13 @@ def find_body(project: Project) -> Body:
     """Return the body of a project with a skeleton."""
     skeleton = project.skeleton
     assert skeleton is not None
-    roles = anatomy.roles(project)
+    roles = anatomy.project_roles(project)
     turned, at = (x.astype(float) for x in skeleton.globals(anatomy.base_pose(project)))
     left, up, ahead = axes = axes_of(skeleton, {r: j for r, j in roles.items() if not r.endswith("eye")}, at)
     face = find_face(project)
 
     def local(joint: int, axis: Array) -> Array:
-        return rotation.rotate(rotation.conjugate(turned[joint]), axis)
+        return rotation.rotate_vectors(rotation.conjugate(turned[joint]), axis)
 
     head = roles.get("head")
     top = next((roles[r] for r in ("head", "neck", "upper_chest", "chest", "spine") if r in roles), 0)
@@ -147,7 +147,7 @@ def find_body(project: Project) -> Body:
         if f"{s}_shoulder" in roles
     ]
     lifts = {j: np.radians(SHOULDERS) * sign * local(j, ahead) for j, sign in collars}
-    tight = tensed(known_roles(skeleton, roles), at, axes, local)
+    tight = find_tension(find_known_roles(skeleton, roles), at, axes, local)
     seen = {*chain, *(e.joint for e in face.eyes), *face.joints.tolist()}
     rising = [*lifts, *(j for j in tight if j not in lifts and j not in seen)]
     none = np.zeros(3)
@@ -159,7 +159,7 @@ def find_body(project: Project) -> Body:
     )
     eyes = _eyes(skeleton, face, top, axes, local)
     middle = np.mean([eye.at for eye in eyes], axis=0) if head is not None else np.zeros(3)
-    rest = at[top] + rotation.rotate(turned[top], middle)
+    rest = at[top] + rotation.rotate_vectors(turned[top], middle)
     joints = [*chain, *rising, *(e.joint for e in face.eyes), *face.joints.tolist()]
     read = [*chain, *(e.joint for e in face.eyes), *(j for j in face.lid_joints.tolist() if j >= 0)]
     return Body(
@@ -203,9 +203,10 @@ def _eyes(
             out.append(EyeAt(place, looks[0], looks[1], looks[2], False, (0.0,) * 3, (0.0,) * 3, (0.0,) * 4))
             continue
         looks = [
-            _vector(rotation.rotate(back, rotation.rotate(turned[eye.joint], axis))) for axis in eye.axes
+            _vector(rotation.rotate_vectors(back, rotation.rotate_vectors(turned[eye.joint], axis)))
+            for axis in eye.axes
         ]
-        place = _vector(rotation.rotate(back, at[eye.joint] - at[head]))
+        place = _vector(rotation.rotate_vectors(back, at[eye.joint] - at[head]))
         # rest^-1 q is nearly 1 + half the turn: the vector part along the axis to the left, doubled, is how
         # far down it looks.
         basis = rotation.multiply(rotation.conjugate(skeleton.rest_rotations[eye.joint]), np.eye(4))[:, :3]

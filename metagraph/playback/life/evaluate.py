@@ -35,11 +35,11 @@ from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.life.body import Body
 from metagraph.playback.life.expressions import FaceShown, answer, settle, shown_face
-from metagraph.playback.life.gaze import Gaze, Moves, ease
+from metagraph.playback.life.gaze import BodyGaze, Moves, ease_gaze
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.lips import mouth
 from metagraph.playback.life.schedule import Schedule
-from metagraph.playback.life.solve import FaceLids, LifeDials, LifeNow, enlivened
+from metagraph.playback.life.solve import FaceLids, LifeDials, LifeNow, solve_life
 from metagraph.playback.life.track import Track
 from metagraph.playback.planning.mood import Bearing, bearing
 from metagraph.playback.planning.mood import shown as mood_shown
@@ -99,7 +99,7 @@ class LifeStage:
         self._project, self._schedule, self._track, self.body = project, schedule, track, body
         self._gaze = None
         if body.lookers and schedule.targets:  # else it looks at nothing
-            self._gaze = Gaze(schedule, life, body, project.points)
+            self._gaze = BodyGaze(schedule, life, body, project.points)
         self._lids = lids_of(body.face)
         self._dials = LifeDials(life.gaze, 1 - life.stillness, life.head_share, life.lids)
 
@@ -151,7 +151,7 @@ class LifeStage:
         for n, time in enumerate(times.tolist()):
             now, bears = happening(self._schedule, life, time)
             moves = gaze.at(time) if gaze is not None else NO_MOVES
-            chain, turn, eyes, shut, own = enlivened(
+            chain, turn, eyes, shut, own = solve_life(
                 body, self._lids, self._dials, now, read[n], places[n], moves, gaze is not None
             )
             chains.append(chain)
@@ -201,7 +201,12 @@ def breath_at(lane: Lane, life: Life, time: float) -> float:
         return 0.0
     length, depth = values[n]
     gone = (time - starts[n]) / length
-    return life.breathing * (1 - life.stillness) * depth * ease(min(gone / INHALE, (1 - gone) / (1 - INHALE)))
+    return (
+        life.breathing
+        * (1 - life.stillness)
+        * depth
+        * ease_gaze(min(gone / INHALE, (1 - gone) / (1 - INHALE)))
+    )
 
 
 def blink_at(lane: Lane, life: Life, time: float) -> float:
@@ -211,7 +216,7 @@ def blink_at(lane: Lane, life: Life, time: float) -> float:
     n = bisect_right(starts, time) - 1
     while n >= 0 and time - starts[n] < whole:  # a slow one may still be opening when the next begins
         gone = time - starts[n]
-        out = max(out, ease(min(gone / life.blink_close, (whole - gone) / life.blink_open)))
+        out = max(out, ease_gaze(min(gone / life.blink_close, (whole - gone) / life.blink_open)))
         n -= 1
     return out
 

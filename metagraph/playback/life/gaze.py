@@ -36,12 +36,12 @@ SPRING = 8.0  # how many of the spring's own times a move takes; then all but 0.
 _SETTLED = 1 - (1 + SPRING) * exp(-SPRING)
 
 
-def ease(x: float) -> float:
+def ease_gaze(x: float) -> float:
     """3x^2 - 2x^3 of x clamped to 0..1."""
     return 0.0 if x <= 0 else 1.0 if x >= 1 else x * x * (3 - 2 * x)
 
 
-def settle(x: float) -> float:
+def settle_gaze(x: float) -> float:
     """A critically damped spring's way from 0 to 1, for x from 0 to 1: 1 - (1 + z) e^-z with z = 8 x, scaled
     to end at 1.
     """
@@ -84,7 +84,7 @@ class Moves:
     head: tuple[float, float]
 
 
-class Gaze:
+class BodyGaze:
     """A schedule's gaze on a body."""
 
     def __init__(self, schedule: Schedule, life: Life, body: Body, points: Mapping[str, Point]) -> None:
@@ -103,7 +103,7 @@ class Gaze:
         while place >= 0 and (came < 1 or turned < 1):
             aim = self._aims.get(place) or self._aim(place)
             gone = time - aim.start
-            now, head = ease(gone / aim.eyes), settle((gone - HEAD_LAG) / aim.head)
+            now, head = ease_gaze(gone / aim.eyes), settle_gaze((gone - HEAD_LAG) / aim.head)
             parts.append((aim, now - came, head - turned))
             strict += (now - came) * aim.strict
             came, turned, place = now, head, place - 1
@@ -115,18 +115,18 @@ class Gaze:
             size = hypot(x, y) * self.angle
             scale = self.averts.scale * (1 - strict)
             if last >= 0 and self.targets[last].since > start:  # a new look ends it
-                scale *= 1 - ease((time - self.targets[last].since) / ENDING)
+                scale *= 1 - ease_gaze((time - self.targets[last].since) / ENDING)
             went, gone, slow = time - start, time - end, head_time(size)
             if gone < HEAD_LAG + slow:
                 fast = eye_time(size)
-                now = scale * (ease(went / fast) - ease(gone / fast))
-                head = scale * (settle((went - HEAD_LAG) / slow) - settle((gone - HEAD_LAG) / slow))
+                now = scale * (ease_gaze(went / fast) - ease_gaze(gone / fast))
+                head = scale * (settle_gaze((went - HEAD_LAG) / slow) - settle_gaze((gone - HEAD_LAG) / slow))
                 eyes_x, eyes_y, head_x, head_y = x * now, y * now, x * head, y * head
         n = bisect_right(self.darts.starts, time) - 1
         if n >= 0 and self.darts.scale > 0:
             x, y = self.darts.values[n]
             from_x, from_y = self.darts.values[n - 1] if n else (0.0, 0.0)
-            way = ease((time - self.darts.starts[n]) / eye_time(hypot(x - from_x, y - from_y)))
+            way = ease_gaze((time - self.darts.starts[n]) / eye_time(hypot(x - from_x, y - from_y)))
             eyes_x += self.darts.scale * (from_x + (x - from_x) * way)
             eyes_y += self.darts.scale * (from_y + (y - from_y) * way)
         return Moves(tuple(parts), (eyes_x, eyes_y), (head_x, head_y))

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from metagraph.graph.face.names import VISEMES
 from metagraph.playback.life.mouth import soften
 from metagraph.playback.life.track import Speech, Track
-from metagraph.playback.life.voice import Voice, voice_of
+from metagraph.playback.life.voice import Voice, voice_for_speech
 
 Array = NDArray[Any]
 
@@ -34,7 +34,7 @@ def mouth(track: Track, voices: Mapping[str, Voice], smoothing: float, times: Ar
         if len(here):
             if out is None:
                 out = np.zeros((len(times), len(VISEMES) - 1))
-            out[here] += _shown(speech, voice_of(voices, speech), smoothing, times[here])
+            out[here] += _shown(speech, voice_for_speech(voices, speech), smoothing, times[here])
     if out is not None:  # two speeches may meet; together they are one mouth
         out /= np.maximum(out.sum(1, keepdims=True), 1.0)
     return out

@@ -63,7 +63,7 @@ class FaceLids(NamedTuple):
     shut_by: Sequence[Quaternion]
 
 
-def enlivened(
+def solve_life(
     body: Body,
     lids: FaceLids,
     dials: LifeDials,
@@ -118,7 +118,7 @@ def breathe(body: Body, chain: list[Quaternion], full: float, droop: float, thru
         if angle:
             half = 0.5 * (full * angle + droop * body.bowed[n] + thrust * body.thrust[n])
             s = sin(half)
-            chain[n] = times(chain[n], (axis[0] * s, axis[1] * s, axis[2] * s, cos(half)))
+            chain[n] = multiply_quaternions(chain[n], (axis[0] * s, axis[1] * s, axis[2] * s, cos(half)))
 
 
 def look(
@@ -140,7 +140,7 @@ def look(
     head = turned[-1]
     left, right = body.eyes
     middle = _scaled(_plus(left.at, right.at), 0.5)
-    eye = _plus(at[-1], rotate(head, middle))
+    eye = _plus(at[-1], rotate_tuple(head, middle))
     # Where the targets are, seen from there; the eyes' and the head's share of each.
     eyes_x = eyes_y = head_x = head_y = near = whole = 0.0
     for aim, came, moved in gaze.parts:
@@ -161,7 +161,7 @@ def look(
             whole + came * weight,
         )
     vector, size = _head(body, turned, head_x + gaze.head[0], head_y + gaze.head[1], whole, share)
-    turns = [_scaled(rotate(_back(turned[j.place]), vector), j.share) for j in body.lookers]
+    turns = [_scaled(rotate_tuple(_back(turned[j.place]), vector), j.share) for j in body.lookers]
     # Where that brings the eyes: every joint that turns carries what is above it along.
     moved_to, so_far = at[body.lookers[0].place], 0.0
     unit = _scaled(vector, 1 / size) if size > 1e-12 else (0.0, 1.0, 0.0)
@@ -169,15 +169,15 @@ def look(
     for k, looker in enumerate(body.lookers):
         so_far += looker.share
         arm = _minus(ends[k], at[looker.place])
-        moved_to = _plus(moved_to, rotate(_about(unit, size * so_far), arm))
-    head = times(_about(unit, size), head)
+        moved_to = _plus(moved_to, rotate_tuple(_about(unit, size * so_far), arm))
+    head = multiply_quaternions(_about(unit, size), head)
     # The point looked at, in the head's space; each eye turns to it the shortest way, so that it does not
     # roll.
     sideways, upwards = eyes_x + gaze.eyes[0], eyes_y + gaze.eyes[1]
     far = 1 / max(near, 1e-3)
     x, y, z = sin(sideways) * cos(upwards) * far, sin(upwards) * far, cos(sideways) * cos(upwards) * far
     ahead = _plus(_plus(_scaled(body.left, x), _scaled(body.up, y)), _scaled(body.ahead, z))
-    inside = rotate(_back(head), _minus(_plus(eye, ahead), moved_to))
+    inside = rotate_tuple(_back(head), _minus(_plus(eye, ahead), moved_to))
     out: list[tuple[float, float]] = []
     for side in body.eyes:
         away = _minus(inside, side.at)
@@ -185,7 +185,7 @@ def look(
         across = hypot(x, y)
         angle = atan2(across, _dot(side.ahead, away)) / max(across, 1e-12) * whole
         rest = 1 - whole
-        out.append(within_reach(x * angle + gaze.eyes[0] * rest, y * angle + gaze.eyes[1] * rest))
+        out.append(limit_eye_turn(x * angle + gaze.eyes[0] * rest, y * angle + gaze.eyes[1] * rest))
     return turns, out
 
 
@@ -200,8 +200,8 @@ def _head(
     x, y = x + beyond * _excess(left - x, EYE_EASE), y + beyond * _excess(up - y, EYE_EASE)
     # A character that has turned away as a whole turns its head back; one whose head alone or body alone has,
     # means it.
-    trunk = _gap(body, left, rotate(turned[body.trunk], body.trunk_ahead))
-    face = _gap(body, left, rotate(turned[-1], body.head_ahead))
+    trunk = _gap(body, left, rotate_tuple(turned[body.trunk], body.trunk_ahead))
+    face = _gap(body, left, rotate_tuple(turned[-1], body.head_ahead))
     both = max(min(trunk, face), 0.0) + min(max(trunk, face), 0.0)
     x += beyond * amount * _excess(both, max(TURNED_AWAY, abs(left)))
     x, y = _within(x, HEAD_SIDEWAYS), min(max(y, -HEAD_DOWN), HEAD_UP)
@@ -226,7 +226,7 @@ def head_part(angle: float, share: float) -> float:
     return share * angle * size / (size + SMALL)
 
 
-def within_reach(left: float, up: float) -> tuple[float, float]:
+def limit_eye_turn(left: float, up: float) -> tuple[float, float]:
     """Return an eye's turn kept within what eyes can do, softly near the limit."""
     far = hypot(left / EYE_SIDEWAYS, up / (EYE_UP if up > 0 else EYE_DOWN))
     if far <= FREE:
@@ -257,15 +257,15 @@ def globals_of(
     """Return rotations and positions of a chain in the character's space, from those in the parents'."""
     turned, at = [chain[0]], [places[0]]
     for n in range(1, len(chain)):
-        at.append(_plus(at[-1], rotate(turned[-1], places[n])))
-        turned.append(times(turned[-1], chain[n]))
+        at.append(_plus(at[-1], rotate_tuple(turned[-1], places[n])))
+        turned.append(multiply_quaternions(turned[-1], chain[n]))
     return turned, at
 
 
 # --- arithmetic
 
 
-def times(a: Sequence[float], b: Sequence[float]) -> Quaternion:
+def multiply_quaternions(a: Sequence[float], b: Sequence[float]) -> Quaternion:
     """Return the product: rotate by `b`, then by `a`."""
     ax, ay, az, aw = a
     bx, by, bz, bw = b
@@ -277,7 +277,7 @@ def times(a: Sequence[float], b: Sequence[float]) -> Quaternion:
     )
 
 
-def rotate(q: Sequence[float], v: Sequence[float]) -> Vector:
+def rotate_tuple(q: Sequence[float], v: Sequence[float]) -> Vector:
     """Return a vector rotated."""
     x, y, z, w = q
     vx, vy, vz = v

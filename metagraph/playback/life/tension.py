@@ -25,7 +25,7 @@ ELBOW = 18.0
 CURLS = (34.0, 42.0)  # the first and second joints of fingers but the thumb
 
 
-def tensed(
+def find_tension(
     roles: Mapping[str, int],
     at: Array,
     axes: Array,

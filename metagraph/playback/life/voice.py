@@ -19,7 +19,7 @@ from metagraph.playback.life.items import Speech
 from metagraph.playback.life.line_timing import LineTiming, timed_sounds
 from metagraph.playback.life.mouth import MouthPiece, accents_of, mouth_track
 
-__all__ = ["VISEMES", "Voice", "silent", "voice_from_text", "voice_of"]
+__all__ = ["VISEMES", "Voice", "silent", "voice_for_speech", "voice_from_text"]
 
 Array = NDArray[Any]
 
@@ -63,17 +63,17 @@ def voice_from_text(text: str, duration: float | None = None) -> Voice:
     said = spelled(ALPHABET, text, length)
     if not said.pieces:
         return silent(length)
-    return voiced(said.pieces, length, np.array(said.peaks), np.array(said.strengths))
+    return make_voice(said.pieces, length, np.array(said.peaks), np.array(said.strengths))
 
 
 @lru_cache(maxsize=256)
 def voice_from_timing(timing: LineTiming, duration: float) -> Voice:
     """Return the voice of a line whose words and shapes are told with their times."""
     said = timed_sounds(ALPHABET, timing)
-    return voiced(said.pieces, duration, np.array(said.peaks), np.array(said.strengths))
+    return make_voice(said.pieces, duration, np.array(said.peaks), np.array(said.strengths))
 
 
-def voice_of(voices: Mapping[str, Voice], speech: Speech) -> Voice:
+def voice_for_speech(voices: Mapping[str, Voice], speech: Speech) -> Voice:
     """Return the voice of something said: as its words and shapes were told, as its line's was read from the
     sound, else one guessed from its text.
     """
@@ -91,7 +91,7 @@ def voice_of(voices: Mapping[str, Voice], speech: Speech) -> Voice:
 
 def stressed(voices: Mapping[str, Voice], speech: Speech) -> list[float]:
     """Return the times of the stressed syllables of something said, ascending, seconds from its start."""
-    found: list[float] = voice_of(voices, speech).accents.tolist()
+    found: list[float] = voice_for_speech(voices, speech).accents.tolist()
     return found
 
 
@@ -100,7 +100,7 @@ def same_voices(one: Mapping[str, Voice] | None, other: Mapping[str, Voice]) -> 
     return one is other or one == other
 
 
-def voiced(pieces: Sequence[MouthPiece], duration: float, peaks: Array, strengths: Array) -> Voice:
+def make_voice(pieces: Sequence[MouthPiece], duration: float, peaks: Array, strengths: Array) -> Voice:
     """Return a voice of mouth shapes in time and loudness peaks."""
     weights = np.array(mouth_track(pieces, duration), np.float32)
     return Voice(duration, peaks, np.linspace(0.0, max(duration, 1e-3), len(weights)), weights, strengths)

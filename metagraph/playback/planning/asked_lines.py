@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from metagraph.graph import requests as a
 from metagraph.graph.model import Action, Project
-from metagraph.playback.planning.line_lengths import spoken_seconds
+from metagraph.playback.planning.line_lengths import find_spoken_seconds
 from metagraph.playback.planning.understand import lead
 
 
@@ -39,7 +39,7 @@ def _in_performances(project: Project, action: Action) -> Iterator[tuple[bool, A
             for say in says:
                 at = float(say.at or 0.0)
                 line = project.lines.get(str(say.line))
-                length = spoken_seconds(project, str(say.line), line.text, say.duration) if line else 0.0
+                length = find_spoken_seconds(project, str(say.line), line.text, say.duration) if line else 0.0
                 start, end = project.span(action)
                 if line is not None and at < begins + end - start and at + length > begins:
                     yield named, AskedLine(str(say.line), at - begins)

@@ -10,7 +10,7 @@ from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest
 from metagraph.playback.life.items import StayFrom
 from metagraph.playback.plan import Cue, LayerPlan, Past, Plan, Report
-from metagraph.playback.planner import Revision, extend
+from metagraph.playback.planner import Revision, extend_plan
 from metagraph.playback.planning.hearing import heard, owners
 from metagraph.playback.planning.markov import model
 from metagraph.playback.planning.remembering import remember
@@ -19,7 +19,7 @@ from metagraph.playback.planning.understand import understand
 State = Literal["planned", "late", "refused", "done"]
 
 
-def hear(
+def hear_asks(
     project: Project,
     plan: Plan,
     now: float,
@@ -49,12 +49,12 @@ def hear(
     )
     plan = replace(plan, track=found.track)
     revision = Revision(frozenset(found.withdrawn), leave)
-    after = extend(project, plan, fixed, meant.requests, end, stances, idle, revision)
+    after = extend_plan(project, plan, fixed, meant.requests, end, stances, idle, revision)
     return replace(after, reports=(*after.reports, *meant.refused)) if meant.refused else after
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class AskAnswer:
     """What became of an ask. at, until: seconds, when it plays; None when it will not. what: the actions or
     words.
     """
@@ -67,19 +67,19 @@ class Answer:
     why: str
 
 
-def answer(plan: Plan, ident: str) -> Answer:
+def answer_ask(plan: Plan, ident: str) -> AskAnswer:
     """Say what a plan does about an ask: when it will play, or why it will not."""
-    return answers(plan, (ident,))[ident]
+    return answer_asks(plan, (ident,))[ident]
 
 
-def answers(plan: Plan, idents: Iterable[str]) -> dict[str, Answer]:
+def answer_asks(plan: Plan, idents: Iterable[str]) -> dict[str, AskAnswer]:
     """Say what a plan does about each of many asks, in time that grows with the plan alone."""
     found: dict[str, _Found] = {ident: _Found() for ident in idents}
 
     def of(made: str) -> Iterator[_Found]:
         return (found[owner] for owner in owners(made) if owner in found)
 
-    served = served_by(plan)
+    served = find_served(plan)
     for layer in plan.layers.values():
         for cue in layer.cues:
             for made in (cue.meta.partition("+")[0], *served.get(cue.meta, ())):
@@ -99,7 +99,7 @@ def answers(plan: Plan, idents: Iterable[str]) -> dict[str, Answer]:
     return {ident: _answer(ident, x) for ident, x in found.items()}
 
 
-def served_by(plan: Plan) -> dict[str, list[str]]:
+def find_served(plan: Plan) -> dict[str, list[str]]:
     """Return the requests that the action of another serves, by that one's key."""
     served: dict[str, list[str]] = {}
     for report in plan.reports:
@@ -118,7 +118,7 @@ class _Found:
     waiting: list[float] = field(default_factory=list)
 
 
-def _answer(ident: str, found: _Found) -> Answer:
+def _answer(ident: str, found: _Found) -> AskAnswer:
     cues, items, told = found.cues, found.items, found.told
     why = "; ".join(dict.fromkeys(r.message for r in told))
     if cues or items:
@@ -126,11 +126,11 @@ def _answer(ident: str, found: _Found) -> Answer:
         ends = [c.end for c in cues] + [getattr(i, "end", i.start) for i in items]
         late = any(r.outcome in ("late", "queued", "resumed") for r in told)
         what = (*(c.action.name for c in cues), *(_words(i) for i in items))
-        return Answer(ident, "late" if late else "planned", min(starts), max(ends), what, why)
+        return AskAnswer(ident, "late" if late else "planned", min(starts), max(ends), what, why)
     if any(r.outcome == "already-there" for r in told):
-        return Answer(ident, "done", None, None, (), why)
+        return AskAnswer(ident, "done", None, None, (), why)
     if found.waiting and all(r.played for r in told):
-        return Answer(
+        return AskAnswer(
             ident,
             "late" if told else "planned",
             found.waiting[0],
@@ -138,7 +138,7 @@ def _answer(ident: str, found: _Found) -> Answer:
             (),
             why or "chosen when its time is nearer",
         )
-    return Answer(ident, "refused", None, None, (), why or "nothing came of it")
+    return AskAnswer(ident, "refused", None, None, (), why or "nothing came of it")
 
 
 def _words(item: object) -> str:

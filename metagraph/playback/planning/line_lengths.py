@@ -7,7 +7,9 @@ from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.graphemes import read_aloud
 
 
-def spoken_seconds(project: Project, line: str | None, text: str, duration: float | None = None) -> float:
+def find_spoken_seconds(
+    project: Project, line: str | None, text: str, duration: float | None = None
+) -> float:
     """Return how long something takes to say: as asked, as its sound, as the line says, or as its text is
     long.
     """

@@ -15,7 +15,7 @@ from weakref import ref
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.playback.plan import LayerPlan, Past, Plan
 from metagraph.playback.planning.remembering import remember
-from metagraph.playback.planning.strand import joined
+from metagraph.playback.planning.strand import join_sequence
 
 RECENT = 30.0  # seconds before now that planning on looks at, beside the settings' memory
 KEPT = 8  # plans whose heads are known
@@ -59,20 +59,24 @@ class PlanHead:
         head = self.layers[of.layer]
         return replace(
             rest,
-            metas=joined(of.metas, head.metas, rest.metas),
-            cues=joined(of.cues, head.cues, rest.cues),
-            rests=joined(of.rests, head.rests, rest.rests),
+            metas=join_sequence(of.metas, head.metas, rest.metas),
+            cues=join_sequence(of.cues, head.cues, rest.cues),
+            rests=join_sequence(of.rests, head.rests, rest.rests),
             past=of.past,
         )
 
 
-def shared(of: LayerPlan) -> LayerPlan:
+def share_layer(of: LayerPlan) -> LayerPlan:
     """Return a layer as it is, laid down so that what is planned on from it can share what it leaves."""
-    metas, cues, rests = joined((), 0, of.metas), joined((), 0, of.cues), joined((), 0, of.rests)
+    metas, cues, rests = (
+        join_sequence((), 0, of.metas),
+        join_sequence((), 0, of.cues),
+        join_sequence((), 0, of.rests),
+    )
     return replace(of, metas=metas, cues=cues, rests=rests)
 
 
-def head_of(project: Project, plan: Plan, now: float, again: Collection[str]) -> PlanHead | None:
+def find_plan_head(project: Project, plan: Plan, now: float, again: Collection[str]) -> PlanHead | None:
     """Return the head of a plan at `now`; None where there is none, or where all has to be looked at. again:
     ids of what is asked for anew or withdrawn.
     """

@@ -20,7 +20,7 @@ from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.near_life import LANES
 from metagraph.playback.life.track import Item, track_of
 from metagraph.playback.plan import Cue, LayerPlan, MetaAction, MetaRequest, Plan, Report, Rest
-from metagraph.playback.planning.extend_performance import hear, since
+from metagraph.playback.planning.extend_performance import hear_asks, since
 from metagraph.playback.planning.hearing import owners
 from metagraph.playback.planning.plan_head import RECENT
 
@@ -45,7 +45,7 @@ class RunningPlan:
     ) -> None:
         self.project, self.stances, self.idle, self.ahead = project, dict(stances or {}), idle, ahead
         empty = Plan(project.settings.seed if seed is None else seed, 0.0)
-        self.plan = hear(project, empty, 0.0, [], ahead, self.stances, idle)
+        self.plan = hear_asks(project, empty, 0.0, [], ahead, self.stances, idle)
 
     def reach(self, now: float, anew: bool = False) -> None:
         """Plan on where less than `ahead`, but for a little, is left at `now`; anew: also what has not begun,
@@ -61,12 +61,12 @@ class RunningPlan:
 
     def extend(self, now: float, end: float) -> None:
         """Plan to `end`."""
-        self.plan = hear(self.project, self.plan, now, [], end, self.stances, self.idle)
+        self.plan = hear_asks(self.project, self.plan, now, [], end, self.stances, self.idle)
 
     def hear(self, now: float, asks: Sequence[a.AnyRequest]) -> None:
         """Work in what became known at `now`."""
         if asks:
-            self.plan = hear(self.project, self.plan, now, asks, self.plan.end, self.stances, self.idle)
+            self.plan = hear_asks(self.project, self.plan, now, asks, self.plan.end, self.stances, self.idle)
 
     def forget(self, over: float) -> Plan:
         """Put aside what ended before `over`, and plan on without it; return the plan as it was."""
@@ -74,7 +74,7 @@ class RunningPlan:
         return before
 
 
-def perform(
+def plan_performance(
     project: Project,
     asks: Iterable[a.AnyRequest],
     end: float,
@@ -94,7 +94,7 @@ def perform(
     first = groups.pop(0.0)
     if not groups:
         empty = Plan(project.settings.seed if seed is None else seed, 0.0)
-        return hear(project, empty, 0.0, first, end, stances, idle)
+        return hear_asks(project, empty, 0.0, first, end, stances, idle)
     running = RunningPlan(project, seed, stances, idle, min(AHEAD + REPLAYED, end))
     running.hear(0.0, first)
     pieces: list[CutPiece] = []
@@ -111,7 +111,7 @@ def perform(
         last = now
     if end > running.plan.end:
         running.extend(last, end)
-    return whole(running.plan, pieces, named)
+    return join_plan(running.plan, pieces, named)
 
 
 def _on(running: RunningPlan, last: float, now: float, end: float) -> None:
@@ -124,7 +124,7 @@ def _on(running: RunningPlan, last: float, now: float, end: float) -> None:
         running.extend(then, min(end, then + running.ahead))
 
 
-def asks_of(kept: a.Performance) -> tuple[a.AnyRequest, ...]:
+def list_kept_asks(kept: a.Performance) -> tuple[a.AnyRequest, ...]:
     """Return what a kept performance asks for, its own mood first, which lasts under all others."""
     if kept.mood is None and kept.intensity is None:
         return kept.asks
@@ -140,7 +140,7 @@ class CutPiece:
     asked: int
 
 
-def whole(plan: Plan, pieces: Sequence[CutPiece], named: Sequence[str]) -> Plan:
+def join_plan(plan: Plan, pieces: Sequence[CutPiece], named: Sequence[str]) -> Plan:
     """Return a plan with what was put aside. named: the ids that all asks were about, in order; of one asked
     for or taken back again after a cut, what was put aside is not told any more.
     """

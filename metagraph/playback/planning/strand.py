@@ -86,7 +86,7 @@ class Strand(Sequence[T], Generic[T]):
         return Strand, (tuple(self),)
 
 
-def joined(before: Sequence[T], count: int, more: Sequence[T]) -> tuple[T, ...]:
+def join_sequence(before: Sequence[T], count: int, more: Sequence[T]) -> tuple[T, ...]:
     """Return the first `count` elements of a sequence with more behind them: a tuple, or where it would be
     long a `Strand`, which does all that is done with it.
     """

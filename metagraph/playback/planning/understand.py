@@ -14,7 +14,7 @@ from metagraph.playback.planning.finding import action_called, stance_called
 from metagraph.playback.planning.meaning import Meaning, PlainAsk, SaidLine
 from metagraph.playback.planning.mood import MOODS
 from metagraph.playback.timing.phases import lead
-from metagraph.playback.timing.told_timing import told_timing
+from metagraph.playback.timing.told_timing import read_given_timing
 
 __all__ = ["find_action", "find_stance", "lead", "understand"]
 
@@ -71,11 +71,11 @@ def _plain(project: Project, ask: a.AnyRequest) -> PlainAsk:
     if kind not in _FIELDS:
         _FIELDS[kind] = tuple(name for name in kind.__struct_fields__ if name not in _TOLD)
     fields: dict[str, Any] = {name: getattr(ask, name) for name in _FIELDS[kind]}
-    fields |= felt(getattr(ask, "mood", None), getattr(ask, "intensity", None))
+    fields |= read_mood(getattr(ask, "mood", None), getattr(ask, "intensity", None))
     if isinstance(ask, a.Bml):
         fields["text"] = ask.bml
     elif isinstance(ask, a.Say):
-        fields["timing"] = told_timing(ask)
+        fields["timing"] = read_given_timing(ask)
         if ask.line is not None:
             fields["line"] = str(ask.line)
             fields["said"] = _said(project, fields["line"], ask.gestures)
@@ -89,10 +89,10 @@ def _said(project: Project, ident: str, gestures: bool) -> SaidLine | None:
     seconds = line.duration if ident not in project.voices else float(project.voices[ident].duration)
     asks = line.asks if gestures else ()
     plain = [PlainAsk("say") if isinstance(x, a.Say) else _plain(project, x) for x in asks]
-    return SaidLine(line.text, seconds, plain, **felt(line.mood, line.intensity))
+    return SaidLine(line.text, seconds, plain, **read_mood(line.mood, line.intensity))
 
 
-def felt(mood: a.MoodPoint, intensity: float | None) -> dict[str, Any]:
+def read_mood(mood: a.MoodPoint, intensity: float | None) -> dict[str, Any]:
     """Return what a mood that is asked for tells: `valence`, `arousal` and `intensity`, as far as it does."""
     out: dict[str, Any] = {}
     if mood is not None:

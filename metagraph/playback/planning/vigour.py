@@ -67,10 +67,12 @@ def _speed_of(project: Project, action: Action) -> float | None:
     entry = project.clips.get(action.clip)
     if entry is None or entry.motion is None:
         return None
-    return speed_within(project, action, entry.motion, *project.span(action))
+    return mean_speed_within(project, action, entry.motion, *project.span(action))
 
 
-def speed_within(project: Project, action: Action, motion: Clip, start: float, end: float) -> float | None:
+def mean_speed_within(
+    project: Project, action: Action, motion: Clip, start: float, end: float
+) -> float | None:
     """Return the mean speed of the fastest mover in the part that plays (`Project.span`), metres a second;
     None where nothing plays.
     """

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.graph.face.curves import worn
+from metagraph.graph.face.curves import fit_curves_to_face
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
@@ -26,7 +26,7 @@ class ClipEvaluator:
     """A clip by itself, on its own skeleton."""
 
     def __init__(self, project: Project, clip: Clip) -> None:
-        self._clip = worn(project, clip)
+        self._clip = fit_curves_to_face(project, clip)
 
     def at(self, seconds: Any) -> Pose:
         """Return the pose at `seconds`, a number or an array `[...]`."""

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
-from metagraph.graph.face.curves import worn
+from metagraph.graph.face.curves import fit_curves_to_face
 from metagraph.graph.model import LAYERS, Action, Layer, Part, Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
@@ -99,7 +99,7 @@ class ComposerRig:
             joints, weights = self.reach[layer].joints, self.reach[layer].weights
             turned, away = layers[layer]
             if weights is not None:
-                turned, away = rotation.power(turned, weights[:, 0]), away * weights
+                turned, away = rotation.scale_rotation(turned, weights[:, 0]), away * weights
             rotations[:, joints] = rotation.multiply(rotations[:, joints], turned)
             translations[:, joints] += away
         return Pose(rotation.normalize(rotations), translations)
@@ -142,7 +142,7 @@ def find_composer(project: Project) -> ComposerRig:
     order: tuple[Part, ...] = ("legs", "spine", "arms", "head", "face")
     weights = tuple(tuple(project.graphs[layer].weight(part) for part in order) for layer in LAYERS)
     ground = _ground(project.skeleton, ref(motion) if motion is not None else None, frame)
-    return _rig(ground, anatomy.parts(project), weights, order)
+    return _rig(ground, anatomy.project_parts(project), weights, order)
 
 
 def playable(project: Project, action: Action) -> Clip | None:
@@ -153,4 +153,4 @@ def playable(project: Project, action: Action) -> Clip | None:
     motion = entry.motion if entry is not None else None
     if motion is None or motion.skeleton != project.skeleton:
         return None
-    return worn(project, motion) if motion.morphs else motion
+    return fit_curves_to_face(project, motion) if motion.morphs else motion

@@ -19,7 +19,7 @@ from metagraph.graph.face.rig import axes_of
 from metagraph.graph.model import LAYERS, Project
 from metagraph.motion import rotation
 from metagraph.motion.body_capsules import SIDES, BodyPart, body_capsules
-from metagraph.motion.character_mesh import Character
+from metagraph.motion.character_mesh import CharacterMesh
 from metagraph.motion.contact_solve import (
     FOREARM,
     HAND,
@@ -41,13 +41,13 @@ Array = NDArray[Any]
 FEW = 2  # poses
 
 
-def parts_of(project: Project, character: Character | None = None) -> tuple[BodyPart, ...]:
+def find_body_parts(project: Project, character: CharacterMesh | None = None) -> tuple[BodyPart, ...]:
     """Return the parts of a project's body: as it says, else found from its skeleton, or from the mesh of a
     character on that.
     """
     if project.touch.parts or project.skeleton is None:
         return project.touch.parts
-    roles, base = anatomy.roles(project), anatomy.base_pose(project)
+    roles, base = anatomy.project_roles(project), anatomy.base_pose(project)
     _, at = project.skeleton.globals(base)
     axes = axes_of(project.skeleton, {r: j for r, j in roles.items() if not r.endswith("eye")}, at)
     return body_capsules(project.skeleton, roles, base, axes, character)
@@ -55,12 +55,16 @@ def parts_of(project: Project, character: Character | None = None) -> tuple[Body
 
 def find_contact_rig(project: Project) -> ContactRig | None:
     """Return what contacts need of a project, None of one without two arms."""
-    skeleton, roles, targets = project.skeleton, anatomy.roles(project), sorted(project.touched)
+    skeleton, roles, targets = project.skeleton, anatomy.project_roles(project), sorted(project.touched)
     arms = [[roles.get(f"{s}_{p}") for p in ("upper_arm", "lower_arm", "hand")] for s in SIDES]
     if skeleton is None or any(j is None for arm in arms for j in arm):
         return None
     return rig_on(
-        skeleton, [[j for j in arm if j is not None] for arm in arms], parts_of(project), targets, project
+        skeleton,
+        [[j for j in arm if j is not None] for arm in arms],
+        find_body_parts(project),
+        targets,
+        project,
     )
 
 
@@ -134,7 +138,7 @@ def goals_at(plan: Plan, project: Project, rig: ContactRig, time: float) -> list
     return out
 
 
-def matters(project: Project) -> bool:
+def has_contacts(project: Project) -> bool:
     """Whether a project has the guard on, or contacts that are on."""
     touch = project.touch
     return project.skeleton is not None and (touch.guard or (touch.contacts and bool(project.touched)))
@@ -145,7 +149,7 @@ class ContactStage:
 
     def __init__(self, plan: Plan, project: Project, rig: ContactRig | None) -> None:
         self._plan, self._project = plan, project
-        self._rig = rig if matters(project) else None
+        self._rig = rig if has_contacts(project) else None
 
     def run(self, pose: Pose, times: Array, shown: Array | None = None) -> Pose:
         """Return composed poses `[N, J]` with hands kept in contact and out of the body at `times [N]`; the
@@ -163,10 +167,10 @@ class ContactStage:
                 [replace(g, weight=g.weight * part) for g in some if g.weight * part > LEAST]
                 for some, part in zip(goals, shown.tolist(), strict=True)
             ]
-        return solved(pose, rig, goals)
+        return pose_with_contacts(pose, rig, goals)
 
 
-def solved(pose: Pose, rig: ContactRig, goals: Sequence[Sequence[HandGoal]]) -> Pose:
+def pose_with_contacts(pose: Pose, rig: ContactRig, goals: Sequence[Sequence[HandGoal]]) -> Pose:
     """Return poses `[N, J]` with hands at their goals, and out of the body where the rig's guard is on."""
     busy = np.array([bool(g) for g in goals])
     if rig.guard and not busy.all():
@@ -195,21 +199,21 @@ def solved(pose: Pose, rig: ContactRig, goals: Sequence[Sequence[HandGoal]]) -> 
 
 def inside(rig: ContactRig, pose: Pose) -> Array:
     """Return `[N]` whether a forearm or hand is inside another part of the body in poses `[N, J]`."""
-    return np.asarray((depths(rig, pose) > 0).any(-1))
+    return np.asarray((contact_depths(rig, pose) > 0).any(-1))
 
 
-def depths(rig: ContactRig, pose: Pose) -> Array:
+def contact_depths(rig: ContactRig, pose: Pose) -> Array:
     """Return `[N, P]` how deep forearms and hands are inside other parts, metres, below 0 where outside, for
     every pair of them.
     """
-    first, second, _ = pairs(rig)
+    first, second, _ = capsule_pairs(rig)
     a, b = ends(rig, pose)
     radii = np.array([c.radius for c in rig.capsules])
-    way, _ = nearest(a[:, first], b[:, first], a[:, second], b[:, second])
+    way, _ = nearest_between_lines(a[:, first], b[:, first], a[:, second], b[:, second])
     return np.asarray(radii[first] + radii[second] - np.linalg.norm(way, axis=-1))
 
 
-def pairs(rig: ContactRig) -> tuple[list[int], list[int], list[tuple[int, int]]]:
+def capsule_pairs(rig: ContactRig) -> tuple[list[int], list[int], list[tuple[int, int]]]:
     """Return the places of capsules that are kept out of each other: those pushed, the others, and both."""
     both = [
         (i, k)
@@ -231,17 +235,17 @@ def ends(rig: ContactRig, pose: Pose) -> tuple[Array, Array]:
     for n, above in enumerate(rig.parents):
         if above >= 0:
             turned[:, n] = rotation.multiply(turned[:, above], local[:, n])
-            at[:, n] = at[:, above] + rotation.rotate(turned[:, above], moved[:, n])
+            at[:, n] = at[:, above] + rotation.rotate_vectors(turned[:, above], moved[:, n])
     out = []
     for joint, point in (
         ([c.joint for c in rig.capsules], [c.a for c in rig.capsules]),
         ([c.to for c in rig.capsules], [c.b for c in rig.capsules]),
     ):
-        out.append(at[:, joint] + rotation.rotate(turned[:, joint], np.array(point)))
+        out.append(at[:, joint] + rotation.rotate_vectors(turned[:, joint], np.array(point)))
     return out[0], out[1]
 
 
-def nearest(a: Array, b: Array, c: Array, d: Array) -> tuple[Array, Array]:
+def nearest_between_lines(a: Array, b: Array, c: Array, d: Array) -> tuple[Array, Array]:
     """Return the shortest ways `[..., 3]` from lines from c to d to those from a to b, `[..., 3]` each, and
     how far along the latter they end, 0..1: `contact_solve.apart` for arrays.
     """

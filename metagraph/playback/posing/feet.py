@@ -30,11 +30,11 @@ SAME = 10  # units of a row: what moves less all along needs one row
 # stored in 16 bits tremble.
 
 
-def moved_alone(project: Project, rig: WeightRig) -> bool:
+def moves_legs_alone(project: Project, rig: WeightRig) -> bool:
     """Whether the body's layer alone moves the joints from the root to the feet, as much as it was made:
     feet are then where its clips have them.
     """
-    parts = anatomy.parts(project)
+    parts = anatomy.project_parts(project)
     legs = {rig.body.joints[p] for leg in rig.body.arms for p in leg.below}
     above = [j for j in range(len(rig.body.parents)) if rig.body.joints[j] not in legs]
     chain = legs | {rig.body.joints[p] for p in above if _leads(rig, p)}
@@ -58,7 +58,7 @@ def _leads(rig: WeightRig, place: int) -> bool:
 
 def rows_of_feet(project: Project, motion: Clip, rig: WeightRig) -> Rows:
     """Return the rows of a clip's `FootTrack`."""
-    skeleton, roles = motion.skeleton, anatomy.roles(project)
+    skeleton, roles = motion.skeleton, anatomy.project_roles(project)
     count = int(np.ceil(motion.duration * FOOT_RATE - 1e-6)) + 1
     times = np.arange(count) / FOOT_RATE
     turned, at = skeleton.globals(motion.pose_at(times))

@@ -22,9 +22,9 @@ from metagraph.playback.plan import Plan
 from metagraph.playback.posing.composer import playable
 from metagraph.playback.posing.feet import STANDS as HELD_BELOW
 from metagraph.playback.posing.feet import FeetOfPlan
-from metagraph.playback.posing.layers import cue_weight, loop_seconds
+from metagraph.playback.posing.layers import loop_seconds, weight_of_cue
 from metagraph.playback.posing.rigs import rigs_of
-from metagraph.playback.posing.weight import foot_rows_of, plants
+from metagraph.playback.posing.weight import foot_rows_of, has_planted_feet
 
 Array = NDArray[Any]
 
@@ -67,7 +67,7 @@ class FeetSeen:
 
 def feet_joints(project: Project) -> list[list[int]]:
     """Return the joints of the left and the right foot; nothing of who has not both."""
-    roles = anatomy.roles(project)
+    roles = anatomy.project_roles(project)
     out = [[roles[f"{s}_{p}"] for p in ("foot", "toes") if f"{s}_{p}" in roles] for s in SIDES]
     return out if all(out) else []
 
@@ -117,7 +117,7 @@ def clip_speeds(plan: Plan, project: Project, times: Array) -> tuple[Array, Arra
         if cue.start > times[-1]:
             break
         here = np.flatnonzero((times >= cue.start) & (times < cue.end))
-        weight = cue_weight(cue, times[here])
+        weight = weight_of_cue(cue, times[here])
         shown = speed(cue.action, np.asarray(cue.clip_seconds(times[here])))
         own[here] = np.where((weight >= 1)[:, None], shown, np.maximum(own[here], shown))
         kind[here] = np.where(weight >= 1, f"{cue.action.kind}s", f"{cue.action.kind}s' blends")
@@ -145,7 +145,7 @@ class FeetWatch:
         weight = rigs_of(project).weight if self.feet else None
         rig = weight.rig if weight is not None else None
         self._height = rig.height if rig is not None else project.skeleton.height if project.skeleton else 1.0
-        steps = plan is not None and plants(project) and rig is not None
+        steps = plan is not None and has_planted_feet(project) and rig is not None
         self._goals = FeetOfPlan(partial(foot_rows_of, weight), self._height) if steps and weight else None
         self._floor: Array | None = None
         self._known: dict[int, tuple[Array, Array, Array]] = {}  # of a sample: places, clips' speeds, steps

@@ -65,7 +65,7 @@ def hand_touches(
 def _touch(rig: ContactRig, goals: Sequence[HandGoal], rotations: Array, positions: Array) -> HandTouch:
     strongest = max(goals, key=lambda g: g.weight)
     hand, to = rig.joints[rig.arms[strongest.arm].hand], rig.joints[strongest.to]
-    wanted = positions[to] + rotation.rotate(np.asarray(rotations[to], float), np.array(strongest.at))
+    wanted = positions[to] + rotation.rotate_vectors(np.asarray(rotations[to], float), np.array(strongest.at))
     away = float(np.linalg.norm(positions[hand] - wanted))
     return HandTouch(strongest.arm, hand, to, min(1.0, sum(g.weight for g in goals)), away)
 

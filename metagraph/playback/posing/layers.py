@@ -101,14 +101,14 @@ class _LayerStage:
         if cue is None or motion is None:
             return self._stance(times, current, fading)
         shown = self._sample(motion, cue.clip_seconds(times))
-        mask = anatomy.mask(project, cue.action)
+        mask = anatomy.action_mask(project, cue.action)
         moved = None if mask is None or (mask[reach.joints] == 1).all() else mask[reach.joints]
         if phase == _FULL and moved is None and cue.extent == 1:
             return shown
         stance = self._stance(times, current, fading)
         if phase != _FULL:
             edge = self._sample(motion, np.array([cue.entry if phase == _ENTERING else cue.last]))
-            shown = _lead(shown, stance, edge, 1 - cue_weight(cue, times))
+            shown = _lead(shown, stance, edge, 1 - weight_of_cue(cue, times))
         if cue.extent != 1:
             shown = _extended(shown, stance, cue.extent, self._scales)
         if moved is not None:
@@ -122,39 +122,45 @@ class _LayerStage:
         if not fading:
             return found
         before = self._rest(self._plan.rests[current - 1], times)
-        return mix(before, found, ease((times - rest.fade_start) / rest.fade))
+        return crossfade(before, found, ease_blend((times - rest.fade_start) / rest.fade))
 
     def _rest(self, rest: Rest, times: Array) -> Sample:
         motion = playable(self._project, rest.action)
         if motion is None:
-            return no_offsets(len(times), len(self._reach.joints))
+            return zero_offsets(len(times), len(self._reach.joints))
         seconds, other, old = loop_seconds(self._project, rest.action, times - rest.start)
         found = self._sample(motion, seconds)
-        return mix(found, self._sample(motion, other), old) if old.any() else found
+        return crossfade(found, self._sample(motion, other), old) if old.any() else found
 
     def _sample(self, motion: Clip, seconds: Array) -> Sample:
-        return sample(self._ground, self._reach, motion, seconds)
+        return sample_offsets(self._ground, self._reach, motion, seconds)
 
 
-def no_offsets(count: int, joints: int) -> Sample:
+def zero_offsets(count: int, joints: int) -> Sample:
     """Return offsets that leave the base pose as it is."""
-    return rotation.identity((count, joints), np.float32), np.zeros((count, joints, 3), np.float32)
+    return rotation.identity_rotations((count, joints), np.float32), np.zeros((count, joints, 3), np.float32)
 
 
-def ease(x: Array) -> Array:
+def ease_blend(x: Array) -> Array:
     """The blending curve: 3x^2 - 2x^3 of x clamped to 0..1."""
     x = np.clip(x, 0.0, 1.0)
     return np.asarray(x * x * (3 - 2 * x))
 
 
-def cue_weight(cue: Cue, times: Array) -> Array:
+def weight_of_cue(cue: Cue, times: Array) -> Array:
     """Return how much of the cue shows at `times [N]`: 0 outside it, rising over its blend in, falling over
     its blend out.
     """
     rise = (
-        ease((times - cue.start) / cue.blend_in) if cue.blend_in > 0 else (times >= cue.start).astype(float)
+        ease_blend((times - cue.start) / cue.blend_in)
+        if cue.blend_in > 0
+        else (times >= cue.start).astype(float)
     )
-    fall = ease((cue.end - times) / cue.blend_out) if cue.blend_out > 0 else (times < cue.end).astype(float)
+    fall = (
+        ease_blend((cue.end - times) / cue.blend_out)
+        if cue.blend_out > 0
+        else (times < cue.end).astype(float)
+    )
     return np.asarray(rise * fall)
 
 
@@ -176,7 +182,7 @@ def loop_seconds(project: Project, action: Action, elapsed: Array) -> tuple[Arra
     phase = np.mod(np.maximum(elapsed, 0.0) if seam > 0 else elapsed, period)
     if seam <= 0:
         return start + phase, start + phase, np.zeros_like(phase)
-    old = np.where(elapsed >= period, 1 - ease(phase / seam), 0.0)
+    old = np.where(elapsed >= period, 1 - ease_blend(phase / seam), 0.0)
     return start + phase, start + np.minimum(period + phase, length), old
 
 
@@ -198,9 +204,9 @@ def _extended(shown: Sample, stance: Sample, extent: float, scales: Array) -> Sa
     """Play a sample larger or smaller round its stance. scales `[2, n]`: as `anatomy.scales`."""
     share = (extent - 1) * scales[0 if extent > 1 else 1]
     apart = rotation.multiply(rotation.conjugate(stance[0]), shown[0])
-    factor = 1 + share * ease((np.abs(apart[..., 3]) - 0.1) / 0.4)  # mood.turn_extent
+    factor = 1 + share * ease_blend((np.abs(apart[..., 3]) - 0.1) / 0.4)  # mood.turn_extent
     moved = stance[1] + (shown[1] - stance[1]) * (1 + share[:, None])
-    return rotation.multiply(stance[0], rotation.power(apart, factor)).astype(np.float32), moved
+    return rotation.multiply(stance[0], rotation.scale_rotation(apart, factor)).astype(np.float32), moved
 
 
 def _lead(shown: Sample, stance: Sample, edge: Sample, weight: Array) -> Sample:
@@ -227,7 +233,7 @@ def _unit(q: Array) -> Array:
     return q
 
 
-def mix(a: Sample, b: Sample, weight: Array) -> Sample:
+def crossfade(a: Sample, b: Sample, weight: Array) -> Sample:
     """Crossfade two samples, `weight [N]` of the second."""
     w = weight.astype(np.float32)[:, None]
     return rotation.nlerp(a[0], b[0], np.broadcast_to(w, b[0].shape[:-1])), a[1] + (b[1] - a[1]) * w[
@@ -235,7 +241,7 @@ def mix(a: Sample, b: Sample, weight: Array) -> Sample:
     ]
 
 
-def sample(ground: Ground, reach: Reach, clip: Clip, seconds: Array) -> Sample:
+def sample_offsets(ground: Ground, reach: Reach, clip: Clip, seconds: Array) -> Sample:
     """Return a clip's offsets at clip seconds `[N]`; the arrays are the caller's."""
     offsets = ground.offsets(clip, reach)
     low, high, part = clip.locate(seconds)

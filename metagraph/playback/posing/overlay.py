@@ -21,7 +21,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.posing.composer import ComposerRig, Reach, find_composer
-from metagraph.playback.posing.layers import Sample, ease, no_offsets, sample
+from metagraph.playback.posing.layers import Sample, ease_blend, sample_offsets, zero_offsets
 
 Array = NDArray[Any]
 
@@ -50,14 +50,14 @@ def lay_over(project: Project, rig: ComposerRig, layers: Mapping[Layer, Sample],
     count = len(over.weight)
     pose = rig.compose({"body": layers["body"]} if "body" in layers else {}, count)
     size = pose.rotations.shape[1]
-    parts = anatomy.parts(project)
+    parts = anatomy.project_parts(project)
     heads = np.array([parts[j] == "head" for j in over.joints])
     both = np.maximum(over.arms, over.head)
     share = np.zeros((count, size), np.float32)
     share[:, over.joints] = over.weight[:, None] * (1 - np.where(heads, both[:, None], over.arms[:, None]))
     rotations, translations = pose.rotations, pose.translations
     turned, away = _whole(rig, layers, "arms", count)
-    turns = rotation.identity((count, size), np.float32)
+    turns = rotation.identity_rotations((count, size), np.float32)
     turns[:, over.joints] = over.turns
     rotations = rotation.multiply(rotations, rotation.nlerp(turned, turns, share))
     translations = translations + away * (1 - share[..., None])
@@ -65,19 +65,19 @@ def lay_over(project: Project, rig: ComposerRig, layers: Mapping[Layer, Sample],
     share = np.zeros((count, size), np.float32)
     share[:, over.joints] = (over.weight * (1 - both))[:, None]
     turned, away = _whole(rig, layers, "head", count)
-    still = rotation.identity((count, size), np.float32)
+    still = rotation.identity_rotations((count, size), np.float32)
     rotations = rotation.multiply(rotations, rotation.nlerp(turned, still, share))
     return Pose(rotation.normalize(rotations), translations + away * (1 - share[..., None]))
 
 
 def _whole(rig: ComposerRig, layers: Mapping[Layer, Sample], layer: Layer, count: int) -> Sample:
     """Return what a layer adds on every joint `[count, J]`."""
-    rotations, translations = no_offsets(count, len(rig.ground.skeleton))
+    rotations, translations = zero_offsets(count, len(rig.ground.skeleton))
     if layer in layers:
         reach = rig.reach[layer]
         turned, away = layers[layer]
         if reach.weights is not None:
-            turned, away = rotation.power(turned, reach.weights[:, 0]), away * reach.weights
+            turned, away = rotation.scale_rotation(turned, reach.weights[:, 0]), away * reach.weights
         rotations[:, reach.joints], translations[:, reach.joints] = turned, away
     return rotations, translations
 
@@ -87,18 +87,18 @@ def _reach(parts: tuple[Part, ...]) -> Reach:
     return Reach(np.array([j for j, part in enumerate(parts) if part in MOVED], np.int64), None)
 
 
-def reached(project: Project) -> Array:
+def find_overlaid_joints(project: Project) -> Array:
     """Return the joints `[n]` that are laid over: spine, arms, neck and head; not the face."""
-    return _reach(anatomy.parts(project)).joints
+    return _reach(anatomy.project_parts(project)).joints
 
 
 def clip_overlay(project: Project, clip: Clip, times: Array) -> Overlay:
     """Return a clip laid over a plan from its beginning on, at `times [N]`: it comes and goes within BLEND
     seconds, half of it for a short one. Raises ValueError for a clip of another skeleton.
     """
-    reach = _reach(anatomy.parts(project))
-    turns, _ = sample(find_composer(project).ground, reach, clip, np.clip(times, 0.0, clip.duration))
+    reach = _reach(anatomy.project_parts(project))
+    turns, _ = sample_offsets(find_composer(project).ground, reach, clip, np.clip(times, 0.0, clip.duration))
     blend = max(1e-6, min(BLEND, clip.duration / 2))
-    weight = ease(times / blend) * ease((clip.duration - times) / blend)
+    weight = ease_blend(times / blend) * ease_blend((clip.duration - times) / blend)
     none = np.zeros(len(times))
     return Overlay(reach.joints, turns, weight, none, none)

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from metagraph.graph.face.rig import made_of
+from metagraph.graph.face.rig import parts_for_face
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.remembered import Remembered
 from metagraph.motion.contact_solve import ContactRig
@@ -37,7 +37,7 @@ class ResolvedProject(Project):
     weight: Weight = field(default_factory=lambda: Weight(None, {}, {}), compare=False, repr=False)
 
 
-_known: Remembered[Rigs] = Remembered(made_of)
+_known: Remembered[Rigs] = Remembered(parts_for_face)
 
 
 def rigs_of(project: Project) -> Rigs:

@@ -27,7 +27,7 @@ from metagraph.motion.feet_solve import FootGoal, plant_feet
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.motion.weight_solve import WeightBend, WeightCollar, WeightRig, answer_arms, moves_body
 from metagraph.playback.plan import LayerPlan, Plan
-from metagraph.playback.posing.feet import FeetOfPlan, Rows, moved_alone, rows_of_feet
+from metagraph.playback.posing.feet import FeetOfPlan, Rows, moves_legs_alone, rows_of_feet
 from metagraph.playback.posing.follow_through import (
     KNOTS,
     NUMBERS,
@@ -80,7 +80,7 @@ def find_weight(project: Project) -> Weight:
 
 def _rig(project: Project, strength: float) -> WeightRig | None:
     """Return the rig of a project; None of one without hips, two legs that hang from them, and two arms."""
-    skeleton, roles = project.skeleton, anatomy.roles(project)
+    skeleton, roles = project.skeleton, anatomy.project_roles(project)
     needed = ["hips", *(f"{s}_{p}" for s in SIDES for p in ("upper_leg", "lower_leg", "foot"))]
     needed += [f"{s}_{p}" for s in SIDES for p in ("upper_arm", "lower_arm", "hand")]
     if skeleton is None or any(r not in roles for r in needed):
@@ -99,7 +99,7 @@ def _found(skeleton: Skeleton, roles: Mapping[str, int], base: Pose, strength: f
     hips = roles["hips"]
 
     def local(joint: int, axis: Array) -> Vector:
-        x, y, z = rotation.rotate(rotation.conjugate(turned[joint]), axis).tolist()
+        x, y, z = rotation.rotate_vectors(rotation.conjugate(turned[joint]), axis).tolist()
         return x, y, z
 
     joints = sorted({j for s in SIDES for j in skeleton.chain(roles[f"{s}_foot"])})
@@ -156,7 +156,7 @@ def _found(skeleton: Skeleton, roles: Mapping[str, int], base: Pose, strength: f
     )
 
 
-def rows_of(weight: Weight, project: Project, clip: str) -> Rows:
+def arm_track_rows(weight: Weight, project: Project, clip: str) -> Rows:
     """Return the rows of a clip's `ArmTrack`; none of one that is missing, or of another skeleton."""
     found = weight.rows.get(clip)
     if found is None:
@@ -177,7 +177,7 @@ def foot_rows_of(weight: Weight, project: Project, clip: str) -> Rows:
         entry = project.clips.get(clip)
         motion = entry.motion if entry is not None else None
         fits = motion is not None and motion.skeleton == project.skeleton
-        if fits and motion is not None and weight.rig is not None and moved_alone(project, weight.rig):
+        if fits and motion is not None and weight.rig is not None and moves_legs_alone(project, weight.rig):
             found = rows_of_feet(project, motion, weight.rig)
         else:
             found = ()
@@ -186,7 +186,7 @@ def foot_rows_of(weight: Weight, project: Project, clip: str) -> Rows:
 
 
 def _rows(project: Project, clip: Clip) -> tuple[tuple[float, ...], ...]:
-    skeleton, roles = clip.skeleton, anatomy.roles(project)
+    skeleton, roles = clip.skeleton, anatomy.project_roles(project)
     base = anatomy.base_pose(project)
     turned, at = (x.astype(float) for x in skeleton.globals(base))
     axes = axes_of(skeleton, {r: j for r, j in roles.items() if not r.endswith("eye")}, at)
@@ -217,7 +217,7 @@ def _along(
     here = np.broadcast_to(at[parent] if parent >= 0 else np.zeros(3), (len(rotations), 3))
     out = {}
     for joint in line:
-        here = here + rotation.rotate(turn, np.broadcast_to(moved[joint].astype(float), here.shape))
+        here = here + rotation.rotate_vectors(turn, np.broadcast_to(moved[joint].astype(float), here.shape))
         turn = rotation.multiply(turn, rotations[:, joint].astype(float))
         out[joint] = here
     return out
@@ -246,20 +246,20 @@ def _raised(places: Mapping[int, Array], joints: Sequence[int], axes: Array) -> 
     return np.asarray(LIFT * x * x * (3 - 2 * x))
 
 
-def sways(project: Project) -> bool:
+def has_sway(project: Project) -> bool:
     """Whether the bodies of a project answer their arms."""
     life = project.life
     return life.on and life.stillness < 1 and (life.follow_through > 0 or life.shoulder_lift > 0)
 
 
-def plants(project: Project) -> bool:
+def has_planted_feet(project: Project) -> bool:
     """Whether the feet of a project stay planted in blends."""
     return project.life.on and project.life.planted_feet > 0
 
 
-def weighs(project: Project) -> bool:
+def has_weight(project: Project) -> bool:
     """Whether the bodies of a project answer their arms, or keep their feet where they are."""
-    return sways(project) or plants(project)
+    return has_sway(project) or has_planted_feet(project)
 
 
 class WeightStage:
@@ -273,9 +273,11 @@ class WeightStage:
         self._sways: dict[int, list[float]] = {}
         rig = weight.rig
         self._feet = (
-            FeetOfPlan(partial(foot_rows_of, weight), rig.height) if rig and plants(project) else None
+            FeetOfPlan(partial(foot_rows_of, weight), rig.height)
+            if rig and has_planted_feet(project)
+            else None
         )
-        self._answers = bool(rig and rig.strength > 0 and sways(project) and plan.layers["arms"].cues)
+        self._answers = bool(rig and rig.strength > 0 and has_sway(project) and plan.layers["arms"].cues)
 
     def run(self, pose: Pose, times: Array, shown: Array | None = None) -> Pose:
         """Return composed poses `[N, J]` at `times [N]` in which feet stay planted and the body answers its
@@ -350,6 +352,6 @@ class WeightStage:
         actions += [of.rests[n].action for n in (place, place - 1) if n >= 0]
         for action in actions:
             if action.id not in self._tracks:
-                rows = rows_of(self._weight, self._project, action.clip) if whole else ()
+                rows = arm_track_rows(self._weight, self._project, action.clip) if whole else ()
                 self._tracks[action.id] = ArmTrack(action.clip, rows)
         return cue, place

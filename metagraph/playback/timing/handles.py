@@ -39,7 +39,7 @@ FIELDS = {
 }  # of Timing, by the handle that stands for each
 
 
-def times_of(project: Project, action: Action) -> dict[str, float | None]:
+def handle_times(project: Project, action: Action) -> dict[str, float | None]:
     """Return where each handle stands, seconds of the clip; None for one that is not set."""
     start, end = project.span(action)
     t = action.timing
@@ -61,7 +61,7 @@ def _phases(project: Project, action: Action) -> dict[str, float | None]:
     return {"ready": found.ready, "hold": found.stroke_end, "relax": found.relax}
 
 
-def moved(project: Project, action: Action, handle: str, seconds: float) -> dict[str, Any]:
+def move_handle(project: Project, action: Action, handle: str, seconds: float) -> dict[str, Any]:
     """Return the Timing fields that dragging a handle to `seconds` changes; a pure function of where it is
     dropped.
     """
@@ -83,7 +83,7 @@ def moved(project: Project, action: Action, handle: str, seconds: float) -> dict
     if handle == "exit":
         return {"earliest_exit": min(max(at, start), end)}
     if handle in PHASES:
-        now = times_of(project, action)
+        now = handle_times(project, action)
         order = (start, *(float(now[p] or start) for p in PHASES), end)
         place = PHASES.index(handle) + 1
         fields = dict(zip(PHASES, ("ready", "stroke_end", "relax"), strict=True))
@@ -98,7 +98,7 @@ def _within(action: Action, start: float, end: float) -> dict[str, Any]:
     return {name: at for name, at in then.items() if at != now[name]}
 
 
-def retimed(project: Project, actions: Iterable[str], name: str, value: float) -> Project:
+def set_timing_field(project: Project, actions: Iterable[str], name: str, value: float) -> Project:
     """Return the project with a Timing field of actions set, each kept within its own clip as a dragged
     handle is.
     """
@@ -109,7 +109,7 @@ def retimed(project: Project, actions: Iterable[str], name: str, value: float) -
             continue
         start, end = project.span(action)
         at = {"blend_in": start + value, "blend_out": end - value}.get(name, value)
-        changes[ident] = {"timing": moved(project, action, FIELDS[name], at)}
+        changes[ident] = {"timing": move_handle(project, action, FIELDS[name], at)}
     return edits.update_each(project, changes)
 
 
@@ -131,7 +131,7 @@ class Handle:
 
 
 @dataclass(frozen=True, slots=True)
-class Block:
+class PhaseBlock:
     """A phase of a gesture. name: of `BLOCKS`. first, last: seconds of the clip. own: an edge of it is the
     timing's.
     """
@@ -144,7 +144,7 @@ class Block:
 
 def handles_of(project: Project, action: Action) -> tuple[Handle, ...]:
     """Return an action's handles that can be seen and taken; a gesture's stroke also where it was found."""
-    t, at = action.timing, times_of(project, action)
+    t, at = action.timing, handle_times(project, action)
     own = {"ready": t.ready, "hold": t.stroke_end, "relax": t.relax, "stroke": t.stroke}
     if action.kind == "gesture" and at["stroke"] is None:
         at["stroke"] = phases(project, action).stroke
@@ -157,14 +157,16 @@ def handles_of(project: Project, action: Action) -> tuple[Handle, ...]:
     )
 
 
-def blocks_of(project: Project, action: Action) -> tuple[Block, ...]:
+def blocks_of(project: Project, action: Action) -> tuple[PhaseBlock, ...]:
     """Return a gesture's phases in time; none of other kinds."""
     if action.kind != "gesture":
         return ()
-    t, at = action.timing, times_of(project, action)
+    t, at = action.timing, handle_times(project, action)
     own = (False, t.ready is not None, t.stroke_end is not None, t.relax is not None, False)
     edges = [float(at[name] or 0.0) for name in EDGES]
-    return tuple(Block(name, edges[n], edges[n + 1], own[n] or own[n + 1]) for n, name in enumerate(BLOCKS))
+    return tuple(
+        PhaseBlock(name, edges[n], edges[n + 1], own[n] or own[n + 1]) for n, name in enumerate(BLOCKS)
+    )
 
 
 def block_moved(project: Project, action: Action, block: str, by: float) -> dict[str, Any]:
@@ -189,14 +191,14 @@ def _moved_by(
     """Return the fields of edges moved one after the other, the one ahead first: none is in the way."""
     out: dict[str, Any] = {}
     for name in names:
-        fields = moved(project, action, name, edges[EDGES.index(name)] + by)
+        fields = move_handle(project, action, name, edges[EDGES.index(name)] + by)
         project = edits.update_actions(project, [action.id], timing=fields)
         action = project.action(action.id) or action
         out |= fields
     return out
 
 
-def slipped(project: Project, action: Action, by: float) -> dict[str, Any]:
+def slip_action(project: Project, action: Action, by: float) -> dict[str, Any]:
     """Return the Timing fields that playing another part of the clip changes, as long and as late as the
     present one: start, end and all moments set go by the same seconds, as far as the clip reaches.
     """
@@ -215,7 +217,9 @@ def slipped(project: Project, action: Action, by: float) -> dict[str, Any]:
     return {name: value for name, value in out.items() if value != getattr(action.timing, name)}
 
 
-def moved_by(project: Project, actions: Iterable[str], handle: str, by: float) -> dict[str, dict[str, Any]]:
+def move_handle_by(
+    project: Project, actions: Iterable[str], handle: str, by: float
+) -> dict[str, dict[str, Any]]:
     """Return what `edits.update_each` is given for a handle dragged by seconds in each of some actions,
     within its own clip; those that have no such handle stay as they are.
     """
@@ -226,5 +230,5 @@ def moved_by(project: Project, actions: Iterable[str], handle: str, by: float) -
             continue
         at = next((h.at for h in handles_of(project, action) if h.name == handle), None)
         if at is not None:
-            out[ident] = {"timing": moved(project, action, handle, at + by)}
+            out[ident] = {"timing": move_handle(project, action, handle, at + by)}
     return out

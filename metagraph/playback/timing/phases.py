@@ -37,10 +37,14 @@ def phases(project: Project, action: Action) -> Phases:
     is missing.
     """
     entry = project.clips.get(action.clip)
-    return phases_within(project, action, entry.motion if entry is not None else None, *project.span(action))
+    return find_phases_within(
+        project, action, entry.motion if entry is not None else None, *project.span(action)
+    )
 
 
-def phases_within(project: Project, action: Action, motion: Clip | None, start: float, end: float) -> Phases:
+def find_phases_within(
+    project: Project, action: Action, motion: Clip | None, start: float, end: float
+) -> Phases:
     """Return an action's phases, where its clip and the part that plays (`Project.span`) are at hand."""
     timing = action.timing
     own = not timing.ready is timing.stroke is timing.stroke_end is timing.relax is None
@@ -107,7 +111,7 @@ def movers(project: Project, motion: Clip, layer: Layer, limb: str) -> tuple[tup
     known = _of_skeleton(project)
     found = known.get((layer, limb))
     if found is None:
-        found = known[layer, limb] = _movers(anatomy.roles(project), motion, layer, limb)
+        found = known[layer, limb] = _movers(anatomy.project_roles(project), motion, layer, limb)
     return found
 
 
@@ -174,7 +178,7 @@ def track(whose: ref[Clip], joints: tuple[int, ...], seen_from: int) -> Array:
     turns, places = motion.skeleton.globals(motion.poses())
     chosen = places[:, list(joints)]
     if seen_from >= 0:
-        chosen = rotation.rotate(
+        chosen = rotation.rotate_vectors(
             rotation.conjugate(turns[:, seen_from])[:, None], chosen - places[:, seen_from, None]
         )
     return np.asarray(chosen, np.float64)

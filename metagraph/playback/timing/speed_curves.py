@@ -58,7 +58,7 @@ def curves_of(project: Project, action: Action, joint: str = "") -> tuple[SpeedC
     motion = motion_of(project, action)
     if motion is None:
         return ()
-    roles = anatomy.roles(project)
+    roles = anatomy.project_roles(project)
     names = motion.skeleton.names
     if joint in motion.skeleton:
         place = motion.skeleton.index(joint)
@@ -79,7 +79,7 @@ def joints_offered(project: Project) -> tuple[tuple[str, str], ...]:
     """Return the joints whose curve can be asked for, (name, words): those that tell most first."""
     if project.skeleton is None:
         return ()
-    names, roles = project.skeleton.names, anatomy.roles(project)
+    names, roles = project.skeleton.names, anatomy.project_roles(project)
     first = [(names[roles[r]], r.replace("_", " ")) for r in OFFERED if r in roles]
     known = {name for name, _ in first}
     return (*first, *((name, name) for name in names if name not in known))
@@ -95,7 +95,7 @@ def _curve(
 
 def _movers(project: Project, motion: Clip, layer: str, limb: str) -> tuple[list[int], int | None]:
     """Return the joints that a layer is about, and the one they are seen from."""
-    roles = anatomy.roles(project)
+    roles = anatomy.project_roles(project)
     if layer == "arms":
         sides = ("left", "right") if limb == "both" else (limb,)
         return [roles[f"{s}_hand"] for s in sides if f"{s}_hand" in roles], _first(roles, CHESTS)

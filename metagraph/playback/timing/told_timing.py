@@ -15,7 +15,7 @@ THOUSAND, TICKS = 1e3, 1e7  # of a second, in which Polly and Azure count
 LARGEST = 1e15
 
 
-def told_timing(ask: Say) -> LineTiming | None:
+def read_given_timing(ask: Say) -> LineTiming | None:
     """Return when a line's words and shapes come; None where that is not told. Raises RequestError naming the
     entry.
     """

@@ -5,33 +5,33 @@ from __future__ import annotations
 from math import log
 
 from metagraph.graph.edits import remove_actions
-from metagraph.graph.expand import size
+from metagraph.graph.expand import count_machine_size
 from metagraph.graph.model import Action, Kind, MetaGraph, Project, Stance
 from metagraph.playback.planning.choice import uniform
 from metagraph.research.exhibits import drawings
-from metagraph.research.exhibits.exhibit import Drawing, ExhibitTable, Shown
-from metagraph.research.exhibits.material import Material
+from metagraph.research.exhibits.exhibit import ExhibitDrawing, ExhibitTable, MadeExhibit
+from metagraph.research.exhibits.material import ExhibitMaterial
 from metagraph.research.exhibits.published import EXAMPLE_ON_EACH, EXAMPLE_STANCES, TIMES_FASTER
-from metagraph.research.study.analysis.example import CLIPS, MANUAL_HOURS, META_HOURS, example
+from metagraph.research.study.analysis.example import CLIPS, MANUAL_HOURS, META_HOURS, compute_example
 from metagraph.research.study.scores.machines import Score
 
 STEPS = (5, 10, 20, 35, 50, 75, 100, 152, 250, 400, 700, 1000, 2000, 5000)
 
 
-def growth(material: Material) -> Shown:
+def growth(material: ExhibitMaterial) -> MadeExhibit:
     """Figures 1 and 2: what is dropped, and what would have to be drawn."""
     project = material.project
     whole = [a.id for a in project.actions()]
     if len(whole) < 2:
-        return Shown(_of(project), missing="the project has fewer than two actions: nothing grows")
+        return MadeExhibit(_of(project), missing="the project has fewer than two actions: nothing grows")
     found = []
     for count in sorted({*(n for n in STEPS if n < len(whole)), len(whole)}):
-        counted = size(smaller(project, count))
+        counted = count_machine_size(smaller(project, count))
         found.append((count, counted.connections))
     slope = _slope([(n, c) for n, c in found if c])
-    imagined = size(figure_1())
+    imagined = count_machine_size(figure_1())
     rows = [(f"{n}", f"{n}", f"{c:,}", f"{c / n:.1f}") for n, c in found]
-    drawn = drawings.lines(
+    drawn = drawings.draw_series(
         {
             "dropped": ("ours", [(n, n) for n, _ in found]),
             "connections": ("paper", [(n, c) for n, c in found if c]),
@@ -50,7 +50,7 @@ def growth(material: Material) -> Shown:
         f"fidgets on each and a transition from each to each (figure 1): {imagined.states} states and "
         f"{imagined.connections:,} connections, or {imagined.states} drops on 4 nodes (figure 2).",
     ]
-    return Shown(
+    return MadeExhibit(
         _of(project),
         tuple(says),
         (
@@ -59,30 +59,32 @@ def growth(material: Material) -> Shown:
                 ("actions", "drops on the meta-graph", "connections by hand", "connections an action"),
                 tuple(rows),
             ),
-            Drawing("The project's actions, stances' loops first, then in an order drawn by chance", drawn),
+            ExhibitDrawing(
+                "The project's actions, stances' loops first, then in an order drawn by chance", drawn
+            ),
         ),
         {"growth": found, "power": slope, "figure 1": [imagined.states, imagined.connections]},
     )
 
 
-def hours(material: Material) -> Shown:
+def hours(material: ExhibitMaterial) -> MadeExhibit:
     """Section 7.1: 8 hours against 63, which were timed, and ours, which are counted."""
     from metagraph.research.study.machines.by_hand import Way
-    from metagraph.research.study.machines.counted_drops import dropped
-    from metagraph.research.study.machines.counted_hand import searched, try_way
+    from metagraph.research.study.machines.counted_drops import label_by_drops
+    from metagraph.research.study.machines.counted_hand import search_ways, try_way
 
-    published, project = example(), once(material.project)
+    published, project = compute_example(), keep_first_uses(material.project)
     again = len(list(material.project.actions())) - len(list(project.actions()))
     about = _of(project) + (f", {again} further uses of the same clips left out" if again else "")
     if len(list(project.actions())) < 2:
-        return Shown(about, missing="the project has fewer than two actions: there is nothing to wire")
-    meta = dropped(project)
+        return MadeExhibit(about, missing="the project has fewer than two actions: there is nothing to wire")
+    meta = label_by_drops(project)
     tried = [
         try_way(Way("many at once", "from aliases", "words", "many at once", True), project),
         try_way(Way("one by one", "one by one", "clicks", "each", True), project),
     ]
     if material.full:
-        tried = [searched(project)[0], tried[-1]]
+        tried = [search_ways(project)[0], tried[-1]]
     best, each = min(tried, key=lambda t: t.seconds), tried[-1]
     clips = len(list(project.actions()))
 
@@ -122,7 +124,7 @@ def hours(material: Material) -> Shown:
         ("here, link by link", [("ours", every, None, None)]),
         ("here, best way", [("ours", ratio, None, None)]),
     ]
-    drawn = drawings.pairs(
+    drawn = drawings.draw_paired_bars(
         bars,
         (("paper", "timed"), ("ours", "counted")),
         "times as long by hand",
@@ -131,10 +133,10 @@ def hours(material: Material) -> Shown:
     )
     head = ("", "", "time", "minutes a clip", "mistakes")
     table = ExhibitTable(f"{CLIPS} clips there, {clips} here", head, tuple(rows))
-    return Shown(
+    return MadeExhibit(
         about,
         tuple(says),
-        (table, Drawing("Ratios; the dashed line is no difference", drawn)),
+        (table, ExhibitDrawing("Ratios; the dashed line is no difference", drawn)),
         {
             "published": published.ratio.value,
             "link by link": every,
@@ -144,7 +146,7 @@ def hours(material: Material) -> Shown:
     )
 
 
-def once(project: Project) -> Project:
+def keep_first_uses(project: Project) -> Project:
     """Return a project with the first use of each clip: who wires clips by hand makes a state of each."""
     first = {a.clip: a.id for a in reversed(list(project.actions()))}
     return remove_actions(project, [a.id for a in project.actions() if first[a.clip] != a.id])

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from math import isfinite
 
-from metagraph.common.svg import WIDTH, dot, line, number, svg, text
+from metagraph.common.svg import WIDTH, format_px, svg_dot, svg_drawing, svg_line, svg_text
 from metagraph.common.xml_text import escape
 from metagraph.research.study.reports.plot_axes import RATIOS, Place, log_axis, plain_axis
 
@@ -23,28 +23,27 @@ STEPS = tuple(m * 10.0**e for e in range(-5, 9) for m in (1, 2, 2.5, 5))
 def rect(css: str, x: float, y: float, wide: float, high: float, words: str = "") -> str:
     """Return a rectangle. words: shown under the pointer."""
     told = f"<title>{escape(words)}</title>" if words else ""
-    shape = (
-        f"x='{number(x)}' y='{number(y)}' width='{number(max(0.0, wide))}' height='{number(max(0.0, high))}'"
-    )
+    size = f"width='{format_px(max(0.0, wide))}' height='{format_px(max(0.0, high))}'"
+    shape = f"x='{format_px(x)}' y='{format_px(y)}' {size}"
     return f"<rect class='{css}' {shape}>{told}</rect>"
 
 
 def polyline(css: str, points: Sequence[tuple[float, float]]) -> str:
     """Return a line through points."""
-    at = " ".join(f"{number(x)},{number(y)}" for x, y in points)
+    at = " ".join(f"{format_px(x)},{format_px(y)}" for x, y in points)
     return f"<polyline class='curve {css}' points='{at}'/>"
 
 
-def legend(names: Sequence[tuple[str, str]], y: float) -> list[str]:
+def draw_legend(names: Sequence[tuple[str, str]], y: float) -> list[str]:
     """Return squares with words beside them, in a line. names: class and words."""
     out, x = [], LEFT
     for css, words in names:
-        out += [rect(css, x, y, 12, 12), text(x + 18, y + 10, words, "dim", "start")]
+        out += [rect(css, x, y, 12, 12), svg_text(x + 18, y + 10, words, "dim", "start")]
         x += 40 + 6.6 * len(words)
     return out
 
 
-def lines(
+def draw_series(
     series: Mapping[str, tuple[str, Sequence[tuple[float, float]]]],
     across: str,
     up: str,
@@ -54,7 +53,7 @@ def lines(
     """Draw values over values, joined. series: words -> class and points. logs: both axes logarithmic."""
     every = [p for _, points in series.values() for p in points if all(isfinite(v) for v in p)]
     if not every:
-        return nothing(title)
+        return draw_nothing(title)
     axis = _logs if logs else _plain
     xs, ys = [p[0] for p in every], [p[1] for p in every]
     x, x_ticks = axis(min(xs) if logs else min(0.0, *xs), max(xs), LEFT, RIGHT)
@@ -64,12 +63,12 @@ def lines(
         placed = [(x(a), y(b)) for a, b in points if isfinite(a) and isfinite(b)]
         parts.append(polyline(css, placed))
         if len(placed) <= DOTTED:
-            parts += [f"<g class='{css}'>{dot(a, b, 3)}</g>" for a, b in placed]
-    parts += legend([(css, words) for words, (css, _) in series.items()], BOTTOM + 48)
-    return svg(BOTTOM + 68, parts, title)
+            parts += [f"<g class='{css}'>{svg_dot(a, b, 3)}</g>" for a, b in placed]
+    parts += draw_legend([(css, words) for words, (css, _) in series.items()], BOTTOM + 48)
+    return svg_drawing(BOTTOM + 68, parts, title)
 
 
-def histogram(
+def draw_histogram(
     bars: Sequence[tuple[float, float, float]],
     curve: Sequence[tuple[float, float]],
     mark: tuple[float, str] | None,
@@ -78,7 +77,7 @@ def histogram(
 ) -> str:
     """Draw densities as bars (from, to, height), a curve over them, and a mark on the axis."""
     if not bars:
-        return nothing(title)
+        return draw_nothing(title)
     most = max(h for _, _, h in bars)
     x, x_ticks = _plain(0.0, bars[-1][1], LEFT, RIGHT)
     y, y_ticks = _plain(0.0, most, BOTTOM, TOP)
@@ -86,12 +85,12 @@ def histogram(
     parts += [rect("ours", x(a), y(h), x(b) - x(a) - 0.5, BOTTOM - y(h)) for a, b, h in bars]
     parts.append(polyline("ink", [(x(a), y(min(b, most))) for a, b in curve]))
     if mark is not None:
-        parts += [line(x(mark[0]), TOP, x(mark[0]), BOTTOM, "one")]
-        parts.append(text(x(mark[0]) + 5, TOP + 12, mark[1], "dim", "start"))
-    return svg(BOTTOM + 46, parts, title)
+        parts += [svg_line(x(mark[0]), TOP, x(mark[0]), BOTTOM, "one")]
+        parts.append(svg_text(x(mark[0]) + 5, TOP + 12, mark[1], "dim", "start"))
+    return svg_drawing(BOTTOM + 46, parts, title)
 
 
-def pairs(
+def draw_paired_bars(
     rows: Sequence[tuple[str, Sequence[Bar]]],
     names: Sequence[tuple[str, str]],
     across: str,
@@ -105,48 +104,55 @@ def pairs(
     left, high = 210.0, 16
     known = [v for _, bars in rows for _, *vs in bars for v in vs if v is not None and isfinite(v)]
     if not known:
-        return nothing(title)
+        return draw_nothing(title)
     x, ticks = _plain(0.0, max(known) if most is None else most, left, RIGHT - 40)
     parts, at = [], TOP
     body = []
     for words, bars in rows:
         middle = at + high * len(bars) / 2
-        body.append(text(left - 12, middle + 4, words, "label", "end"))
+        body.append(svg_text(left - 12, middle + 4, words, "label", "end"))
         for css, value, low, top in bars:
             if isfinite(value):
                 body.append(rect(css, left, at + 2, x(value) - left, high - 4, f"{value:.4g}"))
                 if low is not None and top is not None:
-                    body.append(line(x(low), at + high / 2, x(top), at + high / 2, "edge"))
+                    body.append(svg_line(x(low), at + high / 2, x(top), at + high / 2, "edge"))
                 end = max(x(value), x(top) if top is not None else 0.0)
-                body.append(text(end + 6, at + high / 2 + 4, f"{value:.3g}", "dim", "start"))
+                body.append(svg_text(end + 6, at + high / 2 + 4, f"{value:.3g}", "dim", "start"))
             at += high
         at += 10
     for t in ticks:
-        parts += [line(x(t), TOP, x(t), at, "grid"), text(x(t), at + 16, f"{t:g}", "dim", "middle")]
+        parts += [svg_line(x(t), TOP, x(t), at, "grid"), svg_text(x(t), at + 16, f"{t:g}", "dim", "middle")]
     if one is not None:
-        parts.append(line(x(one), TOP, x(one), at, "one"))
-    parts += [*body, text((left + RIGHT) / 2, at + 34, across, "dim", "middle"), *legend(names, at + 44)]
-    return svg(at + 64, parts, title)
+        parts.append(svg_line(x(one), TOP, x(one), at, "one"))
+    parts += [
+        *body,
+        svg_text((left + RIGHT) / 2, at + 34, across, "dim", "middle"),
+        *draw_legend(names, at + 44),
+    ]
+    return svg_drawing(at + 64, parts, title)
 
 
-def lanes(rows: Sequence[tuple[str, Sequence[Stretch]]], seconds: float, title: str) -> str:
+def draw_spans(rows: Sequence[tuple[str, Sequence[Stretch]]], seconds: float, title: str) -> str:
     """Draw stretches of time under each other. rows: words -> class, start, end, words of each stretch."""
     left, high, gap = 150.0, 22, 10
     x, ticks = _plain(0.0, seconds, left, RIGHT)
     bottom = TOP + len(rows) * (high + gap)
     parts = []
     for t in ticks:
-        parts += [line(x(t), TOP, x(t), bottom, "grid"), text(x(t), bottom + 16, f"{t:g} s", "dim", "middle")]
+        parts += [
+            svg_line(x(t), TOP, x(t), bottom, "grid"),
+            svg_text(x(t), bottom + 16, f"{t:g} s", "dim", "middle"),
+        ]
     for n, (words, stretches) in enumerate(rows):
         at = TOP + n * (high + gap)
-        parts.append(text(left - 12, at + 15, words, "label", "end"))
+        parts.append(svg_text(left - 12, at + 15, words, "label", "end"))
         for css, a, b, told in stretches:
             parts.append(
                 rect(css, x(a), at, max(2.0, x(b) - x(a) - 1), high, f"{told}: {a:.2f} to {b:.2f} s")
             )
             if len(told) * 6.5 < x(b) - x(a):
-                parts.append(text((x(a) + x(b)) / 2, at + 15, told, "inside", "middle"))
-    return svg(bottom + 26, parts, title)
+                parts.append(svg_text((x(a) + x(b)) / 2, at + 15, told, "inside", "middle"))
+    return svg_drawing(bottom + 26, parts, title)
 
 
 def heat(names: Sequence[str], grids: Mapping[str, tuple[str, Sequence[Sequence[float]]]], title: str) -> str:
@@ -156,21 +162,21 @@ def heat(names: Sequence[str], grids: Mapping[str, tuple[str, Sequence[Sequence[
     parts = []
     for k, (words, (css, rows)) in enumerate(grids.items()):
         left = 54 + k * wide
-        parts.append(text(left + cell * len(names) / 2, 14, words, "label", "middle"))
+        parts.append(svg_text(left + cell * len(names) / 2, 14, words, "label", "middle"))
         for i, row in enumerate(rows):
-            parts.append(text(left - 6, 46 + cell * (i + 0.65), names[i].replace(" ", ""), "dim", "end"))
+            parts.append(svg_text(left - 6, 46 + cell * (i + 0.65), names[i].replace(" ", ""), "dim", "end"))
             for j, share in enumerate(row):
                 told = f"{names[i]} then {names[j]}: {share:.1%}"
                 box = rect(css, left + cell * j, 46 + cell * i, cell - 1, cell - 1, told)
                 parts.append(f"<g opacity='{0.06 + 0.94 * min(1.0, share):.2f}'>{box}</g>")
         for j, name in enumerate(names):
-            parts.append(text(left + cell * (j + 0.5), 40, name.replace(" ", ""), "small", "middle"))
-    return svg(60 + cell * len(names), parts, title)
+            parts.append(svg_text(left + cell * (j + 0.5), 40, name.replace(" ", ""), "small", "middle"))
+    return svg_drawing(60 + cell * len(names), parts, title)
 
 
-def nothing(title: str) -> str:
+def draw_nothing(title: str) -> str:
     """Return a drawing that says that there is nothing to draw."""
-    return svg(40, [text(WIDTH / 2, 24, "nothing to draw", "dim", "middle")], title)
+    return svg_drawing(40, [svg_text(WIDTH / 2, 24, "nothing to draw", "dim", "middle")], title)
 
 
 def _plain(low: float, high: float, start: float, end: float) -> Axis:
@@ -187,13 +193,16 @@ def _frame(
 ) -> list[str]:
     parts = []
     for t in y_ticks:
-        parts += [line(LEFT, y(t), RIGHT, y(t), "grid"), text(LEFT - 8, y(t) + 4, f"{t:,.6g}", "dim", "end")]
+        parts += [
+            svg_line(LEFT, y(t), RIGHT, y(t), "grid"),
+            svg_text(LEFT - 8, y(t) + 4, f"{t:,.6g}", "dim", "end"),
+        ]
     for t in x_ticks:
-        parts.append(text(x(t), BOTTOM + 18, f"{t:,.6g}", "dim", "middle"))
-    parts.append(text((LEFT + RIGHT) / 2, BOTTOM + 38, across, "dim", "middle"))
+        parts.append(svg_text(x(t), BOTTOM + 18, f"{t:,.6g}", "dim", "middle"))
+    parts.append(svg_text((LEFT + RIGHT) / 2, BOTTOM + 38, across, "dim", "middle"))
     middle = (TOP + BOTTOM) / 2
-    turned = f"transform='rotate(-90 14 {number(middle)})'"
+    turned = f"transform='rotate(-90 14 {format_px(middle)})'"
     parts.append(
-        f"<text class='dim' {turned} x='14' y='{number(middle)}' text-anchor='middle'>{escape(up)}</text>"
+        f"<text class='dim' {turned} x='14' y='{format_px(middle)}' text-anchor='middle'>{escape(up)}</text>"
     )
     return parts

@@ -8,7 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # telling which exhibits there are must not wait for arrays
-    from metagraph.research.exhibits.material import Material
+    from metagraph.research.exhibits.material import ExhibitMaterial
 
 NUMBERS = "numbers"  # material: what the papers print, and nothing else
 
@@ -23,7 +23,7 @@ class ExhibitTable:
 
 
 @dataclass(frozen=True)
-class Drawing:
+class ExhibitDrawing:
     """svg: a whole drawing, `metagraph.common.svg.svg`."""
 
     caption: str
@@ -31,7 +31,7 @@ class Drawing:
 
 
 @dataclass(frozen=True)
-class Shown:
+class MadeExhibit:
     """An exhibit that was made. material: what it was made of, and whether anything here was made to fit it.
     says: what can be read off it, the paper's mistakes among it. parts: tables and drawings, in order.
     numbers: the same for programs, plain values. missing: why there is nothing to show, "" where there is.
@@ -39,7 +39,7 @@ class Shown:
 
     material: str
     says: tuple[str, ...] = ()
-    parts: tuple[ExhibitTable | Drawing, ...] = ()
+    parts: tuple[ExhibitTable | ExhibitDrawing, ...] = ()
     numbers: dict[str, Any] = field(default_factory=dict)
     missing: str = ""
 
@@ -59,9 +59,9 @@ class Exhibit:
     seconds: tuple[float, float]
     needs: str = "project"
 
-    def make(self, material: Material) -> Shown:
+    def make(self, material: ExhibitMaterial) -> MadeExhibit:
         """Return the exhibit. Raises what reading its material raises."""
-        found: Shown = getattr(import_module(f"metagraph.research.exhibits.{self.module}"), self.name)(
+        found: MadeExhibit = getattr(import_module(f"metagraph.research.exhibits.{self.module}"), self.name)(
             material
         )
         return found
@@ -126,7 +126,7 @@ EXHIBITS: tuple[Exhibit, ...] = (
 NAMES = tuple(e.name for e in EXHIBITS)
 
 
-def chosen(names: Sequence[str]) -> tuple[Exhibit, ...]:
+def choose_exhibits(names: Sequence[str]) -> tuple[Exhibit, ...]:
     """Return exhibits by name or by paper, each once, in the papers' order; all where nothing is named.
     Raises ValueError for a name that is none.
     """

@@ -14,15 +14,21 @@ from metagraph.formats.clips import digest
 from metagraph.generation.features import PARTNER, RATE, SELF
 from metagraph.generation.landmarks import LANDMARKS
 from metagraph.generation.networks import Kind, parameters, sizes_of
-from metagraph.generation.performing import fits, side_sound
+from metagraph.generation.performing import moves_skeleton, side_sound
 from metagraph.generation.statistics import mean_landmarks, wasserstein
-from metagraph.generation.takes import Source, SplitError, Take, TakeError, TakeSound, take_of
+from metagraph.generation.takes import SplitError, Take, TakeError, TakeSound, TakeSource, make_take
 from metagraph.graph.editing.retargeting import Bringing
-from metagraph.research.exhibits.exhibit import Drawing, ExhibitTable, Shown
-from metagraph.research.exhibits.material import Material
+from metagraph.research.exhibits.exhibit import ExhibitDrawing, ExhibitTable, MadeExhibit
+from metagraph.research.exhibits.material import ExhibitMaterial
 from metagraph.research.exhibits.published import HELD_OUT, JOINTS, PARAMETERS
 from metagraph.research.generation import figures
-from metagraph.research.generation.evaluation import HeldOut, Judged, Manner, judge, unseen
+from metagraph.research.generation.evaluation import (
+    HeldOut,
+    JudgedModels,
+    SamplingManner,
+    judge_on_takes,
+    unseen,
+)
 
 NO_MODEL = (
     "there is no learned generator: it comes with the program where it is installed (sample_clips/models), "
@@ -32,14 +38,14 @@ QUICK = 100.0  # seconds that are judged, where not all is
 KINDS: tuple[Kind, ...] = ("flow-vae", "moglow", "cvae")
 
 
-def distance(material: Material) -> Shown:
+def exhibit_distances(material: ExhibitMaterial) -> MadeExhibit:
     """Figure 6: how far landmarks are from the mean pose."""
     found = _judged(material)
     if isinstance(found, str):
-        return Shown(_about(material), missing=found)
+        return MadeExhibit(_about(material), missing=found)
     mean = mean_landmarks(found.true)
     motion = {"recorded": found.true, "generated": next(iter(found.made.values()))[0]}
-    far = {name: figures.distances(m, mean) for name, m in motion.items()}
+    far = {name: figures.landmark_distances(m, mean) for name, m in motion.items()}
     top = max(float(v.max()) for v in far.values())
     rows = []
     for n, landmark in enumerate(LANDMARKS):
@@ -47,13 +53,14 @@ def distance(material: Material) -> Shown:
         cells = (_quartiles(true), _quartiles(ours), f"{wasserstein(true, ours):.2f}")
         rows.append((landmark.replace("_", " "), *cells))
     parts = [
-        Drawing(f"{name}: the first take", figures.over_time(m[0], mean, top)) for name, m in motion.items()
+        ExhibitDrawing(f"{name}: the first take", figures.draw_over_time(m[0], mean, top))
+        for name, m in motion.items()
     ]
-    parts.append(Drawing("Notched boxes; whiskers by Tukey", figures.boxes(far, "cm")))
+    parts.append(ExhibitDrawing("Notched boxes; whiskers by Tukey", figures.draw_boxes(far, "cm")))
     parts.append(
-        Drawing(
+        ExhibitDrawing(
             "Poses of the first take, one a second, from the front",
-            figures.overlaid({n: m[0] for n, m in motion.items()}),
+            figures.draw_overlaid({n: m[0] for n, m in motion.items()}),
         )
     )
     wrists = {name: np.percentile(v[:, 5:7], (25, 75)) for name, v in far.items()}
@@ -66,7 +73,7 @@ def distance(material: Material) -> Shown:
         "cm recorded. The paper finds its own 'at a similar scale' and its CVAE less active.",
     )
     head = ("landmark", "recorded: quartiles, cm", "generated: quartiles, cm", "apart (W1), cm")
-    return Shown(
+    return MadeExhibit(
         _about(material),
         says,
         (ExhibitTable("Distance from the mean pose", head, tuple(rows)), *parts),
@@ -74,18 +81,18 @@ def distance(material: Material) -> Shown:
     )
 
 
-def roles(material: Material) -> Shown:
+def exhibit_roles(material: ExhibitMaterial) -> MadeExhibit:
     """Figures 7 and 8: how fast that distance changes while speaking and while listening."""
     found = _judged(material)
     if isinstance(found, str):
-        return Shown(_about(material), missing=found)
+        return MadeExhibit(_about(material), missing=found)
     mean = mean_landmarks(found.true)
     motion = {"recorded": found.true, "generated": next(iter(found.made.values()))[0]}
     parts, rows = [], []
     means: dict[str, list[float]] = {}
     for who, words in ((SELF, "speaking"), (PARTNER, "listening")):
-        grown = {name: figures.changes(m, mean, who) for name, m in motion.items()}
-        parts.append(Drawing(f"While {words}", figures.boxes(grown, "cm/s")))
+        grown = {name: figures.distance_changes(m, mean, who) for name, m in motion.items()}
+        parts.append(ExhibitDrawing(f"While {words}", figures.draw_boxes(grown, "cm/s")))
         for name, values in grown.items():
             fast = float(np.abs(values).mean()) if len(values) else float("nan")
             means.setdefault(name, []).append(fast)
@@ -101,7 +108,7 @@ def roles(material: Material) -> Shown:
         "stand in the table.",
     )
     head = ("while", "", "frames", "mean change, cm/s", "median with its sign, cm/s")
-    return Shown(
+    return MadeExhibit(
         _about(material),
         says,
         (ExhibitTable("Change of the distance", head, tuple(rows)), *parts),
@@ -109,7 +116,7 @@ def roles(material: Material) -> Shown:
     )
 
 
-def sizes(material: Material) -> Shown:
+def sizes(material: ExhibitMaterial) -> MadeExhibit:
     """Section 7: trainable parameters."""
     rows: list[tuple[str, ...]] = []
     numbers: dict[str, list[float]] = {}
@@ -132,17 +139,17 @@ def sizes(material: Material) -> Shown:
         f"its Flow-VAE counts {numbers['flow-vae'][1] / 1e6:.1f} M here: what makes the rest is not told.",
     )
     head = ("model", "there", "here, the paper's sizes", "ratio", "here, for a processor")
-    return Shown("the papers' sizes", says, (ExhibitTable("Parameters", head, tuple(rows)),), numbers)
+    return MadeExhibit("the papers' sizes", says, (ExhibitTable("Parameters", head, tuple(rows)),), numbers)
 
 
 @lru_cache(maxsize=1)
-def _judged(material: Material) -> Judged | str:
+def _judged(material: ExhibitMaterial) -> JudgedModels | str:
     """Return the model judged on takes that it has not seen, or why it cannot be."""
     model = material.learned
     if model is None:
         return NO_MODEL
     takes: list[Take] = []
-    bringing = Bringing(material.project) if fits(model, material.project) else None
+    bringing = Bringing(material.project) if moves_skeleton(model, material.project) else None
     brought = 0
     for recorded in material.conversations:
         for side in (0, 1):
@@ -150,7 +157,7 @@ def _judged(material: Material) -> Judged | str:
             if clip is None or sum(t.seconds for t in takes) > (HELD_OUT if material.full else QUICK):
                 continue
             digests = tuple(digest(p) for p in recorded.files)
-            source = Source(f"{recorded.name} {side + 1}", digests or (recorded.name,), "")
+            source = TakeSource(f"{recorded.name} {side + 1}", digests or (recorded.name,), "")
             if recorded.samples is not None:
                 samples = recorded.samples[::-1] if side else recorded.samples
             else:
@@ -161,7 +168,7 @@ def _judged(material: Material) -> Judged | str:
                     known = bringing.known(clip) or bringing.propose(clip.skeleton)
                     clip, brought = bringing.bring(clip, known), brought + 1
                 heard = TakeSound(samples, RATE)
-                takes.append(take_of(model.rig, clip, heard, source, recorded.conversation, side))
+                takes.append(make_take(model.rig, clip, heard, source, recorded.conversation, side))
             except (TakeError, ValueError) as error:
                 material.notes.append(str(error))
     if not takes:
@@ -178,10 +185,10 @@ def _judged(material: Material) -> Judged | str:
         return str(error)
     if left:
         material.notes.append(f"{len(left)} takes are left out, since the model has learned from them")
-    return judge(model.rig, {"generated": model}, HeldOut(fresh), Manner(seeds=1), draws=0)
+    return judge_on_takes(model.rig, {"generated": model}, HeldOut(fresh), SamplingManner(seeds=1), draws=0)
 
 
-def _about(material: Material) -> str:
+def _about(material: ExhibitMaterial) -> str:
     seen = (
         "the model has not learned from them, though from takes of the same maker"
         if material.made_up

@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 
 from metagraph.research.exhibits import drawings
-from metagraph.research.exhibits.exhibit import Drawing, ExhibitTable, Shown
-from metagraph.research.exhibits.material import Actor, Material
+from metagraph.research.exhibits.exhibit import ExhibitDrawing, ExhibitTable, MadeExhibit
+from metagraph.research.exhibits.material import ExhibitActor, ExhibitMaterial
 from metagraph.research.exhibits.published import TABLE_2, TABLE_3
-from metagraph.research.motion_graph.search_evaluation import WINDOW, cut
+from metagraph.research.motion_graph.search_evaluation import WINDOW, cut_segments
 from metagraph.suggest.jumps.johnson import JohnsonSB
-from metagraph.synthesis.constraints import changes, heard, wanted
-from metagraph.synthesis.graph import build, largest, threshold
+from metagraph.synthesis.constraints import find_change_states, find_heard_at, list_wanted
+from metagraph.synthesis.graph import build_graph, largest, threshold
 from metagraph.synthesis.search.ruled_search import FREE, JUMP_RULES, JumpRules, Search, find_path
 from metagraph.synthesis.states import (
     KEYS,
@@ -29,7 +29,7 @@ from metagraph.synthesis.states import (
     SynthesisError,
     costs_apart,
     key_states,
-    states_of,
+    read_states,
 )
 
 BINS = 60
@@ -41,11 +41,11 @@ SEARCHES: Mapping[str, tuple[Search, JumpRules]] = {
 }
 
 
-def costs(material: Material) -> Shown:
+def exhibit_costs(material: ExhibitMaterial) -> MadeExhibit:
     """Figure 4: how dear a transition is that takes themselves make, and the distribution fitted to it."""
     actor = material.actors[0]
-    states = states_of(actor.clips)
-    parts: list[Drawing] = []
+    states = read_states(actor.clips)
+    parts: list[ExhibitDrawing] = []
     rows, numbers = [], {}
     for k in APART:
         limit = threshold(states, k)
@@ -63,9 +63,9 @@ def costs(material: Material) -> Shown:
             curve = [((a + b) / 2, float(d)) for (a, b, _), d in zip(bars, fitted, strict=True)]
             off = float(((fitted - density) ** 2).sum())
         parts.append(
-            Drawing(
+            ExhibitDrawing(
                 f"k = {k}: costs of frames so many apart, Johnson's S_B over them, and its {LEVEL:.0%}",
-                drawings.histogram(
+                drawings.draw_histogram(
                     bars,
                     curve,
                     (limit.limit, f"{limit.limit:.3g} m"),
@@ -93,7 +93,7 @@ def costs(material: Material) -> Shown:
         "one hump is both.",
     )
     head = ("k", "median, m", f"{LEVEL:.0%} observed, m", f"{LEVEL:.0%} fitted, m", "residual")
-    return Shown(
+    return MadeExhibit(
         f"{material.about} ({actor.name})", says, (ExhibitTable("Costs", head, tuple(rows)), *parts), numbers
     )
 
@@ -103,7 +103,7 @@ def _densities(distribution: JohnsonSB, edges: np.ndarray) -> np.ndarray:
     return np.asarray(np.diff(share) / np.diff(edges))
 
 
-def components(material: Material) -> Shown:
+def exhibit_components(material: ExhibitMaterial) -> MadeExhibit:
     """Table 2: states and edges for k = 2, 3, 4, before and after the largest component is cut out."""
     rows: list[tuple[str, ...]] = []
     numbers: dict[str, Any] = {}
@@ -113,12 +113,12 @@ def components(material: Material) -> Shown:
         "there": ("paper", [(k, v[2] / v[0]) for k, v in TABLE_2.items()])
     }
     for actor in material.actors:
-        states = states_of(actor.clips)
-        keys = key_states(states, KEYS, changes(states, actor.speech))
+        states = read_states(actor.clips)
+        keys = key_states(states, KEYS, find_change_states(states, actor.speech))
         follows = int((~states.last).sum())
         points = []
         for k in TABLE_2:
-            whole = build(states, threshold(states, k), keys, connected=False)
+            whole = build_graph(states, threshold(states, k), keys, connected=False)
             try:
                 kept = largest(whole)
                 left, edges = kept.size
@@ -156,20 +156,20 @@ def components(material: Material) -> Shown:
             else "."
         ),
     )
-    drawn = drawings.lines(series, "k", "share of states that are kept", "What is left of the graph")
+    drawn = drawings.draw_series(series, "k", "share of states that are kept", "What is left of the graph")
     head = ("", "k", "states", "edges", "states kept", "edges kept", "kept")
-    return Shown(
+    return MadeExhibit(
         material.about,
         says,
         (
             ExhibitTable("Before and after", head, tuple(rows)),
-            Drawing("Share of states in the largest component", drawn),
+            ExhibitDrawing("Share of states in the largest component", drawn),
         ),
         numbers,
     )
 
 
-def times(material: Material) -> Shown:
+def exhibit_times(material: ExhibitMaterial) -> MadeExhibit:
     """Table 3: how long graph and search take."""
     actor = material.actors[0]
     _warm(actor)
@@ -180,13 +180,15 @@ def times(material: Material) -> Shown:
         clips = [c for n, c in enumerate(actor.clips) if n != out] or list(actor.clips)
         said = [s for n, s in enumerate(actor.speech) if n != out] or list(actor.speech)
         began = perf_counter()
-        states = states_of(clips)
-        graph = build(states, threshold(states), key_states(states, KEYS, changes(states, said)))
+        states = read_states(clips)
+        graph = build_graph(
+            states, threshold(states), key_states(states, KEYS, find_change_states(states, said))
+        )
         building.append(perf_counter() - began)
         sizes.append(len(states))
-        sound = heard(states, said)
+        sound = find_heard_at(states, said)
         length = min(WINDOW, actor.clips[out].duration)
-        asked = wanted(cut(actor.speech[out], 0.0, length), length)
+        asked = list_wanted(cut_segments(actor.speech[out], 0.0, length), length)
         for name, found in searching.items():
             search, rules = SEARCHES[name]
             began = perf_counter()
@@ -220,7 +222,7 @@ def times(material: Material) -> Shown:
         f"{missed} of {sum(map(len, searching.values()))} searches found nothing in that time.",
     )
     numbers = {"construction": building, "search": searching, "states": sizes}
-    return Shown(
+    return MadeExhibit(
         f"{material.about} ({actor.name})",
         says,
         (ExhibitTable("Seconds", ("", "states", "mean", "deviation"), tuple(rows)),),
@@ -228,14 +230,14 @@ def times(material: Material) -> Shown:
     )
 
 
-def _warm(actor: Actor) -> None:
+def _warm(actor: ExhibitActor) -> None:
     """Compile what is timed."""
     some = actor.clips[0]
-    states: States = states_of([some])
+    states: States = read_states([some])
     try:
-        graph = build(states)
+        graph = build_graph(states)
     except SynthesisError:
         return
     for search, rules in SEARCHES.values():
         with suppress(SynthesisError):
-            find_path(graph, heard(states, [()]), wanted([], 0.5), search, rules)
+            find_path(graph, find_heard_at(states, [()]), list_wanted([], 0.5), search, rules)

@@ -14,10 +14,10 @@ from metagraph.graph.model import LAYERS, Layer, Markov, Project
 from metagraph.playback.planner import make_plan
 from metagraph.playback.planning import markov
 from metagraph.playback.planning.choice import key32
-from metagraph.research.exhibits.exhibit import ExhibitTable, Shown
-from metagraph.research.exhibits.material import Material, actors_rates, with_rates
-from metagraph.research.generation.planted_speech import converse
-from metagraph.speech.delivered import NAMES, Delivered, delivered
+from metagraph.research.exhibits.exhibit import ExhibitTable, MadeExhibit
+from metagraph.research.exhibits.material import ExhibitMaterial, actors_rates, with_rates
+from metagraph.research.generation.planted_speech import make_planted_speech
+from metagraph.speech.delivered import NAMES, Delivered, count_delivered
 from metagraph.speech.drive import drive
 
 HOUR = 3600.0  # seconds
@@ -28,7 +28,7 @@ NEAR = 2.0  # standard errors within which 95 of a hundred shares lie
 EXPECTED = 1.0  # moves below which a share's error is not normal: those are not looked at
 
 
-def delivery(material: Material) -> Shown:
+def delivery(material: ExhibitMaterial) -> MadeExhibit:
     """What an hour of improvising and of conversation has, beside what was asked for."""
     project = material.project
     improvised = [_improvised(project, layer) for layer in LAYERS if project.graphs[layer].index]
@@ -62,7 +62,7 @@ def delivery(material: Material) -> Shown:
         )
         for side, d in spoken
     ]
-    return Shown(
+    return MadeExhibit(
         f"the project '{project.name}': an hour of each layer, and {minutes:g} minutes of made-up "
         "conversation with the rates of table 1",
         tuple(says),
@@ -130,10 +130,12 @@ def _spoken(project: Project, talks: int) -> list[tuple[str, Delivered]]:
     sums: Counter[tuple[int, Spoken, str]] = Counter()
     rates = actors_rates()
     for n in range(talks):
-        said = converse(TALK, key32(SEED, "speech", f"{n}"), key32(SEED, "moves", f"{n}"), f"talk {n + 1}")
+        said = make_planted_speech(
+            TALK, key32(SEED, "speech", f"{n}"), key32(SEED, "moves", f"{n}"), f"talk {n + 1}"
+        )
         talk = with_rates(said.conversation, rates)
         for side in (0, 1):
-            for d in delivered(talk, side, project, drive(talk, side, project)[1]):
+            for d in count_delivered(talk, side, project, drive(talk, side, project)[1]):
                 for name in ("count", "drawn", "performed", "strokes"):
                     sums[side, d.kind, name] += getattr(d, name)
     out = []

@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from metagraph.formats.corpora import Recorded
-from metagraph.graph.conversation.model import Conversation, Rates, Segment, heard_by, side_name
+from metagraph.graph.conversation.model import Conversation, Rates, Segment, segments_heard_by, side_name
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 from metagraph.playback.bake import bake
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.planning.choice import key32
 from metagraph.research.exhibits.published import TABLE_1
-from metagraph.research.generation.planted_speech import converse
+from metagraph.research.generation.planted_speech import make_planted_speech
 from metagraph.speech.drive import drive
 from metagraph.suggest.tracks import RATE
 
@@ -33,7 +33,7 @@ SEED = 20_200  # of what is said: no model was trained on it
 
 
 @dataclass(frozen=True, eq=False)
-class Actor:
+class ExhibitActor:
     """One of two in all conversations. clips: its takes; speech: what it moves with in each, `heard_by`."""
 
     name: str
@@ -46,7 +46,7 @@ class Actor:
 
 
 @dataclass(frozen=True, eq=False)
-class Material:
+class ExhibitMaterial:
     """project: whose actions are exhibited. given: somebody's own conversations; made up where there are
     none. told: what these are called in words. model: of the third paper's exhibits, None where there is
     none. full: as much as the papers have, where that can be made.
@@ -70,10 +70,10 @@ class Material:
         if self.given:
             return self.given
         count, seconds = WHOLE if self.full else QUICK
-        return made(self.project, count, seconds)
+        return make_conversations(self.project, count, seconds)
 
     @cached_property
-    def actors(self) -> tuple[Actor, ...]:
+    def actors(self) -> tuple[ExhibitActor, ...]:
         """Those who have takes, of the skeleton that most of their takes have, first side first."""
         out = []
         for side in (0, 1):
@@ -90,7 +90,11 @@ class Material:
                 )
             names = {side_name(t, side) for _, t in kept}
             name = names.pop() if len(names) == 1 else f"side {side + 1}"
-            out.append(Actor(name, tuple(c for c, _ in kept), tuple(heard_by(t, side) for _, t in kept)))
+            out.append(
+                ExhibitActor(
+                    name, tuple(c for c, _ in kept), tuple(segments_heard_by(t, side) for _, t in kept)
+                )
+            )
         if not out:
             raise ValueError("none of these conversations has motion: nothing can be exhibited of it")
         return tuple(out)
@@ -117,7 +121,7 @@ class Material:
         return None if self.model is None else read_model(self.model)
 
 
-def made(
+def make_conversations(
     project: Project,
     count: int,
     seconds: float,
@@ -132,14 +136,16 @@ def made(
     both = actors_rates() if rates is None else tuple(rates)
     for n in range(count):
         name = f"made-up {n + 1}"
-        spoken = converse(seconds, key32(seed, "speech", str(n)), key32(seed, "moves", str(n)), name)
+        spoken = make_planted_speech(
+            seconds, key32(seed, "speech", str(n)), key32(seed, "moves", str(n)), name
+        )
         talk = with_rates(spoken.conversation, both)
-        clips = tuple(moved(project, talk, side, fps) for side in (0, 1))
+        clips = tuple(find_side_motion(project, talk, side, fps) for side in (0, 1))
         out.append(Recorded(name, (clips[0], clips[1]), talk, samples=spoken.samples))
     return tuple(out)
 
 
-def moved(project: Project, talk: Conversation, side: int, fps: float = RATE) -> Clip:
+def find_side_motion(project: Project, talk: Conversation, side: int, fps: float = RATE) -> Clip:
     """Return how a project moves a side."""
     _, plan = drive(talk, side, project)
     return replace(

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from metagraph.common.xml_text import escape
-from metagraph.research.exhibits.exhibit import Drawing, Exhibit, ExhibitTable, Shown
+from metagraph.research.exhibits.exhibit import Exhibit, ExhibitDrawing, ExhibitTable, MadeExhibit
 from metagraph.research.exhibits.published import PAPERS
 from metagraph.research.generation import figures
 from metagraph.research.study.reports.style import STYLE
@@ -23,10 +23,10 @@ h2 {{ border-top: 1px solid var(--line); padding-top: 18px; }}
 {figures.STYLE}
 polyline.curve {{ fill: none; stroke: var(--c); stroke-width: 1.8; }}
 """
-Made = tuple[Exhibit, Shown, float]  # and the seconds it took
+Made = tuple[Exhibit, MadeExhibit, float]  # and the seconds it took
 
 
-def page(made: Sequence[Made], told: Mapping[str, str]) -> str:
+def format_exhibits(made: Sequence[Made], told: Mapping[str, str]) -> str:
     """Return the page. told: what stands at its top."""
     parts = ["<h1>The papers' exhibits, made again</h1>", "<div class='card'>"]
     parts += [f"<p>{escape(k)}: {escape(v)}</p>" for k, v in told.items()]
@@ -49,7 +49,7 @@ def page(made: Sequence[Made], told: Mapping[str, str]) -> str:
     return f"<!DOCTYPE html><html lang='en'><head>{head}{style}</head><body>{body}</body></html>\n"
 
 
-def _exhibit(exhibit: Exhibit, shown: Shown, seconds: float) -> list[str]:
+def _exhibit(exhibit: Exhibit, shown: MadeExhibit, seconds: float) -> list[str]:
     title = f"{exhibit.title} <span class='dim'>{escape(exhibit.place)}</span>"
     out = [f"<h2 id='{exhibit.name}'>{title}</h2>"]
     out.append(f"<p class='dim'>{escape(PAPERS[exhibit.paper])}</p>")
@@ -58,7 +58,7 @@ def _exhibit(exhibit: Exhibit, shown: Shown, seconds: float) -> list[str]:
         out.append(f"<p class='warn'>Missing: {escape(shown.missing)}</p>")
     out += [f"<p>{escape(words)}</p>" for words in shown.says]
     for part in shown.parts:
-        if isinstance(part, Drawing):
+        if isinstance(part, ExhibitDrawing):
             out.append(f"<figure>{part.svg}<figcaption>{escape(part.caption)}</figcaption></figure>")
         else:
             out.append(_table(part))
@@ -72,7 +72,7 @@ def _table(table: ExhibitTable) -> str:
     return f"<h3>{escape(table.caption)}</h3><div class='wide-table'>{rows}</div>"
 
 
-def text_of(exhibit: Exhibit, shown: Shown) -> str:
+def exhibit_as_text(exhibit: Exhibit, shown: MadeExhibit) -> str:
     """Return an exhibit as text: its tables and what it says."""
     lines = [f"{exhibit.name}: {exhibit.title} ({exhibit.paper}, {exhibit.place})"]
     if shown.missing:
@@ -88,7 +88,7 @@ def text_of(exhibit: Exhibit, shown: Shown) -> str:
     return "\n".join([*lines, *(f"  {words}" for words in shown.says)])
 
 
-def data_of(made: Sequence[Made]) -> list[dict[str, Any]]:
+def exhibits_as_data(made: Sequence[Made]) -> list[dict[str, Any]]:
     """Return exhibits as plain data."""
     return [
         {

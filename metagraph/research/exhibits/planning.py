@@ -14,13 +14,13 @@ from metagraph.graph.edits import set_settings
 from metagraph.graph.model import Layer, Project, Settings
 from metagraph.playback.learning.compare import stationary
 from metagraph.playback.plan import Cue, MetaAction, MetaRequest
-from metagraph.playback.planner import extend, make_plan
+from metagraph.playback.planner import extend_plan, make_plan
 from metagraph.playback.planning.choice import key32
 from metagraph.playback.planning.markov import ARMS, write
 from metagraph.playback.planning.replan import replan
 from metagraph.research.exhibits import drawings
-from metagraph.research.exhibits.exhibit import Drawing, ExhibitTable, Shown
-from metagraph.research.exhibits.material import Material
+from metagraph.research.exhibits.exhibit import ExhibitDrawing, ExhibitTable, MadeExhibit
+from metagraph.research.exhibits.material import ExhibitMaterial
 from metagraph.research.exhibits.published import ALPHA, FIGURE_11, STATES
 
 DRAWS = (600, 6000)  # of figure 7's formula
@@ -30,7 +30,7 @@ COUNTS = range(1, 31)  # denominators that could give a row of figure 11
 Case = tuple[str, Sequence[MetaAction], Sequence[MetaAction], str]
 
 
-def replanning(material: Material) -> Shown:
+def replanning(material: ExhibitMaterial) -> MadeExhibit:
     """Figure 6: meta actions that may clash, and the plan that does not."""
     cases: list[Case] = []
 
@@ -56,12 +56,12 @@ def replanning(material: Material) -> Shown:
         f"{Settings().shortest:g} s is dropped.",
         kept,
     ]
-    drawn = drawings.lanes(stretches, 7.0, "Five cases of temporal replanning")
-    return Shown(
+    drawn = drawings.draw_spans(stretches, 7.0, "Five cases of temporal replanning")
+    return MadeExhibit(
         f"five cases written for this, and the project '{material.project.name}' for the running action",
         tuple(says),
         (
-            Drawing("Asked (brown: more important) and planned (green), in the order of the table", drawn),
+            ExhibitDrawing("Asked (brown: more important) and planned (green), in the table's order", drawn),
             ExhibitTable("The cases in words", ("case", "asked, s", "planned, s", "told"), tuple(rows)),
         ),
         {"cases": [[w, _told(a), _told(p)] for w, a, p, _ in cases]},
@@ -77,7 +77,7 @@ def _kept(project: Project) -> str:
     before = make_plan(project, 14.0, asked, 1, idle=False)
     now = before.layers[layer].cues[0].start + 0.2
     new = MetaRequest("new", layer, "gesture", now, priority=5)
-    after = extend(project, before, now, [new], 14.0, idle=False)
+    after = extend_plan(project, before, now, [new], 14.0, idle=False)
     first, *rest = after.layers[layer].cues
     same = first == before.layers[layer].cues[0]
     names = ", ".join(f"'{c.meta}' at {c.start:.2f} s" for c in rest)
@@ -88,12 +88,14 @@ def _kept(project: Project) -> str:
     )
 
 
-def sampling(material: Material) -> Shown:
+def sampling(material: ExhibitMaterial) -> MadeExhibit:
     """Figure 7's three cases, and the formula under it."""
     project = material.project
     layer = _layer(project)
     if layer is None:
-        return Shown(f"the project '{project.name}'", missing="it has no gestures: nothing can be sampled")
+        return MadeExhibit(
+            f"the project '{project.name}'", missing="it has no gestures: nothing can be sampled"
+        )
     graph = project.graphs[layer]
     stance = graph.start or next(iter(graph.stances))
     some = graph.of(stance, "gesture")
@@ -144,13 +146,13 @@ def sampling(material: Material) -> Shown:
         f"degrees of freedom (about {off[1]} to be expected by chance, {off[1] + 3 * sqrt(2 * off[1]):.0f} "
         "would be odd).",
     )
-    return Shown(
+    return MadeExhibit(
         f"the project '{project.name}', stance '{graph.stances[stance].name}': {len(some)} gestures",
         says,
         (
-            Drawing(
+            ExhibitDrawing(
                 "Meta actions (brown: more important) and what plays (green), in the order of the table",
-                drawings.lanes(lanes, until, "Three cases"),
+                drawings.draw_spans(lanes, until, "Three cases"),
             ),
             ExhibitTable("The cases in words", ("case", "plays, s", "told"), tuple(rows)),
             table,
@@ -201,12 +203,12 @@ def _formula(
     )
 
 
-def variation(material: Material) -> Shown:
+def variation(material: ExhibitMaterial) -> MadeExhibit:
     """Figures 9 and 12: the same abstract sequence, and none at all, performed again and again."""
     project = material.project
     layer = _layer(project)
     if layer is None:
-        return Shown(f"the project '{project.name}'", missing="it has no gestures: nothing varies")
+        return MadeExhibit(f"the project '{project.name}'", missing="it has no gestures: nothing varies")
     seeds = SEEDS[material.full]
     asked = [_ask(f"gesture {n}", layer, 1.0 + 5.0 * n, 2.0) for n in range(8)]
     plans = [make_plan(project, 45.0, asked, s, idle=False) for s in range(1, seeds + 1)]
@@ -241,7 +243,7 @@ def variation(material: Material) -> Shown:
         "actions used",
         "the same twice in a row",
     )
-    return Shown(
+    return MadeExhibit(
         f"the project '{project.name}', layer {layer}, seeds 1 to {seeds}",
         (
             "The paper shows three pictures and claims that performances differ; here it is counted. The "
@@ -249,15 +251,16 @@ def variation(material: Material) -> Shown:
         ),
         (
             ExhibitTable("How much performances differ", head, tuple(rows)),
-            Drawing(
-                "The same eight requests with five seeds", drawings.lanes(lanes, 45.0, "Five performances")
+            ExhibitDrawing(
+                "The same eight requests with five seeds",
+                drawings.draw_spans(lanes, 45.0, "Five performances"),
             ),
         ),
         numbers,
     )
 
 
-def matrix(material: Material) -> Shown:
+def exhibit_matrix(material: ExhibitMaterial) -> MadeExhibit:
     """Figure 11: the published matrix, and how often ours does what."""
     until = MOVES[material.full] * (ARMS.gap + 2.0)
     states = {s: n for n, s in enumerate(ARMS.states)}
@@ -301,11 +304,11 @@ def matrix(material: Material) -> Shown:
         "there": ("paper", [[v / 100 for v in row] for row in FIGURE_11]),
         "here": ("ours", ours),
     }
-    return Shown(
+    return MadeExhibit(
         "the published matrix, which ships as the arms' default model",
         tuple(says),
         (
-            Drawing("Rows: now; columns: next", drawings.heat(STATES, grids, "Figure 11 and ours")),
+            ExhibitDrawing("Rows: now; columns: next", drawings.heat(STATES, grids, "Figure 11 and ours")),
             ExhibitTable("Percent there / here", ("", *STATES), tuple(rows)),
         ),
         {"moves": len(sequence) - 1, "worst": worst, "least": least},

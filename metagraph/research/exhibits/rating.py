@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from metagraph.research.exhibits import drawings
-from metagraph.research.exhibits.exhibit import Drawing, ExhibitTable, Shown
-from metagraph.research.exhibits.material import Material
+from metagraph.research.exhibits.exhibit import ExhibitDrawing, ExhibitTable, MadeExhibit
+from metagraph.research.exhibits.material import ExhibitMaterial
 from metagraph.research.exhibits.preferences import preferences
 
 
-def ratings(material: Material) -> Shown:
+def ratings(material: ExhibitMaterial) -> MadeExhibit:
     """Figure 6: what people preferred, by the published test and by an exact one."""
     rows, bars = [], []
     found = preferences()
@@ -46,15 +46,15 @@ def ratings(material: Material) -> Shown:
         "31.1 %.",
     )
     head = ("", "preferred", "95 %", "printed", "recomputed", "exact p", "by Holm", "the paper's word")
-    drawn = drawings.pairs(
+    drawn = drawings.draw_paired_bars(
         bars, (("paper", "share that preferred the first"),), "share", "Preferences", 1.0, 0.5
     )
-    return Shown(
+    return MadeExhibit(
         "counts of figure 6 and section 8.2",
         says,
         (
             ExhibitTable("Four comparisons", head, tuple(rows)),
-            Drawing("The dashed line is no preference", drawn),
+            ExhibitDrawing("The dashed line is no preference", drawn),
         ),
         {r.rating.second: {"chi": r.chi, "p": r.p, "exact": r.exact, "holm": r.corrected} for r in found},
     )

@@ -9,21 +9,34 @@ from statistics import fmean, median
 
 import msgspec
 
-from metagraph.graph.conversation.model import Conversation, Segment, Side, heard_by
+from metagraph.graph.conversation.model import Conversation, Segment, Side, segments_heard_by
 from metagraph.graph.model import Project
 from metagraph.playback.planning.choice import key32
 from metagraph.research.exhibits import drawings
-from metagraph.research.exhibits.exhibit import Drawing, ExhibitTable, Shown
-from metagraph.research.exhibits.material import SEED, Actor, Material, actors_rates, moved, with_rates
+from metagraph.research.exhibits.exhibit import ExhibitDrawing, ExhibitTable, MadeExhibit
+from metagraph.research.exhibits.material import (
+    SEED,
+    ExhibitActor,
+    ExhibitMaterial,
+    actors_rates,
+    find_side_motion,
+    with_rates,
+)
 from metagraph.research.exhibits.published import CASES, FOUND, FOUND_WITHOUT_HESITATION, SAVED
-from metagraph.research.generation.planted_speech import converse
-from metagraph.research.motion_graph.search_evaluation import SETTINGS, WINDOW, EvaluationRow, cut, evaluate
-from metagraph.synthesis.constraints import changes, heard, wanted
+from metagraph.research.generation.planted_speech import make_planted_speech
+from metagraph.research.motion_graph.search_evaluation import (
+    SETTINGS,
+    WINDOW,
+    EvaluationRow,
+    cut_segments,
+    evaluate_search,
+)
+from metagraph.synthesis.constraints import find_change_states, find_heard_at, list_wanted
 from metagraph.synthesis.cooccurrence import wilson
-from metagraph.synthesis.graph import build
+from metagraph.synthesis.graph import build_graph
 from metagraph.synthesis.search.path_quality import quality
 from metagraph.synthesis.search.ruled_search import FREE, JUMP_RULES, find_path
-from metagraph.synthesis.states import SynthesisError, key_states, states_of
+from metagraph.synthesis.states import SynthesisError, key_states, read_states
 
 ALL = "all constraints"
 QUICK = (ALL, "without hesitation", "free jumps")
@@ -32,20 +45,20 @@ TRIED = (20, 200)  # seeds of the greedy search
 JOINED = 0.7  # seconds: gaps between a side's clauses that are closed where clauses adjoin
 
 
-def search(material: Material) -> Shown:
+def search(material: ExhibitMaterial) -> MadeExhibit:
     """Figure 5: what the stochastic search finds with one seed and another, beside the best there is."""
     actor = material.actors[0]
     if len(actor.clips) < 2:
-        return Shown(material.about, missing="one take alone cannot be held out: give two or more")
+        return MadeExhibit(material.about, missing="one take alone cannot be held out: give two or more")
     clips, said = actor.clips[1:], actor.speech[1:]
-    states = states_of(clips)
+    states = read_states(clips)
     try:
-        graph = build(states, keys=key_states(states, changes=changes(states, said)))
+        graph = build_graph(states, keys=key_states(states, changes=find_change_states(states, said)))
     except SynthesisError as error:
-        return Shown(material.about, missing=str(error))
+        return MadeExhibit(material.about, missing=str(error))
     length = min(WINDOW, actor.clips[0].duration)
-    asked = wanted(cut(actor.speech[0], 0.0, length), length)
-    sound = heard(states, said)
+    asked = list_wanted(cut_segments(actor.speech[0], 0.0, length), length)
+    sound = find_heard_at(states, said)
     rows, numbers = [], {}
     bars: list[tuple[str, list[drawings.Bar]]] = []
     for words, rules in (("the paper's costs", FREE), ("with prices for jumps", JUMP_RULES)):
@@ -93,18 +106,21 @@ def search(material: Material) -> Shown:
         "none costs less.",
     )
     head = ("cost", "search", "found", "median cost", "least", "jumps a second", "shown again")
-    drawn = drawings.pairs(
+    drawn = drawings.draw_paired_bars(
         bars, (("paper", "by chance, least to most"), ("ours", "the best")), "cost", "Costs of paths"
     )
-    return Shown(
+    return MadeExhibit(
         f"{material.about} ({actor.name}; the first take's first {length:g} s from the others)",
         says,
-        (ExhibitTable("One window of speech", head, tuple(rows)), Drawing("Costs of what was found", drawn)),
+        (
+            ExhibitTable("One window of speech", head, tuple(rows)),
+            ExhibitDrawing("Costs of what was found", drawn),
+        ),
         numbers,
     )
 
 
-def success(material: Material) -> Shown:
+def success(material: ExhibitMaterial) -> MadeExhibit:
     """Section 8.1: each take held out, its speech asked of all others."""
     rows: list[tuple[str, ...]] = [
         _published("there: all constraints", FOUND),
@@ -119,7 +135,7 @@ def success(material: Material) -> Shown:
         if len(actor.clips) < 2:
             material.notes.append(f"{actor.name} has one take: nothing can be held out")
             continue
-        done = evaluate(actor.clips, actor.speech, [s for s in SETTINGS if s.name in QUICK])
+        done = evaluate_search(actor.clips, actor.speech, [s for s in SETTINGS if s.name in QUICK])
         rows += [_row(f"here, {actor.name}", r) for r in done.rows]
         for r in done.rows:
             numbers[f"{actor.name}, {r.setting}, {r.search}"] = [
@@ -134,7 +150,7 @@ def success(material: Material) -> Shown:
                 words = r.setting.removesuffix(" constraints")
                 bars.append((f"{words}, {r.search}, {n}", [(css, r.success, r.low, r.high)]))
     if not numbers:
-        return Shown(material.about, missing="nobody has two takes: nothing can be held out")
+        return MadeExhibit(material.about, missing="nobody has two takes: nothing can be held out")
     says = (
         f"The paper found motion for {FOUND} of {CASES} windows with its search; whether the others had any "
         "it could not know. 'exact' finds it wherever there is some.",
@@ -142,15 +158,15 @@ def success(material: Material) -> Shown:
         "the paper's cost, in which a jump costs nothing where a pose resembles itself.",
     )
     head = ("", "search", "found", "success", "95 %", "jumps a second", "shown again", "longest rest")
-    drawn = drawings.pairs(
+    drawn = drawings.draw_paired_bars(
         bars, (("paper", "there"), ("ours", "exact"), ("s9", "by chance")), "share of windows", "Success", 1.0
     )
-    return Shown(
+    return MadeExhibit(
         material.about,
         says,
         (
             ExhibitTable("Windows of 15 s, every 14 s", head, tuple(rows)),
-            Drawing("Success with 95 % intervals; 1 and 2: the two here", drawn),
+            ExhibitDrawing("Success with 95 % intervals; 1 and 2: the two here", drawn),
         ),
         numbers,
     )
@@ -206,7 +222,7 @@ SCARCE: tuple[Scarcity, ...] = (
 )
 
 
-def competing(material: Material) -> Shown:
+def competing(material: ExhibitMaterial) -> MadeExhibit:
     """Where success is below 100 %: fewer and shorter takes, adjoining clauses, rarer kinds."""
     rows: list[tuple[str, ...]] = []
     bars, numbers, odd = [], {}, []
@@ -214,7 +230,7 @@ def competing(material: Material) -> Shown:
     settings = [s for s in SETTINGS if s.name in names]
     for scarcity in SCARCE:
         actor = scarce(material.project, scarcity, 2 if material.full else 1)
-        done = evaluate(actor.clips, actor.speech, settings)
+        done = evaluate_search(actor.clips, actor.speech, settings)
         by = {(c.take, c.start, c.setting, c.search): c for c in done.cases}
         odd += [k for k, c in by.items() if k[3] == "greedy" and c.found and not by[(*k[:3], "exact")].found]
         rows += [_row(scarcity.name, r) for r in done.rows]
@@ -244,17 +260,22 @@ def competing(material: Material) -> Shown:
         + (", where the best path stands still and is not counted." if odd else ", as it must be."),
     )
     head = ("", "search", "found", "success", "95 %", "jumps a second", "shown again", "longest rest")
-    drawn = drawings.pairs(bars, (("ours", "exact"), ("s9", "by chance")), "share of windows", "Success", 1.0)
-    return Shown(
+    drawn = drawings.draw_paired_bars(
+        bars, (("ours", "exact"), ("s9", "by chance")), "share of windows", "Success", 1.0
+    )
+    return MadeExhibit(
         f"made-up conversations, performed by the project '{material.project.name}'; whoever made them made "
         "what is measured",
         says,
-        (ExhibitTable("Scarce takes", head, tuple(rows)), Drawing("Success with all constraints", drawn)),
+        (
+            ExhibitTable("Scarce takes", head, tuple(rows)),
+            ExhibitDrawing("Success with all constraints", drawn),
+        ),
         numbers,
     )
 
 
-def scarce(project: Project, scarcity: Scarcity, sides: int = 2, seed: int = SEED) -> Actor:
+def scarce(project: Project, scarcity: Scarcity, sides: int = 2, seed: int = SEED) -> ExhibitActor:
     """Return takes of made-up conversations with less to choose from, of both sides or the first alone, as
     one actor's. Raises ValueError where the project cannot perform.
     """
@@ -262,14 +283,14 @@ def scarce(project: Project, scarcity: Scarcity, sides: int = 2, seed: int = SEE
     rates = actors_rates()
     for n in range(scarcity.count):
         name = f"{scarcity.name} {n + 1}"
-        spoken = converse(
+        spoken = make_planted_speech(
             scarcity.seconds, key32(seed, "scarce", str(n)), key32(seed, "scarce moves", str(n)), name
         )
         talk = with_rates(_scarcer(spoken.conversation, scarcity), (rates[0], rates[0]))
         for side in range(sides):
-            clips.append(moved(project, talk, side))
-            speech.append(heard_by(talk, side))
-    return Actor(scarcity.name, tuple(clips), tuple(speech))
+            clips.append(find_side_motion(project, talk, side))
+            speech.append(segments_heard_by(talk, side))
+    return ExhibitActor(scarcity.name, tuple(clips), tuple(speech))
 
 
 def _scarcer(talk: Conversation, scarcity: Scarcity) -> Conversation:

@@ -11,18 +11,18 @@ from typing import Any
 from metagraph.graph.conversation.model import Segment
 from metagraph.motion.clip import Clip
 from metagraph.research.exhibits import drawings
-from metagraph.research.exhibits.exhibit import Drawing, ExhibitTable, Shown
-from metagraph.research.exhibits.material import Material
+from metagraph.research.exhibits.exhibit import ExhibitDrawing, ExhibitTable, MadeExhibit
+from metagraph.research.exhibits.material import ExhibitMaterial
 from metagraph.research.exhibits.published import TABLE_1, WORDS_A_CLAUSE, PublishedRate
 from metagraph.synthesis.cooccurrence import (
     CooccurrenceRow,
     Part,
     activation,
+    count_cooccurrence,
     movement,
+    movement_windows,
     speeds,
-    table,
     wilson,
-    windows,
 )
 
 ACTORS = ("female", "male")
@@ -30,9 +30,9 @@ NEAR = 0.8  # seconds to the neighbour of the clause that is shown
 CHANCES = (40, 200)  # turns of the speech that tell what chance gives
 
 
-def rates(material: Material) -> Shown:
+def exhibit_rates(material: ExhibitMaterial) -> MadeExhibit:
     """Table 1: how often hands and head move with what is said."""
-    found = {a.name: table(a.clips, a.speech, CHANCES[material.full]) for a in material.actors}
+    found = {a.name: count_cooccurrence(a.clips, a.speech, CHANCES[material.full]) for a in material.actors}
     rows: list[tuple[str, ...]] = []
     bars: list[tuple[PublishedRate, drawings.Bar]] = []
     for row in TABLE_1:
@@ -79,14 +79,14 @@ def rates(material: Material) -> Shown:
             "not be performed and by movements that come near by chance."
         )
     head = ("", "what", "matched", "segments", "rate", "95 %", "by chance")
-    return Shown(
+    return MadeExhibit(
         material.about,
         tuple(says),
         (
             ExhibitTable("Speech and movement", head, tuple(rows)),
-            Drawing(
+            ExhibitDrawing(
                 "Rates with 95 % intervals (Wilson); 1 and 2: the two actors",
-                drawings.pairs(drawn, names, "share of segments", "Rates of table 1", 1.0),
+                drawings.draw_paired_bars(drawn, names, "share of segments", "Rates of table 1", 1.0),
             ),
         ),
         {n: {r.hypothesis: [r.matched, r.total, r.chance] for r in some} for n, some in found.items()},
@@ -114,14 +114,14 @@ def _short(hypothesis: str) -> str:
     )
 
 
-def window(material: Material) -> Shown:
+def window(material: ExhibitMaterial) -> MadeExhibit:
     """Figure 3: a segment, the window twice as long, and what is left of it between neighbours."""
     found = next(_clauses(material), None)
     if found is None:
-        return Shown(material.about, missing="no clause with a movement and a neighbour near was found")
+        return MadeExhibit(material.about, missing="no clause with a movement and a neighbour near was found")
     clip, said, a, part, track = found
     idle = activation(track)
-    low, high = windows([a], clip.duration, said)[0]
+    low, high = movement_windows([a], clip.duration, said)[0]
     moved = movement(track, clip.fps, (low, high), idle) or (low, low)
     middle, half = (a.start + a.end) / 2, a.end - a.start
     begin, end = max(0.0, middle - 1.6 * half), min(clip.duration, middle + 1.6 * half)
@@ -145,7 +145,7 @@ def window(material: Material) -> Shown:
         f"speed of the {part.replace('_', ' ')}": ("ours", curve),
         "threshold of the take": ("paper", [(x, idle) for x, _ in curve]),
     }
-    graph = drawings.lines(names, "seconds", "metres a second", "Speed of a hand about a clause")
+    graph = drawings.draw_series(names, "seconds", "metres a second", "Speed of a hand about a clause")
     says = (
         f"A clause of {a.end - a.start:.2f} s in '{clip.name}' at {a.start:.2f} s. Nothing moves unless "
         f"something is faster than {idle:.2f} m/s (equation 1 over the take); the movement begins and ends "
@@ -153,18 +153,20 @@ def window(material: Material) -> Shown:
         "Neighbours are trimmed at half the gap, so that each moment is one segment's; the paper's figure "
         "leaves open where.",
     )
-    return Shown(
+    return MadeExhibit(
         material.about,
         says,
         (
-            Drawing("A, B and C as in the paper's figure", drawings.lanes(shown, end - begin, "Windows")),
-            Drawing("What equations 1 and 2 look at", graph),
+            ExhibitDrawing(
+                "A, B and C as in the paper's figure", drawings.draw_spans(shown, end - begin, "Windows")
+            ),
+            ExhibitDrawing("What equations 1 and 2 look at", graph),
         ),
         {"take": clip.name, "clause": [a.start, a.end], "window": [low, high], "moved": list(moved)},
     )
 
 
-def _clauses(material: Material) -> Iterator[tuple[Clip, Sequence[Segment], Segment, Part, Any]]:
+def _clauses(material: ExhibitMaterial) -> Iterator[tuple[Clip, Sequence[Segment], Segment, Part, Any]]:
     """Yield takes with what is said, a clause that a movement goes with and a neighbour is near, the hand
     that moves most in the take, and its speed.
     """
@@ -178,6 +180,6 @@ def _clauses(material: Material) -> Iterator[tuple[Clip, Sequence[Segment], Segm
             for a, b in pairwise(said):
                 if a.kind != "clause" or b.start - a.end > NEAR:
                     continue
-                around = windows([a], clip.duration, said)[0]
+                around = movement_windows([a], clip.duration, said)[0]
                 if movement(speed[part], clip.fps, around, activation(speed[part])) is not None:
                     yield clip, said, a, part, speed[part]

@@ -18,14 +18,20 @@ from numpy.typing import NDArray
 
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
-from metagraph.generation.features import BOTH, MELS, NONE, PARTNER, SELF, features
+from metagraph.generation.features import BOTH, MELS, NONE, PARTNER, SELF, compute_features
 from metagraph.generation.networks import ACTIVITY, FPS, CvaeSizes, FlowSizes, Kind, MatchingSizes, Sizes
 from metagraph.generation.poses import PoseRig
-from metagraph.generation.statistics import DRAWS, Performance, Row, performance, table
+from metagraph.generation.statistics import (
+    DRAWS,
+    MeasureRow,
+    MotionSample,
+    make_motion_sample,
+    tabulate_measures,
+)
 from metagraph.generation.stored import SUFFIX, Model, read_model
 from metagraph.generation.take_files import TakeFiles, read_speech
 from metagraph.generation.takes import Take
-from metagraph.research.generation.evaluation import HeldOut, Manner, generated, truth
+from metagraph.research.generation.evaluation import HeldOut, SamplingManner, generate_poses, truth
 
 Array = NDArray[Any]
 
@@ -34,7 +40,7 @@ WHOLE = "whole"
 
 
 @dataclass(frozen=True)
-class Change:
+class AblationChange:
     """One thing that is changed. name: short; words: what it is. settings: of the training. hearing: what
     of a take is left out. mirrored: twins of the takes are learned from as well. guidance: how it is
     sampled.
@@ -49,7 +55,7 @@ class Change:
 
 
 @dataclass(frozen=True, eq=False)
-class Job:
+class AblationJob:
     """One training. seconds: of the processor. out: the model's file."""
 
     kind: Kind
@@ -65,36 +71,40 @@ class Job:
 class Trainer(Protocol):
     """Trains, and writes the model whole or not at all."""
 
-    def __call__(self, job: Job) -> None: ...
+    def __call__(self, job: AblationJob) -> None: ...
 
 
 CHANGES = (
-    Change(WHOLE, "nothing changed"),
-    Change("paper's loss", "the loss as in the paper, with both of its faults", {"loss": "paper"}),
-    Change("no third term", "the paper's loss without its third term", {"loss": "paper", "third": 0.0}),
-    Change(
+    AblationChange(WHOLE, "nothing changed"),
+    AblationChange("paper's loss", "the loss as in the paper, with both of its faults", {"loss": "paper"}),
+    AblationChange(
+        "no third term", "the paper's loss without its third term", {"loss": "paper", "third": 0.0}
+    ),
+    AblationChange(
         "one step",
         "a flow of a single step: the nearest to a Gaussian code that the same network can be, with the same "
         "control and past poses",
     ),
-    Change("no vae", "the flow on poses themselves, as many steps and units"),
-    Change("no past", "no past poses"),
-    Change("no partner", "the partner neither heard nor known to speak", hearing="partner"),
-    Change("no activity", "nobody tells who speaks", hearing="activity"),
-    Change("no ahead", "no sound after the frame; as many frames before it instead"),
-    Change("past told", "past poses are never dropped in training", {"past_dropped": 0.0}),
-    Change("no head", "no head that predicts how fast joints move", {"head": 0.0}),
-    Change("own sounds", "no sounds but the takes' own: no other voices, rooms or noise", {"voices": 0.0}),
-    Change("any crop", "crops in which who speaks changes are as likely as others", {"turns": 0.0}),
-    Change("any moment", "moments of a flow as likely late as early", {"early": 0.0, "spread": 1.0}),
-    Change("apart", "pieces are told by their own tokens alone, and do not meet"),
-    Change("no guidance", "follows the speech as it has learned to, no more", guidance=1.0),
-    Change("mirrored", "mirror twins are learned from as well", mirrored=True),
+    AblationChange("no vae", "the flow on poses themselves, as many steps and units"),
+    AblationChange("no past", "no past poses"),
+    AblationChange("no partner", "the partner neither heard nor known to speak", hearing="partner"),
+    AblationChange("no activity", "nobody tells who speaks", hearing="activity"),
+    AblationChange("no ahead", "no sound after the frame; as many frames before it instead"),
+    AblationChange("past told", "past poses are never dropped in training", {"past_dropped": 0.0}),
+    AblationChange("no head", "no head that predicts how fast joints move", {"head": 0.0}),
+    AblationChange(
+        "own sounds", "no sounds but the takes' own: no other voices, rooms or noise", {"voices": 0.0}
+    ),
+    AblationChange("any crop", "crops in which who speaks changes are as likely as others", {"turns": 0.0}),
+    AblationChange("any moment", "moments of a flow as likely late as early", {"early": 0.0, "spread": 1.0}),
+    AblationChange("apart", "pieces are told by their own tokens alone, and do not meet"),
+    AblationChange("no guidance", "follows the speech as it has learned to, no more", guidance=1.0),
+    AblationChange("mirrored", "mirror twins are learned from as well", mirrored=True),
 )
 NAMES = tuple(c.name for c in CHANGES)
 
 
-def sizes_for(change: Change, kind: Kind, sizes: Sizes) -> tuple[Kind, Sizes] | None:
+def sizes_for(change: AblationChange, kind: Kind, sizes: Sizes) -> tuple[Kind, Sizes] | None:
     """Return what is trained, None where the change says nothing about such a model."""
     name = change.name
     if name in ("paper's loss", "no third term"):
@@ -127,7 +137,7 @@ def _control(sizes: FlowSizes | CvaeSizes, **new: int) -> FlowSizes | CvaeSizes:
     return changed(sizes, control=changed(sizes.control, **new))
 
 
-def heard(change: Change, take: Take, files: Mapping[str, TakeFiles]) -> Array:
+def ablate_features(change: AblationChange, take: Take, files: Mapping[str, TakeFiles]) -> Array:
     """Return what is left of a take's features `[T, audio + 4]`. files: by the takes' names, whose sounds are
     heard again without the partner. Raises FileError.
     """
@@ -146,7 +156,7 @@ def heard(change: Change, take: Take, files: Mapping[str, TakeFiles]) -> Array:
         if samples is not None and len(samples) == 2:
             samples = np.stack([samples[0], np.zeros_like(samples[0])])
             first = round(take.source.start * FPS)
-            alone = features(samples, np.zeros((0, ACTIVITY)), tracks)
+            alone = compute_features(samples, np.zeros((0, ACTIVITY)), tracks)
             out[:, :-ACTIVITY] = alone[first : first + len(out), :-ACTIVITY]
     return out
 
@@ -168,19 +178,19 @@ class Ablated:
     changes that say nothing about such a model.
     """
 
-    rows: tuple[Row, ...]
+    rows: tuple[MeasureRow, ...]
     ran: tuple[str, ...]
     kept: tuple[str, ...]
     left: tuple[str, ...]
 
 
-def file_of(folder: Path, change: Change, training: int) -> Path:
+def file_of(folder: Path, change: AblationChange, training: int) -> Path:
     """Return where a model of an ablation is kept."""
     return folder / f"{change.name.replace(' ', '-').replace(chr(39), '')}-{training}{SUFFIX}"
 
 
 @dataclass(frozen=True, eq=False)
-class Material:
+class AblationMaterial:
     """What models are trained and judged on. files: by the takes' names. twins: mirror twins of what is
     learned from, made where they are needed.
     """
@@ -191,15 +201,15 @@ class Material:
     files: Mapping[str, TakeFiles]
     twins: Callable[[], Sequence[Take]]
 
-    def heard(self, change: Change, takes: Sequence[Take]) -> list[Take]:
+    def heard(self, change: AblationChange, takes: Sequence[Take]) -> list[Take]:
         """Return takes with what a change leaves of their sound."""
         if not change.hearing:
             return list(takes)
-        return [replace(t, features=heard(change, t, self.files)) for t in takes]
+        return [replace(t, features=ablate_features(change, t, self.files)) for t in takes]
 
 
 @dataclass(frozen=True)
-class Training:
+class AblationTraining:
     """How each model is trained. seconds: of the processor. trainings: how many of each, by other seeds."""
 
     kind: Kind
@@ -208,13 +218,13 @@ class Training:
     trainings: int = 1
 
 
-def ablate(
+def ablate_model(
     folder: Path,
     trainer: Trainer,
-    material: Material,
-    training: Training,
-    changes: Sequence[Change] = CHANGES,
-    manner: Manner = Manner(),  # noqa: B008
+    material: AblationMaterial,
+    training: AblationTraining,
+    changes: Sequence[AblationChange] = CHANGES,
+    manner: SamplingManner = SamplingManner(),  # noqa: B008
     draws: int = DRAWS,
     progress: Callable[[str], None] | None = None,
 ) -> Ablated:
@@ -226,8 +236,8 @@ def ablate(
         raise ValueError("an ablation has 1 to 20 trainings of each kind, of more than 0 s")
     rig, held, floor = material.rig, material.held.takes, material.held.floor
     _own(folder, _asked(material, training))
-    true = tuple(performance(rig, t.poses, t) for t in held)
-    systems: dict[str, list[tuple[Performance, ...]]] = {}
+    true = tuple(make_motion_sample(rig, t.poses, t) for t in held)
+    systems: dict[str, list[tuple[MotionSample, ...]]] = {}
     ran, kept, left = [], [], []
     for change in changes:
         wanted = sizes_for(change, training.kind, training.sizes)
@@ -248,16 +258,20 @@ def ablate(
                 some = material.heard(change, material.learned)
                 if change.mirrored:
                     some += material.twins()
-                trainer(Job(*wanted, change.settings, seed, seconds, tuple(some), tuple(hearing), out))
+                trainer(
+                    AblationJob(*wanted, change.settings, seed, seconds, tuple(some), tuple(hearing), out)
+                )
                 ran.append(name)
             how = manner if change.guidance is None else replace(manner, guidance=change.guidance)
             systems[change.name] += _made(rig, read_model(out), how, hearing, held)
-    other = None if floor is None else [performance(rig, p, t) for p, t in zip(floor, held, strict=True)]
-    rows = [truth(true, other, draws), *table(systems, true, other, draws)]
+    other = (
+        None if floor is None else [make_motion_sample(rig, p, t) for p, t in zip(floor, held, strict=True)]
+    )
+    rows = [truth(true, other, draws), *tabulate_measures(systems, true, other, draws)]
     return Ablated(tuple(rows), tuple(ran), tuple(kept), tuple(left))
 
 
-def _asked(material: Material, training: Training) -> Asked:
+def _asked(material: AblationMaterial, training: AblationTraining) -> Asked:
     takes = (*material.learned, *material.held.takes)
     return Asked(
         kind=training.kind,
@@ -269,15 +283,15 @@ def _asked(material: Material, training: Training) -> Asked:
 
 
 def _made(
-    rig: PoseRig, model: Model, manner: Manner, hearing: Sequence[Take], held: Sequence[Take]
-) -> list[tuple[Performance, ...]]:
+    rig: PoseRig, model: Model, manner: SamplingManner, hearing: Sequence[Take], held: Sequence[Take]
+) -> list[tuple[MotionSample, ...]]:
     """Return a model's motion to what it hears, each seed's. What is judged is the motion beside all that was
     said, whatever the model heard of it.
     """
     out = []
     for seed in range(1, manner.seeds + 1):
-        poses = [generated(model, t.features, seed, n, manner) for n, t in enumerate(hearing)]
-        out.append(tuple(performance(rig, p, t) for p, t in zip(poses, held, strict=True)))
+        poses = [generate_poses(model, t.features, seed, n, manner) for n, t in enumerate(hearing)]
+        out.append(tuple(make_motion_sample(rig, p, t) for p, t in zip(poses, held, strict=True)))
     return out
 
 

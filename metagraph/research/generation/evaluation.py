@@ -14,9 +14,17 @@ from numpy.typing import NDArray
 from metagraph.generation.chunks import GUIDANCE
 from metagraph.generation.poses import PoseRig
 from metagraph.generation.sampler import poses_to
-from metagraph.generation.statistics import DRAWS, Performance, Row, diversity, performance, row, table
+from metagraph.generation.statistics import (
+    DRAWS,
+    MeasureRow,
+    MotionSample,
+    diversity,
+    make_motion_sample,
+    row,
+    tabulate_measures,
+)
 from metagraph.generation.stored import Model
-from metagraph.generation.takes import HELD, SplitError, Take, split
+from metagraph.generation.takes import HELD, SplitError, Take, split_takes
 
 Array = NDArray[Any]
 
@@ -24,7 +32,7 @@ SEEDS = 5
 
 
 @dataclass(frozen=True)
-class Manner:
+class SamplingManner:
     """How models are sampled. seeds: how many takes of each. lookahead: frames, None for all that a model
     uses.
     """
@@ -46,18 +54,18 @@ class HeldOut:
 
 
 @dataclass(frozen=True, eq=False)
-class Judged:
+class JudgedModels:
     """What came of it. true, floor: performances of each take; None: there is no floor of other motion. made:
     of each model, of each seed. rows: the table, recorded motion itself first.
     """
 
-    true: tuple[Performance, ...]
-    floor: tuple[Performance, ...] | None
-    made: Mapping[str, tuple[tuple[Performance, ...], ...]]
-    rows: tuple[Row, ...]
+    true: tuple[MotionSample, ...]
+    floor: tuple[MotionSample, ...] | None
+    made: Mapping[str, tuple[tuple[MotionSample, ...], ...]]
+    rows: tuple[MeasureRow, ...]
 
 
-def generated(model: Model, heard: Array, seed: int, number: int, manner: Manner) -> Array:
+def generate_poses(model: Model, heard: Array, seed: int, number: int, manner: SamplingManner) -> Array:
     """Return a model's poses `[T, X]`, not standardised, to features `[T, audio + 4]`. number: of the take,
     so that two takes of one seed have other chances.
     """
@@ -86,7 +94,7 @@ def unseen(model: Model, takes: Sequence[Take]) -> tuple[tuple[Take, ...], tuple
         return fresh, left
     partly = [t for t in takes if held & set(t.source.digests)]
     total = sum(t.seconds for t in card.held_out)
-    block = split(partly, HELD)[1] if len({t.source.digests[:1] for t in partly}) == 1 else ()
+    block = split_takes(partly, HELD)[1] if len({t.source.digests[:1] for t in partly}) == 1 else ()
     if block and abs(sum(t.seconds for t in block) - total) < 0.1:
         return block, ()
     raise SplitError(
@@ -105,16 +113,16 @@ def for_all(models: Mapping[str, Model], takes: Sequence[Take]) -> tuple[tuple[T
     return chosen, tuple(dict.fromkeys(out))
 
 
-def judge(
+def judge_on_takes(
     rig: PoseRig,
     models: Mapping[str, Model],
     held: HeldOut,
-    manner: Manner = Manner(),
+    manner: SamplingManner = SamplingManner(),
     hear: Callable[[str, Take], Array] | None = None,
     draws: int = DRAWS,
     progress: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
-) -> Judged:
+) -> JudgedModels:
     """Judge models on takes. hear: what a model is given of a take, its features unless given. Raises
     ValueError where there is too little to judge, CancelledError once `cancelled` says so.
     """
@@ -123,8 +131,8 @@ def judge(
         raise ValueError("there is no take to judge a model on")
     if not 1 <= manner.seeds <= 100:
         raise ValueError(f"a model is judged with 1 to 100 seeds, not {manner.seeds}")
-    true = tuple(performance(rig, t.poses, t) for t in takes)
-    made: dict[str, tuple[tuple[Performance, ...], ...]] = {}
+    true = tuple(make_motion_sample(rig, t.poses, t) for t in takes)
+    made: dict[str, tuple[tuple[MotionSample, ...], ...]] = {}
     total, done = len(models) * manner.seeds * len(takes), 0
     for name, model in models.items():
         seeds = []
@@ -137,20 +145,22 @@ def judge(
                     progress(done, total)
                 done += 1
                 heard = take.features if hear is None else hear(name, take)
-                motion.append(performance(rig, generated(model, heard, seed, number, manner), take))
+                motion.append(
+                    make_motion_sample(rig, generate_poses(model, heard, seed, number, manner), take)
+                )
             seeds.append(tuple(motion))
         made[name] = tuple(seeds)
     other = None
     if floor is not None:
-        other = tuple(performance(rig, p, t) for p, t in zip(floor, takes, strict=True))
+        other = tuple(make_motion_sample(rig, p, t) for p, t in zip(floor, takes, strict=True))
     own = truth(true, other, draws)
-    return Judged(true, other, made, (own, *table(made, true, other, draws)))
+    return JudgedModels(true, other, made, (own, *tabulate_measures(made, true, other, draws)))
 
 
-def truth(true: Sequence[Performance], other: Sequence[Performance] | None, draws: int) -> Row:
+def truth(true: Sequence[MotionSample], other: Sequence[MotionSample] | None, draws: int) -> MeasureRow:
     """Return the row of recorded motion itself: what it has of its own, and how far two draws of it are
     apart.
     """
     own = row("true", [true], true, draws=draws)
     both = [true] if other is None else [true, other]
-    return Row(own.name, {**own.values, "diversity": diversity(both)}, own.spread)
+    return MeasureRow(own.name, {**own.values, "diversity": diversity(both)}, own.spread)

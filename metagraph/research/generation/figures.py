@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.common.svg import WIDTH, line, number, svg, text
+from metagraph.common.svg import WIDTH, format_px, svg_drawing, svg_line, svg_text
 from metagraph.generation.landmarks import LANDMARKS
 from metagraph.generation.networks import FPS
-from metagraph.generation.statistics import Performance
+from metagraph.generation.statistics import MotionSample
 
 Array = NDArray[Any]
 
@@ -41,12 +41,12 @@ _EVERY = 5  # frames between two points of a line
 _LEFT, _RIGHT = 46, 626
 
 
-def distances(motion: Sequence[Performance], mean: Array) -> Array:
+def landmark_distances(motion: Sequence[MotionSample], mean: Array) -> Array:
     """Return how far each landmark is from its mean `[T, 9]`, cm. mean: `[9, 3]` metres."""
     return np.concatenate([np.linalg.norm(m.landmarks - mean, axis=-1) for m in motion]) * 100
 
 
-def changes(motion: Sequence[Performance], mean: Array, who: int) -> Array:
+def distance_changes(motion: Sequence[MotionSample], mean: Array, who: int) -> Array:
     """Return how fast those distances grow `[n, 9]`, cm/s, where somebody (`SELF`, `PARTNER`) speaks."""
     rows = []
     for m in motion:
@@ -55,41 +55,43 @@ def changes(motion: Sequence[Performance], mean: Array, who: int) -> Array:
     return np.concatenate(rows)
 
 
-def over_time(motion: Performance, mean: Array, most: float | None = None) -> str:
+def draw_over_time(motion: MotionSample, mean: Array, most: float | None = None) -> str:
     """Draw the distance of each landmark from its mean. most: cm, what the axis ends at."""
-    far = distances([motion.part(0, round(LONGEST * FPS))], mean)
+    far = landmark_distances([motion.part(0, round(LONGEST * FPS))], mean)
     top, bottom, height = 12, 190, 236
     most = max(float(far.max()), 1.0) if most is None else most
     seconds = max(len(far) / FPS, 1.0)
     parts = _across(0.0, most, top, bottom, "cm")
     for t in _ticks(0.0, seconds):
         x = _LEFT + (_RIGHT - _LEFT) * t / seconds
-        parts.append(text(x, bottom + 16, f"{t:g} s", "dim", "middle"))
+        parts.append(svg_text(x, bottom + 16, f"{t:g} s", "dim", "middle"))
     for n in reversed(range(len(LANDMARKS))):
         # The largest of each few frames: peaks stay, and the file is small.
         values = [far[k : k + _EVERY, n].max() for k in range(0, len(far), _EVERY)]
         points = " ".join(
-            f"{number(_LEFT + (_RIGHT - _LEFT) * k * _EVERY / FPS / seconds)},"
-            f"{number(_place(v, 0.0, most, top, bottom))}"
+            f"{format_px(_LEFT + (_RIGHT - _LEFT) * k * _EVERY / FPS / seconds)},"
+            f"{format_px(_place(v, 0.0, most, top, bottom))}"
             for k, v in enumerate(values)
         )
         parts.append(f"<polyline class='mark{_kind(LANDMARKS[n])}' points='{points}'/>")
     at = float(_LEFT)
     for n, name in enumerate(_NAMES):
-        parts.append(f"<rect class='fill{n}' x='{number(at)}' y='{height - 22}' width='12' height='12'/>")
-        parts.append(text(at + 18, height - 12, name, "dim", "start"))
+        parts.append(f"<rect class='fill{n}' x='{format_px(at)}' y='{height - 22}' width='12' height='12'/>")
+        parts.append(svg_text(at + 18, height - 12, name, "dim", "start"))
         at += 130
-    return svg(height, parts, "Distance of landmarks from the mean pose over time")
+    return svg_drawing(height, parts, "Distance of landmarks from the mean pose over time")
 
 
-def boxes(systems: Mapping[str, Array], unit: str) -> str:
+def draw_boxes(systems: Mapping[str, Array], unit: str) -> str:
     """Draw a notched box of each system and landmark: quartiles, whiskers to the furthest value within 1.5 of
     their range, dots for what is beyond; notches 1.57 ranges over the root of the count about the median.
     systems: name -> values `[n, 9]`.
     """
     shown = {name: v for name, v in list(systems.items())[:SYSTEMS] if len(v) > 1}
     if not shown:
-        return svg(40, [text(WIDTH / 2, 24, "nothing to draw", "dim", "middle")], "Nothing to draw")
+        return svg_drawing(
+            40, [svg_text(WIDTH / 2, 24, "nothing to draw", "dim", "middle")], "Nothing to draw"
+        )
     top, bottom, height = 12, 260, 330
     low = min(0.0, *(float(v.min()) for v in shown.values()))
     high = max(1.0, *(float(v.max()) for v in shown.values()))
@@ -99,17 +101,17 @@ def boxes(systems: Mapping[str, Array], unit: str) -> str:
     for n, landmark in enumerate(LANDMARKS):
         middle = _LEFT + slot * (n + 0.5)
         side, _, part = landmark.rpartition("_")
-        parts.append(text(middle, bottom + 16, part, "dim", "middle"))
-        parts.append(text(middle, bottom + 30, side, "dim", "middle"))
+        parts.append(svg_text(middle, bottom + 16, part, "dim", "middle"))
+        parts.append(svg_text(middle, bottom + 30, side, "dim", "middle"))
         for k, values in enumerate(shown.values()):
             x = middle + (k - (len(shown) - 1) / 2) * wide * 1.15
             parts.append(f"<g class='box s{k}'>{_box(values[:, n], x, wide, low, high, top, bottom)}</g>")
     at = float(_LEFT)
     for k, name in enumerate(shown):
-        parts.append(f"<rect class='s{k}' x='{number(at)}' y='{height - 18}' width='12' height='12'/>")
-        parts.append(text(at + 18, height - 8, name[:16], "dim", "start"))
+        parts.append(f"<rect class='s{k}' x='{format_px(at)}' y='{height - 18}' width='12' height='12'/>")
+        parts.append(svg_text(at + 18, height - 8, name[:16], "dim", "start"))
         at += 116
-    return svg(height, parts, f"Notched boxes of each landmark, {unit}")
+    return svg_drawing(height, parts, f"Notched boxes of each landmark, {unit}")
 
 
 def tukey(values: Array) -> tuple[float, float, float, float, float, Array]:
@@ -132,16 +134,16 @@ def _box(values: Array, x: float, wide: float, low: float, high: float, top: flo
     ends = [y(v) for v in (first, max(first, middle - notch), middle, min(third, middle + notch), third)]
     right = list(zip((half, half, waist, half, half), ends, strict=True))
     outline = [(x + w, v) for w, v in right] + [(x - w, v) for w, v in reversed(right)]
-    points = " ".join(f"{number(a)},{number(b)}" for a, b in outline)
-    parts = [f"<polygon points='{points}'/>", line(x - waist, y(middle), x + waist, y(middle), "median")]
-    parts += [line(x, y(a), x, y(b), "whisker") for a, b in ((least, first), (third, most))]
+    points = " ".join(f"{format_px(a)},{format_px(b)}" for a, b in outline)
+    parts = [f"<polygon points='{points}'/>", svg_line(x - waist, y(middle), x + waist, y(middle), "median")]
+    parts += [svg_line(x, y(a), x, y(b), "whisker") for a, b in ((least, first), (third, most))]
     # What would be drawn at the same place is drawn once.
     for at in sorted({round(y(float(v))) for v in beyond}):
-        parts.append(f"<circle class='beyond' cx='{number(x)}' cy='{at}' r='0.8'/>")
+        parts.append(f"<circle class='beyond' cx='{format_px(x)}' cy='{at}' r='0.8'/>")
     return "".join(parts)
 
 
-def overlaid(motion: Mapping[str, Performance]) -> str:
+def draw_overlaid(motion: Mapping[str, MotionSample]) -> str:
     """Draw the poses of each system over each other, from the front, one a second."""
     some = {
         name: m.landmarks[: round(LONGEST * FPS) : round(FPS)] for name, m in list(motion.items())[:SYSTEMS]
@@ -164,13 +166,13 @@ def overlaid(motion: Mapping[str, Performance]) -> str:
             at = [(centre + (p[0] - middle) * scale, 12 + (high - p[1]) * scale) for p in places]
             lines.append(
                 "".join(
-                    f"M{number(at[a][0])} {number(at[a][1])}L{number(at[b][0])} {number(at[b][1])}"
-                    for a, b in _BONES
+                    f"M{format_px(x)} {format_px(y)}L{format_px(to_x)} {format_px(to_y)}"
+                    for (x, y), (to_x, to_y) in ((at[a], at[b]) for a, b in _BONES)
                 )
             )
         parts.append(f"<g class='bones line{k}'>{''.join(f'<path d={d!r}/>' for d in lines)}</g>")
-        parts.append(text(centre, height - 12, name, "label", "middle"))
-    return svg(height, parts, "Poses drawn over each other, one a second")
+        parts.append(svg_text(centre, height - 12, name, "label", "middle"))
+    return svg_drawing(height, parts, "Poses drawn over each other, one a second")
 
 
 def _kind(landmark: str) -> int:
@@ -192,5 +194,5 @@ def _across(low: float, high: float, top: float, bottom: float, unit: str) -> li
     out = []
     for t in _ticks(low, high):
         y = _place(t, low, high, top, bottom)
-        out += [line(_LEFT, y, _RIGHT, y, "grid"), text(_LEFT - 6, y + 4, f"{t:g}", "dim", "end")]
-    return [*out, text(_LEFT + 4, top + 2, unit, "dim", "start")]
+        out += [svg_line(_LEFT, y, _RIGHT, y, "grid"), svg_text(_LEFT - 6, y + 4, f"{t:g}", "dim", "end")]
+    return [*out, svg_text(_LEFT + 4, top + 2, unit, "dim", "start")]

@@ -21,7 +21,7 @@ from metagraph.formats.conversations.writers import write_json
 from metagraph.formats.gltf.writer import Keys, write_glb
 from metagraph.generation.features import RATE
 from metagraph.generation.networks import FPS
-from metagraph.generation.poses import PoseRig, poses_of
+from metagraph.generation.poses import PoseRig, encode_clip
 from metagraph.generation.takes import Take
 from metagraph.graph.conversation.model import Conversation
 from metagraph.graph.model import Project
@@ -29,7 +29,7 @@ from metagraph.motion.clip import Clip
 from metagraph.playback.bake import bake
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.planning.choice import key32
-from metagraph.research.generation.planted_speech import SHORTEST, Spoken, converse
+from metagraph.research.generation.planted_speech import SHORTEST, PlantedSpeech, make_planted_speech
 from metagraph.speech.drive import drive
 
 MINUTES = 3.0
@@ -53,14 +53,16 @@ class Planted(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     version: int = VERSION
 
 
-def talk_of(planted: Planted, n: int) -> Spoken:
+def make_planted_talk(planted: Planted, n: int) -> PlantedSpeech:
     """Return the n-th conversation, from 0, with its sound."""
     name = f"planted-{n + 1:03d}"
     said = key32(planted.seed, "speech", str(n))
-    return converse(planted.seconds, said, key32(planted.moves, "moves", str(planted.seed), str(n)), name)
+    return make_planted_speech(
+        planted.seconds, said, key32(planted.moves, "moves", str(planted.seed), str(n)), name
+    )
 
 
-def performed(project: Project, conversation: Conversation, side: int) -> Clip:
+def perform_planted(project: Project, conversation: Conversation, side: int) -> Clip:
     """Return how a side moves, FPS frames a second. Raises ValueError where the project has no skeleton."""
     _, plan = drive(conversation, side, project, together=False)
     return bake(Evaluator(plan, project), project, conversation.length, FPS)
@@ -97,7 +99,7 @@ def write_planted(
             raise CancelledError
         if progress is not None:
             progress(n, planted.count)
-        made += _write(project, folder, talk_of, planted, n)
+        made += _write(project, folder, make_planted_talk, planted, n)
     return made
 
 
@@ -111,12 +113,12 @@ def again(project: Project, planted: Planted, take: Take, rig: PoseRig) -> Take:
     if not (number.isdigit() and side in ("1", "2") and 1 <= int(number) <= planted.count):
         raise ValueError(f"'{take.source.name}' is none of the takes that were planted")
     other = msgspec.structs.replace(planted, moves=planted.moves + AGAIN)
-    clip = performed(project, talk_of(other, int(number) - 1).conversation, int(side) - 1)
-    return replace(take, source=replace(take.source, start=0.0), poses=poses_of(rig, clip, FPS))
+    clip = perform_planted(project, make_planted_talk(other, int(number) - 1).conversation, int(side) - 1)
+    return replace(take, source=replace(take.source, start=0.0), poses=encode_clip(rig, clip, FPS))
 
 
 def _write(
-    project: Project, folder: Path, talk: Callable[[Planted, int], Spoken], planted: Planted, n: int
+    project: Project, folder: Path, talk: Callable[[Planted, int], PlantedSpeech], planted: Planted, n: int
 ) -> bool:
     name = f"planted-{n + 1:03d}"
     last = folder / f"{name}.json"
@@ -124,7 +126,7 @@ def _write(
         return False
     spoken = talk(planted, n)
     for side in (0, 1):
-        clip = performed(project, spoken.conversation, side)
+        clip = perform_planted(project, spoken.conversation, side)
         path = folder / f"{name}_{side + 1}.glb"
         # Thinning would take most of the time.
         write_glb(path, [replace(clip, name=path.stem)], keys=Keys(tolerance=0.0))

@@ -52,7 +52,7 @@ _HESITATIONS = ("um", "uh", "er")
 
 
 @dataclass(frozen=True, eq=False)
-class Spoken:
+class PlantedSpeech:
     """A conversation and its sound: samples `[2, N]`, float32, at `features.RATE`, a side each."""
 
     conversation: Conversation
@@ -200,7 +200,7 @@ class _Speaker:
         self.end = end
 
 
-def converse(seconds: float, seed: int, moves: int, name: str) -> Spoken:
+def make_planted_speech(seconds: float, seed: int, moves: int, name: str) -> PlantedSpeech:
     """Return a conversation of so many seconds. seed: of what is said; moves: of what is done with it, the
     conversation's own seed. Raises ValueError for one that is too short.
     """
@@ -235,4 +235,4 @@ def converse(seconds: float, seed: int, moves: int, name: str) -> Spoken:
         for n, s in enumerate(pair)
     )
     conversation = Conversation(name=name, length=seconds, sides=sides, seed=moves)
-    return Spoken(conversation, samples.astype(np.float32))
+    return PlantedSpeech(conversation, samples.astype(np.float32))

@@ -7,19 +7,19 @@ from dataclasses import astuple, fields
 from statistics import fmean
 
 from metagraph.common.csv_text import csv_text
-from metagraph.research.motion_graph.search_evaluation import Case, Evaluation
+from metagraph.research.motion_graph.search_evaluation import Evaluation, HeldOutCase
 
 
-def csv_of(cases: Sequence[Case]) -> str:
+def cases_as_csv(cases: Sequence[HeldOutCase]) -> str:
     """Return cases as comma-separated values, a line each, under a line of names."""
     rows = (
         [round(v, 6) if isinstance(v, float) else int(v) if isinstance(v, bool) else v for v in astuple(case)]
         for case in cases
     )
-    return csv_text([[f.name for f in fields(Case)], *rows])
+    return csv_text([[f.name for f in fields(HeldOutCase)], *rows])
 
 
-def table_of(evaluation: Evaluation) -> str:
+def cases_as_text(evaluation: Evaluation) -> str:
     """Return rows as a table in text."""
     return "\n".join(_lines(evaluation))
 

@@ -14,16 +14,16 @@ from numpy.typing import NDArray
 
 from metagraph.graph.conversation.model import SOUNDS, Segment
 from metagraph.motion.clip import Clip
-from metagraph.research.motion_graph.search_evaluation import LEAST, WINDOW, cut, without
+from metagraph.research.motion_graph.search_evaluation import LEAST, WINDOW, cut_segments, hold_out_states
 from metagraph.suggest.tracks import RATE
-from metagraph.synthesis.constraints import STRESS, TOLERANCE, HeardStates, changes, heard
+from metagraph.synthesis.constraints import STRESS, TOLERANCE, HeardStates, find_change_states, find_heard_at
 from metagraph.synthesis.extending.path import DriverGraph, PathExtender, driver_graph
 from metagraph.synthesis.extending.speech_so_far import LATE, SpeechNews
-from metagraph.synthesis.graph import MotionGraph, build, threshold
+from metagraph.synthesis.graph import MotionGraph, build_graph, threshold
 from metagraph.synthesis.search.path import Path
 from metagraph.synthesis.search.path_quality import PathQuality, quality
-from metagraph.synthesis.search.relaxing import answer
-from metagraph.synthesis.states import KEYS, LEVEL, STEP, States, SynthesisError, key_states, states_of
+from metagraph.synthesis.search.relaxing import answer_speech
+from metagraph.synthesis.states import KEYS, LEVEL, STEP, States, SynthesisError, key_states, read_states
 
 Array = NDArray[Any]
 
@@ -84,7 +84,7 @@ def news_of(segments: Iterable[Segment], ahead: float | None) -> list[tuple[floa
     return sorted(out, key=lambda x: x[0])
 
 
-def extended(
+def extend_by_windows(
     graph: DriverGraph, segments: Iterable[Segment], seconds: float, ahead: float | None, seed: int = 1
 ) -> tuple[Path, list[tuple[int, float]]]:
     """Return the path that is extended while speech goes on, and of each search the frames it looked at and
@@ -104,7 +104,7 @@ def extended(
     return Path(way, 0.0, np.flatnonzero(np.diff(way) != 1) + 1), searches
 
 
-def row_of(how: str, cases: Sequence[LiveCase], searches: Sequence[tuple[int, float]] = ()) -> LiveRow:
+def score_paths(how: str, cases: Sequence[LiveCase], searches: Sequence[tuple[int, float]] = ()) -> LiveRow:
     """Return how paths go with the speech that each is for. searches: frames looked at, and seconds."""
     off: list[float] = []
     shifted: list[float] = []
@@ -164,19 +164,19 @@ def _nearest(strokes: Array, peaks: Array) -> Array:
     return np.asarray(away[np.arange(len(peaks)), np.abs(away).argmin(1)])
 
 
-def best_of(
+def find_best_paths(
     graph: MotionGraph, sound: HeardStates, said: Sequence[Segment], seconds: float
 ) -> list[LiveCase]:
     """Return the best paths for speech that is known whole, WINDOW by WINDOW."""
     out: list[LiveCase] = []
     for start in np.arange(0.0, seconds - LEAST, WINDOW).tolist():
         length = min(WINDOW, seconds - start)
-        part = cut(said, start, length)
-        out.append((graph.states, sound, part, answer(graph, sound, part, length).path))
+        part = cut_segments(said, start, length)
+        out.append((graph.states, sound, part, answer_speech(graph, sound, part, length).path))
     return out
 
 
-def rows_of(
+def score_extending(
     graphs: Sequence[Driven],
     ahead: Sequence[float | None] = AHEAD,
     seed: int = 1,
@@ -199,19 +199,19 @@ def rows_of(
     for k in ahead:
         cases, searches = [], []
         for driver, (_, sound, said, seconds) in zip(ready, graphs, strict=True):
-            path, took = extended(driver, said, seconds, k, seed)
+            path, took = extend_by_windows(driver, said, seconds, k, seed)
             cases.append((driver.states, sound, said, path))
             searches += took
             told()
-        yield row_of("heard" if k is None else f"told {k:g} s ahead", cases, searches)
+        yield score_paths("heard" if k is None else f"told {k:g} s ahead", cases, searches)
     cases = []
     for graph, sound, said, seconds in graphs:
-        cases += best_of(graph, sound, said, seconds)
+        cases += find_best_paths(graph, sound, said, seconds)
         told()
-    yield row_of("all known", cases)
+    yield score_paths("all known", cases)
 
 
-def held_out(
+def hold_out_takes(
     takes: Sequence[Clip],
     speech: Sequence[Sequence[Segment]],
     k: int = STEP,
@@ -227,22 +227,24 @@ def held_out(
         raise SynthesisError(
             "holding one take out needs at least two takes of more than one frame: give more"
         )
-    every = states_of([t for t, _ in pairs])
+    every = read_states([t for t, _ in pairs])
     out: list[Driven] = []
     for n, (take, said) in enumerate(pairs):
         if take.duration < LEAST:
             continue
-        rest = without(every, n)
+        rest = hold_out_states(every, n)
         others = [s for m, (_, s) in enumerate(pairs) if m != n]
-        places = key_states(rest, keys, changes(rest, others))
-        graph = build(rest, threshold(rest, k, level), places, most)
-        out.append((graph, heard(rest, others), cut(said, 0.0, take.duration), take.duration))
+        places = key_states(rest, keys, find_change_states(rest, others))
+        graph = build_graph(rest, threshold(rest, k, level), places, most)
+        out.append(
+            (graph, find_heard_at(rest, others), cut_segments(said, 0.0, take.duration), take.duration)
+        )
     if not out:
         raise SynthesisError(f"no take is longer than {LEAST:g} s, so there is no case: give longer takes")
     return out
 
 
-def table_of(rows: Sequence[LiveRow]) -> str:
+def rows_as_text(rows: Sequence[LiveRow]) -> str:
     """Return rows as a table in text."""
     names = ("strokes", "met", "chance", "answered", "later by", "kind", "jumps/s", "again", "rest", "takes")
     out = [f"{'speech is':<18}" + "".join(f"{name:>9}" for name in (*names, "search", "most"))]

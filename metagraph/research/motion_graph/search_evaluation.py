@@ -16,12 +16,18 @@ from numpy.typing import NDArray
 from metagraph.graph.conversation.model import SOUNDS, Segment, Sound
 from metagraph.motion.clip import Clip
 from metagraph.suggest.tracks import RATE
-from metagraph.synthesis.constraints import TOLERANCE, HeardStates, changes, heard, wanted
+from metagraph.synthesis.constraints import (
+    TOLERANCE,
+    HeardStates,
+    find_change_states,
+    find_heard_at,
+    list_wanted,
+)
 from metagraph.synthesis.cooccurrence import wilson
-from metagraph.synthesis.graph import MotionGraph, build, threshold
+from metagraph.synthesis.graph import MotionGraph, build_graph, threshold
 from metagraph.synthesis.prosody_costs import SpokenTake
 from metagraph.synthesis.search.path_quality import quality
-from metagraph.synthesis.search.relaxing import Constraints, Searching, answer
+from metagraph.synthesis.search.relaxing import Constraints, Searching, answer_speech
 from metagraph.synthesis.search.ruled_search import FREE, JUMP_RULES, JumpRules, Search, find_path
 from metagraph.synthesis.soft_constraints import (
     NO_WISH,
@@ -37,7 +43,7 @@ from metagraph.synthesis.states import (
     States,
     SynthesisError,
     key_states,
-    states_of,
+    read_states,
     with_velocity,
 )
 
@@ -79,7 +85,7 @@ SETTINGS: tuple[Setting, ...] = (
 
 
 @dataclass(frozen=True)
-class Case:
+class HeldOutCase:
     """One window of a take that was held out. start, length, seconds of the search: seconds. found: whether
     there is motion that does not stand still (`PathQuality`). transitions, cost, repeated, rest: of what was
     found, 0 where nothing was; `why` says why nothing was found, or not counted. loudness, pace: spreads that
@@ -152,20 +158,20 @@ class EvaluationRow:
 class Evaluation:
     """whole: whether it came to its end, and was not cancelled."""
 
-    cases: tuple[Case, ...]
+    cases: tuple[HeldOutCase, ...]
     graphs: tuple[Graph, ...]
     whole: bool
 
     @property
     def rows(self) -> list[EvaluationRow]:
         """A row for each setting and search, in the order they were tried."""
-        groups: dict[tuple[str, Search], list[Case]] = {}
+        groups: dict[tuple[str, Search], list[HeldOutCase]] = {}
         for case in self.cases:
             groups.setdefault((case.setting, case.search), []).append(case)
         return [_row(setting, search, cases) for (setting, search), cases in groups.items()]
 
 
-def _row(setting: str, search: Search, cases: Sequence[Case]) -> EvaluationRow:
+def _row(setting: str, search: Search, cases: Sequence[HeldOutCase]) -> EvaluationRow:
     found = [c for c in cases if c.found]
     low, high = wilson(len(found), len(cases))
     moved = sum(c.length for c in found)
@@ -191,7 +197,9 @@ def _mean(values: Iterable[float | None]) -> float | None:
     return fmean(known) if known else None
 
 
-def windows(length: float, window: float = WINDOW, every: float = EVERY) -> list[tuple[float, float]]:
+def list_case_windows(
+    length: float, window: float = WINDOW, every: float = EVERY
+) -> list[tuple[float, float]]:
     """Return where a take's cases begin, and how long they are, seconds. A take shorter than a window makes
     one case as long as it is, one shorter than LEAST none.
     """
@@ -200,7 +208,7 @@ def windows(length: float, window: float = WINDOW, every: float = EVERY) -> list
     return [(n * every, window) for n in range(int((length - window + 1e-6) // every) + 1)]
 
 
-def cut(segments: Sequence[Segment], start: float, length: float) -> list[Segment]:
+def cut_segments(segments: Sequence[Segment], start: float, length: float) -> list[Segment]:
     """Return what of segments is in a window, in its own time; stresses outside of it are forgotten."""
     out = []
     for s in segments:
@@ -246,7 +254,7 @@ class Beside:
 ALL_TRIALS, USUAL_GRAPH, NOTHING_BESIDE = Trials(), GraphMaking(), Beside()
 
 
-def evaluate(
+def evaluate_search(
     takes: Sequence[Clip],
     speech: Sequence[Sequence[Segment]],
     settings: Sequence[Setting] = SETTINGS,
@@ -266,14 +274,14 @@ def evaluate(
     searches = trials.searches
     known = [SpokenTake(tuple(s)) for s in speech] if beside.spoken is None else beside.spoken
     takes, speech, spoken = _checked(takes, speech, known)
-    every_state = states_of(takes)
+    every_state = read_states(takes)
     _warm(searches)
     lengths = np.diff(every_state.starts) / RATE
-    cases = [windows(float(length), trials.window, trials.every) for length in lengths]
+    cases = [list_case_windows(float(length), trials.window, trials.every) for length in lengths]
     total = sum(map(len, cases)) * len(settings) * len(searches)
     if not total:
         raise SynthesisError(f"no take is longer than {LEAST:g} s, so there is no case: give longer takes")
-    done: list[Case] = []
+    done: list[HeldOutCase] = []
     graphs: list[Graph] = []
     for n, take in enumerate(takes):
         if not cases[n]:
@@ -286,11 +294,11 @@ def evaluate(
             rest, theirs = [*takes[:n], *takes[n + 1 :]], [*spoken[:n], *spoken[n + 1 :]]
             material = SoftMaterial(beside.wish, graph.states, rest, theirs, graph.threshold.limit)
         for start, length in cases[n]:
-            said = cut(speech[n], start, length)
+            said = cut_segments(speech[n], start, length)
             for setting, search in ((s, x) for s in settings for x in searches):
                 if cancelled is not None and cancelled():
                     return Evaluation(tuple(done), tuple(graphs), False)
-                case = Case(
+                case = HeldOutCase(
                     take.name,
                     start,
                     length,
@@ -335,9 +343,11 @@ def _warm(searches: Collection[Search]) -> None:
         np.array([0, 4]),
         1.0,
     )
-    graph = build(tiny, threshold(tiny, 2), np.arange(4))
+    graph = build_graph(tiny, threshold(tiny, 2), np.arange(4))
     for search in searches:
-        find_path(graph, HeardStates(np.ones(4, np.uint8), np.zeros(4, bool)), wanted([], 0.1), search, FREE)
+        find_path(
+            graph, HeardStates(np.ones(4, np.uint8), np.zeros(4, bool)), list_wanted([], 0.1), search, FREE
+        )
 
 
 def _graph(
@@ -351,18 +361,18 @@ def _graph(
     none.
     """
     begun = perf_counter()
-    rest = without(states, out)
+    rest = hold_out_states(states, out)
     said = [s for n, s in enumerate(speech) if n != out]
     try:
-        keys = key_states(rest, making.keys, changes(rest, said))
+        keys = key_states(rest, making.keys, find_change_states(rest, said))
         limit = threshold(rest, making.k, making.level)
-        graph = build(rest, limit, keys, making.most, cancelled=cancelled)
-        return graph, heard(rest, said), perf_counter() - begun
+        graph = build_graph(rest, limit, keys, making.most, cancelled=cancelled)
+        return graph, find_heard_at(rest, said), perf_counter() - begun
     except SynthesisError as error:
         return str(error)  # also where it was cancelled: then no case is tried
 
 
-def without(states: States, take: int) -> States:
+def hold_out_states(states: States, take: int) -> States:
     """Return the states of all takes but one, w_v worked out anew."""
     a, b = int(states.starts[take]), int(states.starts[take + 1])
     places, velocities = np.delete(states.places, np.s_[a:b], 0), np.delete(states.velocities, np.s_[a:b], 0)
@@ -371,19 +381,19 @@ def without(states: States, take: int) -> States:
 
 
 def _tried(
-    case: Case,
+    case: HeldOutCase,
     graph: MotionGraph,
     sound: HeardStates,
     said: Sequence[Segment],
     setting: Setting,
     seed: int,
     soft: SoftConstraints,
-) -> Case:
+) -> HeldOutCase:
     asked = Constraints(setting.tolerance, setting.use, setting.peaks, setting.edges, setting.rules)
     searching = Searching(case.search, seed, strict=True)
     begun = perf_counter()
     try:
-        found = answer(graph, sound, said, case.length, asked, searching, soft=soft)
+        found = answer_speech(graph, sound, said, case.length, asked, searching, soft=soft)
     except SynthesisError as error:
         return replace(case, seconds=perf_counter() - begun, why=str(error))
     took, path = perf_counter() - begun, found.path

@@ -10,52 +10,68 @@ from pathlib import Path
 from metagraph.common.xml_text import escape
 from metagraph.formats.atomic import write_together
 from metagraph.research.study.analysis.reading import TOTALS
-from metagraph.research.study.analysis.results import ABOVE, BELOW, TITLES, Comparison, Measure, Results
+from metagraph.research.study.analysis.results import (
+    ABOVE,
+    BELOW,
+    TITLES,
+    ConditionComparison,
+    Results,
+    StudyMeasure,
+)
 from metagraph.research.study.reports import plots
 from metagraph.research.study.reports.cells import (
     apa,
     chance,
     figure,
-    gathered,
+    format_cells,
+    format_ratio,
+    format_spread,
+    format_test,
+    format_two_digits,
+    gather_missing,
     interval,
-    spread,
-    table,
-    tested,
-    times,
-    two,
     who,
 )
 from metagraph.research.study.reports.doubts import (
-    equivalence_told,
+    describe_alternatives,
+    describe_equivalence,
+    describe_gaps,
+    describe_missing_data,
+    describe_other_conditions,
+    describe_sites,
+    draw_alternatives,
     flow_figure,
-    gaps_told,
-    missing_told,
-    others_told,
-    otherwise,
-    otherwise_figure,
-    sites_told,
 )
 from metagraph.research.study.reports.figure_files import standalone
 from metagraph.research.study.reports.plots import seconds
 from metagraph.research.study.reports.style import METHODS, STYLE
-from metagraph.research.study.reports.tables import tables
+from metagraph.research.study.reports.tables import study_tables
 from metagraph.research.study.statistics.small_samples import Estimate
 
-__all__ = ["NAME", "Paper", "chance", "figures", "gathered", "page", "summary", "write_report"]
+__all__ = [
+    "NAME",
+    "Paper",
+    "chance",
+    "draw_study_figures",
+    "format_study_page",
+    "gather_missing",
+    "summarise_study",
+    "write_study_report",
+]
 
 NAME = "report.html"
 Paper = Callable[[str], bytes]
 Files = Mapping[str, bytes]
 
 
-def write_report(results: Results, folder: Path, paper: Paper | None = None) -> list[Path]:
+def write_study_report(results: Results, folder: Path, paper: Paper | None = None) -> list[Path]:
     """Write the page, the tables and the figures into a folder; return what was written, the page first.
     paper: makes a PDF of an SVG file's text, where that can be done. Raises FileError.
     """
-    drawn = {name: standalone(drawing) for name, (drawing, _) in figures(results).items()}
+    drawn = {name: standalone(drawing) for name, (drawing, _) in draw_study_figures(results).items()}
     papers = {name: paper(text) for name, text in drawn.items()} if paper is not None else {}
-    content: dict[str, bytes] = {NAME: page(results, papers).encode()}
-    content |= {name: text.encode() for name, text in tables(results).items()}
+    content: dict[str, bytes] = {NAME: format_study_page(results, papers).encode()}
+    content |= {name: text.encode() for name, text in study_tables(results).items()}
     content |= {f"figures/{name}.svg": text.encode() for name, text in drawn.items()}
     content |= {f"figures/{name}.pdf": made for name, made in papers.items()}
     notebooks = Path(__file__).with_name("notebooks")
@@ -63,7 +79,7 @@ def write_report(results: Results, folder: Path, paper: Paper | None = None) -> 
     return write_together(folder, content)
 
 
-def figures(results: Results) -> dict[str, tuple[str, str]]:
+def draw_study_figures(results: Results) -> dict[str, tuple[str, str]]:
     """Return name -> drawing (SVG, for the page's style) and caption."""
     out: dict[str, tuple[str, str]] = {}
     drawing = flow_figure(results)
@@ -75,43 +91,46 @@ def figures(results: Results) -> dict[str, tuple[str, str]]:
             pairs = [(p.participant, p.below, p.above) for p in time.people]
             sides = (time.means[BELOW], time.means[ABOVE])
             out["times"] = (
-                plots.paired(pairs, sides, (TITLES[BELOW], TITLES[ABOVE]), time.unit),
+                plots.plot_paired(pairs, sides, (TITLES[BELOW], TITLES[ABOVE]), time.unit),
                 "Each line is one person. Beside them the geometric means with 95 % intervals.",
             )
         rows: list[tuple[str, Estimate]] = [("all tasks", time.ratio)]
         rows += [(results.data.tasks[t], e) for t, e in results.by_task.items() if len(results.by_task) > 1]
         rows += [(TITLES[c.pair[0]], c.ratio) for c in results.others]
         out["ratios"] = plots.ratios(rows), "How many times as long it took by hand, with 95 % intervals."
-    again = otherwise_figure(results)
+    again = draw_alternatives(results)
     if again is not None:
         out["otherwise"] = again, "The ratio of all tasks, reckoned otherwise, with 95 % intervals."
     if results.curves:
         lines = {c: (curve.seconds, curve.first, curve.slope.value) for c, curve in results.curves.items()}
         out["practice"] = (
-            plots.curves(lines, TITLES),
+            plots.plot_learning(lines, TITLES),
             "Geometric means over those who came so far, and the power law of practice.",
         )
     if any(results.spent.values()):
-        out["spent"] = plots.stacked(results.spent, TITLES), "What a task went into, arithmetic means."
+        out["spent"] = plots.plot_stacked(results.spent, TITLES), "What a task went into, arithmetic means."
     known = [(m.name, m.means) for m in results.ratings if m.name in TOTALS and set(m.means) <= set(TITLES)]
     if known:
         out["ratings"] = (
-            plots.means(known, names=TITLES),
+            plots.plot_means(known, names=TITLES),
             "Means with 95 % intervals. SUS: more is better; NASA-TLX: less is better.",
         )
     return out
 
 
-def page(results: Results, papers: Files | None = None) -> str:
+def format_study_page(results: Results, papers: Files | None = None) -> str:
     """Return the page. papers: its figures as PDF, by name."""
     data = results.data
-    drawn = {n: figure(n, drawing, words, papers or {}) for n, (drawing, words) in figures(results).items()}
+    drawn = {
+        n: figure(n, drawing, words, papers or {})
+        for n, (drawing, words) in draw_study_figures(results).items()
+    }
     parts = [
         f"<h1>{escape(data.title)}</h1>",
         "<p class='warn'>Nobody took part: these participants were simulated.</p>" if data.simulated else "",
         _headline(results),
         _time(results, drawn),
-        otherwise(results, drawn.get("otherwise", "")),
+        describe_alternatives(results, drawn.get("otherwise", "")),
         _learning(results, drawn),
         _spent(results, drawn),
         _measures(
@@ -122,7 +141,7 @@ def page(results: Results, papers: Files | None = None) -> str:
         ),
         _ratings(results, drawn),
         _together(results),
-        missing_told(results, drawn.get("participants", "")),
+        describe_missing_data(results, drawn.get("participants", "")),
         f"<h2>How it was reckoned</h2>{METHODS}",
     ]
     head = (
@@ -134,7 +153,7 @@ def page(results: Results, papers: Files | None = None) -> str:
     return f"<!doctype html>\n<html lang='en'><head>{head}</head><body>\n{body}\n</body></html>\n"
 
 
-def summary(results: Results) -> list[str]:
+def summarise_study(results: Results) -> list[str]:
     """Return the findings as sentences, the most important first."""
     data, time = results.data, results.time
     done = [r for r in data.rows if r.done]
@@ -146,7 +165,9 @@ def summary(results: Results) -> list[str]:
             f"There is nothing to compare yet: {f'only {found[0]} was' if found else 'no task was'} brought "
             "to an end."
         ]
-    first = f"Working on the {TITLES[ABOVE]} took {times(time.ratio)} as long as with the {TITLES[BELOW]}"
+    first = (
+        f"Working on the {TITLES[ABOVE]} took {format_ratio(time.ratio)} as long as with the {TITLES[BELOW]}"
+    )
     out = [f"{first} ({who(time)})."]
     f1 = next((m for m in results.mistakes if m.name.startswith("F1")), None)
     if f1 is not None and ABOVE in f1.means and BELOW in f1.means:
@@ -171,7 +192,7 @@ def summary(results: Results) -> list[str]:
 
 
 def _headline(results: Results) -> str:
-    first, *rest = summary(results)
+    first, *rest = summarise_study(results)
     cautions = results.time.cautions if results.time is not None else ()
     big = f"<p class='big'>{escape(first)}</p>" + "".join(f"<p>{escape(words)}</p>" for words in rest)
     warned = "".join(f"<li>{escape(words)}</li>" for words in cautions)
@@ -188,26 +209,33 @@ def _time(results: Results, drawn: Mapping[str, str]) -> str:
         [f"{TITLES[c]}, a {time.unit}", interval(time.means[c], seconds)]
         for c in (BELOW, ABOVE)
     ]  # fmt: skip
-    body.append(["ratio", interval(time.ratio, two)])
+    body.append(["ratio", interval(time.ratio, format_two_digits)])
     if time.effect is not None:
-        body.append(["effect size, d<sub>z</sub> (Hedges)", interval(time.effect, two)])
+        body.append(["effect size, d<sub>z</sub> (Hedges)", interval(time.effect, format_two_digits)])
     for task, ratio in results.by_task.items() if len(results.by_task) > 1 else ():
-        body.append([f"ratio, {escape(results.data.tasks[task])}", interval(ratio, two)])
+        body.append([f"ratio, {escape(results.data.tasks[task])}", interval(ratio, format_two_digits)])
     out = "<h2>Time</h2>" + drawn.get("times", "") + drawn.get("ratios", "")
-    out += table(("", "value, 95 % interval"), body)
+    out += format_cells(("", "value, 95 % interval"), body)
     out += f"<p class='dim'>For a paper: {apa(time)}</p>"
-    return out + equivalence_told(results) + others_told(results) + sites_told(results) + _order(time)
+    return (
+        out
+        + describe_equivalence(results)
+        + describe_other_conditions(results)
+        + describe_sites(results)
+        + _order(time)
+    )
 
 
-def _order(time: Comparison) -> str:
+def _order(time: ConditionComparison) -> str:
     order = time.order
     if order is None:
         return ""
-    second = f"A second sitting took {times(order.second)} as long as a first one ({spread(order.second)})."
+    ratio, spread = format_ratio(order.second), format_spread(order.second)
+    second = f"A second sitting took {ratio} as long as a first one ({spread})."
     carried = (
-        f"Those who began by hand took {times(order.carried)} as long over both as those who began with the "
-        "meta-graph "
-        f"({spread(order.carried)}): "
+        f"Those who began by hand took {format_ratio(order.carried)} as long over both as those who began with "
+        "the meta-graph "
+        f"({format_spread(order.carried)}): "
     )
     if order.carried.holds(1.0):
         carried += (
@@ -219,7 +247,7 @@ def _order(time: Comparison) -> str:
         carried += (
             "something carried over, or the two groups were unlike. By first sittings alone, which nothing "
             "can have carried over to, the "
-            f"ratio is {order.first.value:.2f} ({spread(order.first)})."
+            f"ratio is {order.first.value:.2f} ({format_spread(order.first)})."
         )
     return f"<h3>Order</h3><p>{second}</p><p>{carried}</p>"
 
@@ -246,14 +274,14 @@ def _spent(results: Results, drawn: Mapping[str, str]) -> str:
         "<p class='dim'>The seconds before each event belong to it; those with a button held are dragging. "
         "<i>Before the end</i> is what came after the last event of a task.</p>"
     )
-    out += gaps_told(results)
+    out += describe_gaps(results)
     if results.predicted:
         rows = [
             [
                 TITLES[c],
                 interval(p.observed, seconds),
                 interval(p.model, seconds),
-                interval(p.share, two),
+                interval(p.share, format_two_digits),
             ]
             for c, p in results.predicted.items()
         ]
@@ -261,11 +289,11 @@ def _spent(results: Results, drawn: Mapping[str, str]) -> str:
             "<h3>Beside the keystroke-level model</h3><p>What an expert who makes no mistake would need "
             "for the same operators.</p>"
         )
-        out += table(("a task", "observed", "predicted", "observed / predicted"), rows)
+        out += format_cells(("a task", "observed", "predicted", "observed / predicted"), rows)
     return out
 
 
-def _measures(title: str, words: str, measures: Sequence[Measure]) -> str:
+def _measures(title: str, words: str, measures: Sequence[StudyMeasure]) -> str:
     if not measures:
         return ""
     columns = [c for c in (BELOW, ABOVE) if any(c in m.means for m in measures)]
@@ -273,15 +301,15 @@ def _measures(title: str, words: str, measures: Sequence[Measure]) -> str:
     rows = [
         [
             escape(m.name),
-            *(interval(m.means.get(c), two) for c in columns),
-            interval(m.difference, two),
+            *(interval(m.means.get(c), format_two_digits) for c in columns),
+            interval(m.difference, format_two_digits),
         ]
         for m in measures
         if m.name not in never
     ]
     if never:
         words += f" Nobody ever had: {', '.join(never)}."
-    return f"<h2>{title}</h2><p>{escape(words)}</p>" + table(
+    return f"<h2>{title}</h2><p>{escape(words)}</p>" + format_cells(
         ("", *(TITLES[c] for c in columns), "difference"), rows
     )
 
@@ -294,10 +322,10 @@ def _ratings(results: Results, drawn: Mapping[str, str]) -> str:
 def _together(results: Results) -> str:
     if not results.together:
         return ""
-    rows = [[escape(name), tested(test), chance(p)] for name, test, p in results.together]
+    rows = [[escape(name), format_test(test), chance(p)] for name, test, p in results.together]
     words = (
         "What was asked of these people, by paired t tests, which agree with the intervals above; the "
         "last column "
         f"takes into account that {len(rows)} were asked (Holm). Nothing else on this page is tested."
     )
-    return f"<h2>The tests</h2><p>{words}</p>" + table(("", "alone", "together"), rows)
+    return f"<h2>The tests</h2><p>{words}</p>" + format_cells(("", "alone", "together"), rows)

@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Any, Literal
 
 from metagraph.errors import FileError
-from metagraph.research.study.logs.log import Event, Log, Writer, read
+from metagraph.research.study.logs.log import Event, StudyLog, Writer, read_log
 from metagraph.research.study.logs.lsl_markers import MarkersError, outlet
 from metagraph.research.study.plan.allocation import allocate
 from metagraph.research.study.questionnaires import Questionnaire
-from metagraph.research.study.scores.tasks import steps
+from metagraph.research.study.scores.tasks import list_event_steps
 from metagraph.research.study.study_plan import CONDITION_TITLES, Study
 
 PhaseName = Literal["consent", "instructions", "training", "task", "questionnaire", "break", "end"]
@@ -79,7 +79,7 @@ class SittingError(ValueError):
     """A log does not fit its study."""
 
 
-def phases(study: Study, participant: str) -> tuple[Phase, ...]:
+def list_phases(study: Study, participant: str) -> tuple[Phase, ...]:
     """Return what a participant goes through, from consent to end. Raises ValueError for one who does not
     take part.
     """
@@ -142,14 +142,14 @@ def phases(study: Study, participant: str) -> tuple[Phase, ...]:
     return tuple(out)
 
 
-def where(course: Sequence[Phase], events: Sequence[Event]) -> Where:
+def find_place_in_sitting(course: Sequence[Phase], events: Sequence[Event]) -> Where:
     """Return where a sitting stands. Raises SittingError when the events are of another course."""
     done = 0
     begun: Event | None = None
     elapsed = 0.0
     answers: dict[str, Any] = {}
     artefact: Event | None = None
-    for event, seconds, why in steps(events):
+    for event, seconds, why in list_event_steps(events):
         if begun is not None and why != "paused":
             elapsed += seconds
         if event["type"] == "answer" and begun is not None:
@@ -181,15 +181,15 @@ def where(course: Sequence[Phase], events: Sequence[Event]) -> Where:
     )
 
 
-def standing(study: Study, participant: str) -> str:
+def describe_standing(study: Study, participant: str) -> str:
     """Return how far a participant is, in words."""
     if not study.log(participant).is_file():
         return "not begun"
     try:
-        log = read(study.log(participant))
+        log = read_log(study.log(participant))
         if log.standing in ("declined", "withdrawn"):
             return log.standing
-        now = where(phases(study, participant), log.events)
+        now = find_place_in_sitting(list_phases(study, participant), log.events)
     except (FileError, ValueError) as error:
         return str(error)
     return "done" if now.phase is None else f"goes on at: {now.phase.title}"
@@ -208,8 +208,8 @@ class Sitting:
         self.study, self.participant = study, participant
         if study.plan.order == "concealed":
             allocate(study, participant)
-        self.course = phases(study, participant)
-        if study.log(participant).is_file() and read(study.log(participant)).standing == "withdrawn":
+        self.course = list_phases(study, participant)
+        if study.log(participant).is_file() and read_log(study.log(participant)).standing == "withdrawn":
             raise SittingError(
                 f"{participant} withdrew; let somebody else take part, under another pseudonym"
             )
@@ -222,8 +222,8 @@ class Sitting:
         self.writer = Writer(study.log(participant))
         self.writer.listeners += [send] if send is not None else []
         try:
-            self.log: Log = self.writer.before
-            self.now = where(self.course, self.log.events)
+            self.log: StudyLog = self.writer.before
+            self.now = find_place_in_sitting(self.course, self.log.events)
             if self.now.phase is not None or not self.log.complete:
                 self.writer.begin(
                     participant=participant, study=study.digest, version=version, machine=machine or {}

@@ -18,13 +18,13 @@ import msgspec
 
 from metagraph.common.budgets import TEXT_FILE
 from metagraph.common.files import read_file
-from metagraph.common.network_paths import refused
-from metagraph.errors import FileError, shown
+from metagraph.common.network_paths import find_refusal
+from metagraph.errors import FileError, clean_text
 from metagraph.formats.clips import find_clip_files
-from metagraph.formats.project.text import TextError, parse
+from metagraph.formats.project.text import TextError, parse_yaml
 from metagraph.research.study.logs.log import NAME
-from metagraph.research.study.plan.drawn_orders import drawn
-from metagraph.research.study.plan.faults import faults
+from metagraph.research.study.plan.drawn_orders import read_drawn_orders
+from metagraph.research.study.plan.faults import find_plan_faults
 from metagraph.research.study.plan.study_fields import Plan, Task, Training, list_few
 
 VERSION = 1
@@ -57,7 +57,7 @@ class Study:
         """Return a participant's conditions in order, each with its tasks. Raises ValueError as the
         plan's.
         """
-        found = drawn(self.folder).get(participant) if self.plan.order == "concealed" else None
+        found = read_drawn_orders(self.folder).get(participant) if self.plan.order == "concealed" else None
         return self.plan.blocks(participant, found)
 
     def known(self, participant: str) -> None:
@@ -139,12 +139,12 @@ def read_study(path: str | Path) -> Study:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise FileError(path, "is not text", f"byte {error.start}", "Choose a study file.") from None
-    return Study(path.resolve(), from_text(text, path), hashlib.sha256(content).hexdigest())
+    return Study(path.resolve(), parse_study_plan(text, path), hashlib.sha256(content).hexdigest())
 
 
-def from_text(text: str, path: Path = Path(FILE)) -> Plan:
+def parse_study_plan(text: str, path: Path = Path(FILE)) -> Plan:
     """Return the plan of a study file's text. Raises FileError."""
-    return plan_from(text, path, Plan, "study", "no study", VERSION, faults, _CORRECT)
+    return plan_from(text, path, Plan, "study", "no study", VERSION, find_plan_faults, _CORRECT)
 
 
 def plan_from(
@@ -162,7 +162,7 @@ def plan_from(
     the line.
     """
     try:
-        data, lines = parse(text)
+        data, lines = parse_yaml(text)
     except TextError as error:
         place = f"line {error.line}" if error.line else "its text"
         raise FileError(path, f"not valid YAML ({error})", place, remedy) from None
@@ -189,7 +189,7 @@ def plan_from(
         where = where.rstrip("`").lstrip(".").replace("[...]", "")
         unknown = re.search(r"unknown field `(\w+)`", message)
         raise failure(
-            plain_words(message), ".".join(filter(None, (where, unknown[1] if unknown else "")))
+            reword_msgspec(message), ".".join(filter(None, (where, unknown[1] if unknown else "")))
         ) from None
     for where, cause in (*_strange_files(data, path.parent), *faults_of(plan)):
         raise failure(cause, where)
@@ -209,11 +209,14 @@ def _strange_files(
     elif isinstance(data, list):
         for n, value in enumerate(data):
             yield from _strange_files(value, folder, f"{where}[{n}]", named)
-    elif named and isinstance(data, str) and (why := refused(data, folder)) is not None:
-        yield where, f"'{shown(data)[:200]}' is not opened: {why}; give the command --network if you trust it"
+    elif named and isinstance(data, str) and (why := find_refusal(data, folder)) is not None:
+        yield (
+            where,
+            f"'{clean_text(data)[:200]}' is not opened: {why}; give the command --network if you trust it",
+        )
 
 
-def plain_words(message: str) -> str:
+def reword_msgspec(message: str) -> str:
     """Return msgspec's words as ours."""
     for pattern, words in (
         (r"Object contains unknown field `(\w+)`", r"there is no field '\1'"),
@@ -232,7 +235,7 @@ def plain_words(message: str) -> str:
 SCHEMA = Path(__file__).with_name("study.schema.json")
 
 
-def schema_text() -> bytes:
+def study_schema_text() -> bytes:
     """Return the JSON Schema (draft 2020-12) of study files, as it is published beside this module."""
     schema: dict[str, Any] = {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -243,4 +246,4 @@ def schema_text() -> bytes:
 
 
 if __name__ == "__main__":
-    SCHEMA.write_bytes(schema_text())
+    SCHEMA.write_bytes(study_schema_text())

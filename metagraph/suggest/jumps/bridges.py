@@ -43,7 +43,7 @@ class Bridge:
     seconds: float
 
 
-def bridged(project: Project) -> tuple[Project, tuple[Bridge, ...]]:
+def bridge_all(project: Project) -> tuple[Project, tuple[Bridge, ...]]:
     """Return the project with transitions by blending to stances its start does not lead to, and back from
     those that do not lead to it; and what was made. Stances without a loop are left as they are, and so
     are those between which there are but single poses.
@@ -64,7 +64,7 @@ def bridged(project: Project) -> tuple[Project, tuple[Bridge, ...]]:
     return project, tuple(out)
 
 
-def bridged_at(project: Project, stance: str) -> tuple[Project, tuple[Bridge, ...]]:
+def bridge_stance(project: Project, stance: str) -> tuple[Project, tuple[Bridge, ...]]:
     """Return the project with one stance joined to the rest of its layer by blending, and what was made: a
     way to it if the start does not lead there, and a way from it if it leads nowhere, or not back. Nothing is
     made where it has no loop, or is the only one that has.
@@ -88,9 +88,9 @@ def bridged_at(project: Project, stance: str) -> tuple[Project, tuple[Bridge, ..
     return project, tuple(out)
 
 
-def missing(project: Project) -> list[str]:
+def find_missing_bridges(project: Project) -> list[str]:
     """Return the stances that bridges would join to the start of their layer, in the order of the project."""
-    after, made = bridged(project)
+    after, made = bridge_all(project)
     if not made:
         return []
     return [
@@ -107,7 +107,7 @@ def _joined(project: Project, layer: Layer, stance: str) -> bool:
     return stance in reachable(graph, start) and start in reachable(graph, stance)
 
 
-def told(project: Project, bridges: Iterable[Bridge]) -> list[str]:
+def describe_bridges(project: Project, bridges: Iterable[Bridge]) -> list[str]:
     """Return a line for each bridge, in words."""
     names: Mapping[str, str] = {s.id: s.name for g in project.graphs.values() for s in g.stances.values()}
     most = NOTICED * _size(project)
@@ -187,7 +187,7 @@ def _bridge(project: Project, start: str, end: str, metres: float) -> tuple[Proj
         begins = max(0.0, (begins + ends - seconds) / 2)
     first = max(0.0, min(begins, entry.duration - seconds))
     last = min(first + seconds, entry.duration)
-    project = edits.place(project, [entry.id], stance.layer, "transition", start, end)
+    project = edits.place_clips(project, [entry.id], stance.layer, "transition", start, end)
     made = list(project.graphs[stance.layer].actions)[-1]
     long, short = round((last - first) * (1 - fade), 3), round((last - first) * fade, 3)
     timing = {

@@ -23,8 +23,8 @@ from metagraph.graph import anatomy
 from metagraph.graph.model import REACH, Project
 from metagraph.graph.words import Layer
 from metagraph.motion.clip import Clip
-from metagraph.suggest.jumps.johnson import JohnsonSB, fit
-from metagraph.suggest.tracks import RATE, rig_of, times_of, track_of, velocity_of
+from metagraph.suggest.jumps.johnson import JohnsonSB, fit_johnson
+from metagraph.suggest.tracks import RATE, joint_track, track_rig, track_seconds, velocity_of
 
 Array = NDArray[Any]
 
@@ -58,7 +58,7 @@ class Statistics:
 
 
 @dataclass(frozen=True)
-class Fit:
+class StanceFit:
     """A clip beside a stance. enter, leave: seconds of the clip in which it can be entered from, and left to,
     the stance without a jump. enter_at, leave_at: the best moments, and their costs beside the threshold: up
     to 1 is no jump.
@@ -73,7 +73,7 @@ class Fit:
 
 
 @dataclass(frozen=True)
-class Times:
+class ProposedTimes:
     """Proposed timing, seconds; see `model.Timing`. good: whether it neither begins nor ends with a jump.
     reason: in words.
     """
@@ -130,14 +130,14 @@ def statistics(
     rig = None
     for clip in some:
         if rig is None:
-            rig = rig_of(clip, roles)
+            rig = track_rig(clip, roles)
             w = np.array([min(reach.get(part, 0.0), 1.0) for part in rig.parts], np.float32)
             if not w.any():
                 w[:] = 1
             first = clip.skeleton
         if clip.skeleton is not first and clip.skeleton != first:
             continue
-        track = track_of(rig, clip)
+        track = joint_track(rig, clip)
         if len(track) < STEP:
             continue
         v = velocity_of(track)
@@ -149,7 +149,7 @@ def statistics(
         return Statistics(layer, w, STEP / RATE, None, STILL, len(p), 1.0)
     velocity = min(float(p.mean() / max(s.mean(), 1e-9)), SLOWEST)  # brings both terms to one range
     cost = p + velocity * s
-    found = fit(cost, 0.0, 1.05 * float(cost.max()))
+    found = fit_johnson(cost, 0.0, 1.05 * float(cost.max()))
     threshold = max(STILL, found.quantile(LEVEL))
     return Statistics(layer, w, velocity, found, threshold, len(cost), float((cost <= threshold).mean()))
 
@@ -163,8 +163,8 @@ def stance_frames(
     most = max(2, MOST_FRAMES // max(1, len(loops)))
     places, speeds = [], []
     for clip, start, end in loops:
-        track = track_of(rig_of(clip, roles), clip)
-        times = times_of(clip)
+        track = joint_track(track_rig(clip, roles), clip)
+        times = track_seconds(clip)
         inside = np.flatnonzero((times >= start - 0.5 / RATE) & (times <= end + 0.5 / RATE))
         if not len(inside):
             continue
@@ -177,14 +177,14 @@ def stance_frames(
     return np.concatenate(places), np.concatenate(speeds)
 
 
-def costs(
+def transition_costs(
     stats: Statistics, clip: Clip, stance: tuple[Array, Array], roles: Mapping[str, int] | None = None
 ) -> Array:
     """Return `[F]` what it costs to change between each frame of a clip, RATE a second, and the stance's
     nearest frame, beside the threshold: up to 1 is no jump. Infinite where the stance has no frames, or
     another skeleton.
     """
-    return _costs(stats, track_of(rig_of(clip, roles), clip), [stance])[:, 0]
+    return _costs(stats, joint_track(track_rig(clip, roles), clip), [stance])[:, 0]
 
 
 def _costs(stats: Statistics, track: Array, stances: Sequence[tuple[Array, Array]]) -> Array:
@@ -208,15 +208,15 @@ def _costs(stats: Statistics, track: Array, stances: Sequence[tuple[Array, Array
     return out / stats.threshold
 
 
-def fitting(clip: Clip, cost: Array) -> Fit:
+def fit_clip(clip: Clip, cost: Array) -> StanceFit:
     """Return where a clip can be entered and left, given its `costs` beside a stance."""
-    times = times_of(clip)
+    times = track_seconds(clip)
     into = entering(cost)
     a = int(
         np.argmax(into <= into.min() + ALIKE)
     )  # of moments that are as good, the first to enter at and the last to leave at
     b = int(len(cost) - 1 - np.argmax(cost[::-1] <= cost.min() + ALIKE))
-    return Fit(
+    return StanceFit(
         _spans(into <= 1, times),
         _spans(cost <= 1, times),
         float(times[a]),
@@ -233,7 +233,7 @@ def entering(cost: Array) -> Array:
     return np.append(cost[:1], cost[:-1])
 
 
-def masked(
+def mask_statistics(
     stats: Statistics, clip: Clip, moved: Array | None, roles: Mapping[str, int] | None = None
 ) -> Statistics:
     """Return the statistics for an action that moves only some joints, `[J]` how strongly (None: all): the
@@ -241,13 +241,13 @@ def masked(
     """
     if moved is None:
         return stats
-    rig = rig_of(clip, roles)
+    rig = track_rig(clip, roles)
     if len(rig.joints) != len(stats.weights):
         return stats
     return replace(stats, weights=stats.weights * (moved[rig.keep[rig.joints]] > 0))
 
 
-def seam(
+def seam_cost(
     stats: Statistics,
     clip: Clip,
     start: float,
@@ -258,7 +258,7 @@ def seam(
     """Return what the seam of a loop from `start` to `end` costs, beside the threshold: the most of what lies
     opposite in its overlap.
     """
-    track = track_of(rig_of(clip, roles), clip)
+    track = joint_track(track_rig(clip, roles), clip)
     v, last = velocity_of(track), len(track) - 1
     if track.shape[1] != len(stats.weights):
         return float("inf")
@@ -268,7 +268,7 @@ def seam(
     return float((far @ stats.weights).max()) / stats.threshold
 
 
-def shown(cost: Any, seconds: float) -> Any:
+def visible_difference(cost: Any, seconds: float) -> Any:
     """Return what of a difference, beside the threshold, still shows when it is blended over some seconds: up
     to 1 is no jump.
 
@@ -292,14 +292,14 @@ def blend(cost: float) -> float:
     return min(max(pi / 2 * cost * (STEP - 1) / RATE, BLEND[0]), BLEND[1])
 
 
-def times(
+def propose_times(
     stats: Statistics,
     clip: Clip,
     entered: Array,
     left: Array | None = None,
     stroke: float | None = None,
     roles: Mapping[str, int] | None = None,
-) -> Times:
+) -> ProposedTimes:
     """Return a timing for a clip entered from a stance and left to one, given its `costs` beside them (left
     None: the same).
 
@@ -308,8 +308,8 @@ def times(
     stroke and for good, it may be left.
     """
     left = entered if left is None else left
-    into, out, at = fitting(clip, entered), fitting(clip, left), times_of(clip)
-    speed = np.linalg.norm(velocity_of(track_of(rig_of(clip, roles), clip)), axis=-1) @ stats.weights
+    into, out, at = fit_clip(clip, entered), fit_clip(clip, left), track_seconds(clip)
+    speed = np.linalg.norm(velocity_of(joint_track(track_rig(clip, roles), clip)), axis=-1) @ stats.weights
     moving = at[speed >= speed.min() + ACTIVE * (speed.max() - speed.min())]
     middle = float(at[int(np.argmax(speed))]) if stroke is None else stroke
     enter = [t for a, b in into.enter for t in at[(at >= a) & (at <= b)].tolist() if t <= middle]
@@ -318,9 +318,13 @@ def times(
     finish = min((t for t in leave if t >= moving[-1]), default=max(leave, default=clip.duration))
     blend_in, blend_out = blend(_at(entered, begin)), blend(_at(left, finish))
     start, end = max(0.0, begin - blend_in), min(clip.duration, finish + blend_out)
-    if shown(_at(entered, start), blend_in) > 1 >= shown(_at(entered, begin), blend_in):
+    if (
+        visible_difference(_at(entered, start), blend_in)
+        > 1
+        >= visible_difference(_at(entered, begin), blend_in)
+    ):
         start = begin  # before, it is on its way from elsewhere
-    if shown(_at(left, end), blend_out) > 1 >= shown(_at(left, finish), blend_out):
+    if visible_difference(_at(left, end), blend_out) > 1 >= visible_difference(_at(left, finish), blend_out):
         end = finish
     room = max(0.0, end - start) / 2
     away = bool((left > 1).any())
@@ -347,14 +351,14 @@ def times(
             cost=into.enter_cost,
             more=out.leave_cost,
         )
-    return Times(
+    return ProposedTimes(
         start, end, min(blend_in, room), min(blend_out, room), earliest, bool(enter and leave), reason
     )
 
 
-def loop_times(stats: Statistics, clip: Clip, roles: Mapping[str, int] | None = None) -> Times:
+def loop_times(stats: Statistics, clip: Clip, roles: Mapping[str, int] | None = None) -> ProposedTimes:
     """Return a timing for a clip that loops: all of it, with an overlap as long as its seam needs."""
-    track = track_of(rig_of(clip, roles), clip)
+    track = joint_track(track_rig(clip, roles), clip)
     v = velocity_of(track)
     seam = float(np.linalg.norm(track[-1] - track[0], axis=-1) @ stats.weights)
     seam = (
@@ -362,7 +366,7 @@ def loop_times(stats: Statistics, clip: Clip, roles: Mapping[str, int] | None = 
     ) / stats.threshold
     overlap = 0.0 if seam <= SEAMLESS else min(blend(seam), clip.duration / 3)
     good = seam <= 1 or blend(seam) < BLEND[1]
-    return Times(
+    return ProposedTimes(
         0.0,
         clip.duration,
         overlap,
@@ -378,7 +382,7 @@ def _at(cost: Array, seconds: float) -> float:
     return value if np.isfinite(value) else 1e9
 
 
-def matrix(
+def compatibility_matrix(
     project: Project,
     layer: Layer,
     stances: Mapping[str, Sequence[tuple[Clip, float, float]]] | None = None,
@@ -390,7 +394,7 @@ def matrix(
     given; clips: ids, all unless given. What is left when `cancelled` stays infinite. progress: called with
     how many of how many.
     """
-    roles = anatomy.roles(project)
+    roles = anatomy.project_roles(project)
     own = {
         ident: e.motion
         for ident, e in project.clips.items()
@@ -413,9 +417,9 @@ def matrix(
             progress(row, len(chosen))
         if (clip := own.get(ident)) is None:
             continue
-        cost = _costs(stats, track_of(rig_of(clip, roles), clip), frames)
+        cost = _costs(stats, joint_track(track_rig(clip, roles), clip), frames)
         for column in range(len(frames)):
-            f = fitting(clip, cost[:, column])
+            f = fit_clip(clip, cost[:, column])
             out.enter_cost[row, column], out.leave_cost[row, column] = f.enter_cost, f.leave_cost
             out.enter_at[row, column], out.leave_at[row, column] = f.enter_at, f.leave_at
     return out

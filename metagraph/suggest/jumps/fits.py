@@ -14,7 +14,7 @@ from math import lgamma, log, pi
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from metagraph.suggest.jumps.johnson import JohnsonSB, fit
+from metagraph.suggest.jumps.johnson import JohnsonSB, fit_johnson
 
 Array = NDArray[np.float64]
 
@@ -24,7 +24,7 @@ MARGIN = 0.02  # of the values' range: bounds lie so far beyond them
 
 
 @dataclass(frozen=True, slots=True)
-class Fit:
+class DistributionFit:
     """name: of the distribution. limit: the value that the asked share does not exceed. distance: the
     greatest difference of its shares and those of the values (Kolmogorov and Smirnov's D), 0..1. likelihood:
     mean log density of the values.
@@ -36,7 +36,7 @@ class Fit:
     likelihood: float
 
 
-def fits(values: ArrayLike, level: float) -> tuple[Fit, ...]:
+def fit_distributions(values: ArrayLike, level: float) -> tuple[DistributionFit, ...]:
     """Return what each distribution makes of values, the nearest first. level: the share asked for, 0..1.
     None where there are fewer than ten values or all are alike.
     """
@@ -51,7 +51,7 @@ def fits(values: ArrayLike, level: float) -> tuple[Fit, ...]:
     inside = np.clip((x - begin) / (end - begin), 1e-6, 1 - 1e-6)
     tail = end + 3 * (high - low)
     grids = {
-        "Johnson S_B": (begin, end, _johnson(fit(x, begin, end))),
+        "Johnson S_B": (begin, end, _johnson(fit_johnson(x, begin, end))),
         "log-normal": (0.0, tail, _log_normal(positive)),
         "Weibull": (0.0, tail, _weibull(positive)),
         "gamma": (0.0, tail, _gamma(positive)),
@@ -63,7 +63,7 @@ def fits(values: ArrayLike, level: float) -> tuple[Fit, ...]:
 
 def _told(
     name: str, x: Array, level: float, low: float, high: float, density: Callable[[Array], Array]
-) -> Fit:
+) -> DistributionFit:
     grid = np.linspace(low, high, GRID)
     middle = (grid[1:] + grid[:-1]) / 2
     parts = np.exp(density(middle)) * np.diff(grid)
@@ -73,7 +73,7 @@ def _told(
     n = len(x)
     distance = max(np.max(np.arange(1, n + 1) / n - own), np.max(own - np.arange(n) / n))
     likelihood = float(np.mean(density(np.clip(x, middle[0], middle[-1]))))
-    return Fit(name, float(np.interp(level, shares, grid)), float(distance), likelihood)
+    return DistributionFit(name, float(np.interp(level, shares, grid)), float(distance), likelihood)
 
 
 def _johnson(found: JohnsonSB) -> Callable[[Array], Array]:

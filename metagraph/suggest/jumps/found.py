@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
 from metagraph.graph.checks import end_gaps
-from metagraph.graph.expand import ends_in
+from metagraph.graph.expand import find_end_stance
 from metagraph.graph.model import REACH, Action, Layer, Project
 from metagraph.motion.clip import Clip
 from metagraph.playback.timing.phases import phases
@@ -59,7 +59,7 @@ class Curves:
     times: Array
     enter: Array
     leave: Array
-    proposed: c.Times
+    proposed: c.ProposedTimes
     gaps: tuple[Array, Array] | None = None
     height: float = 0.0
 
@@ -74,7 +74,7 @@ class Measured:
 
     def __init__(self, project: Project, layer: Layer, before: Measured | None = None) -> None:
         graph = project.graphs[layer]
-        self.layer, self.roles, self.parts = layer, anatomy.roles(project), project.parts
+        self.layer, self.roles, self.parts = layer, anatomy.project_roles(project), project.parts
         own = {
             i: e.motion
             for i, e in project.clips.items()
@@ -129,11 +129,11 @@ class Measured:
         frames = self.frames.get(stance or "")
         if motion is None or frames is None or not len(frames[0]) or motion.skeleton != project.skeleton:
             return None
-        moved = anatomy.mask(project, action)
+        moved = anatomy.action_mask(project, action)
         key = id(motion), stance, None if moved is None else moved.tobytes()
         if key not in self._costs:
-            self._costs[key] = c.costs(
-                c.masked(self.stats, motion, moved, self.roles), motion, frames, self.roles
+            self._costs[key] = c.transition_costs(
+                c.mask_statistics(self.stats, motion, moved, self.roles), motion, frames, self.roles
             )
         return self._costs[key]
 
@@ -168,9 +168,9 @@ def _of(project: Project, measured: Measured, action: Action) -> list[Jump]:
     t = action.timing
     into, left = (
         measured.costs(project, action, action.stance),
-        measured.costs(project, action, ends_in(action)),
+        measured.costs(project, action, find_end_stance(action)),
     )
-    slow = {g.edge for g in end_gaps.gaps(project, project.graphs[action.layer], action) if g.slow}
+    slow = {g.edge for g in end_gaps.find_end_gaps(project, project.graphs[action.layer], action) if g.slow}
     found = []
     middle = (
         t.stroke
@@ -181,7 +181,7 @@ def _of(project: Project, measured: Measured, action: Action) -> list[Jump]:
     )
     if into is not None:
         cost = c.entering(into)
-        now = float(c.shown(_at(cost, start), t.blend_in))
+        now = float(c.visible_difference(_at(cost, start), t.blend_in))
         latest = (
             end - t.blend_in - t.blend_out if middle is None else min(middle, end - t.blend_in - t.blend_out)
         )
@@ -192,9 +192,9 @@ def _of(project: Project, measured: Measured, action: Action) -> list[Jump]:
             )
             fits = _fits(project, measured, action, start, action.stance, c.entering)
             found.append(Jump(action.id, "begins", start, now, action.stance, mend, better, fits))
-    target = ends_in(action)
+    target = find_end_stance(action)
     if left is not None and target is not None:
-        now = float(c.shown(_at(left, end), t.blend_out))
+        now = float(c.visible_difference(_at(left, end), t.blend_out))
         if now > 1 and "ends" not in slow:
             length = project.clips[action.clip].duration
             soonest = (
@@ -230,8 +230,8 @@ def _loop(project: Project, measured: Measured, action: Action) -> list[Jump]:
     overlap = min(max(0.0, action.timing.blend_in), (end - start) / 2)
     if motion is None or motion.skeleton != project.skeleton or motion.frames < 2 or end <= start:
         return []
-    raw = c.seam(measured.stats, motion, start, end, overlap, measured.roles)
-    now = float(c.shown(raw, overlap))
+    raw = c.seam_cost(measured.stats, motion, start, end, overlap, measured.roles)
+    now = float(c.visible_difference(raw, overlap))
     if now <= 1:
         return []
     return [Jump(action.id, "loops", end, now, action.stance, _blended("blend_in", raw, (end - start) / 2))]
@@ -248,7 +248,7 @@ def _nearest(cost: Array, now: float, first: float, last: float, blend: float) -
     times = np.arange(len(cost)) / RATE
     inside = (times >= first - 1e-6) & (times <= last + 1e-6)
     for most in (ROOM, 1.0):
-        good = np.flatnonzero(inside & (c.shown(cost, blend) <= most))
+        good = np.flatnonzero(inside & (c.visible_difference(cost, blend) <= most))
         if len(good):
             return round(float(times[good[int(np.argmin(np.abs(times[good] - now)))]]), 3)
     return None
@@ -287,7 +287,7 @@ def _fits(
     return best[1] if best is not None and best[0] <= 1 else None
 
 
-def curves(project: Project, measured: Measured, action: Action) -> Curves | None:
+def stance_curves(project: Project, measured: Measured, action: Action) -> Curves | None:
     """Return an action's clip beside its stances; None where nothing can be compared."""
     entry = project.clips.get(action.clip)
     motion = entry.motion if entry is not None else None
@@ -297,26 +297,26 @@ def curves(project: Project, measured: Measured, action: Action) -> Curves | Non
     if action.kind == "stance":
         start = project.span(action)[0]
         first = c.stance_frames(measured.stats, [(motion, start, start + 1e-6)], roles)
-        cost = c.costs(measured.stats, motion, first, roles)
+        cost = c.transition_costs(measured.stats, motion, first, roles)
         return Curves(_times(motion, cost), cost, cost, c.loop_times(measured.stats, motion, roles))
     into, left = (
         measured.costs(project, action, action.stance),
-        measured.costs(project, action, ends_in(action)),
+        measured.costs(project, action, find_end_stance(action)),
     )
     if into is None or left is None:
         return None
-    stats = c.masked(measured.stats, motion, anatomy.mask(project, action), roles)
+    stats = c.mask_statistics(measured.stats, motion, anatomy.action_mask(project, action), roles)
     stroke = phases(project, action).stroke if action.kind == "gesture" else action.timing.stroke
-    proposed = c.times(stats, motion, into, left, stroke, roles)
+    proposed = c.propose_times(stats, motion, into, left, stroke, roles)
     times = _times(motion, into)
-    gaps = end_gaps.distances(project, action, times)
+    gaps = end_gaps.distances_to_stance(project, action, times)
     proposed = _hidden(project, action, proposed, times, gaps)
     return Curves(times, c.entering(into), left, proposed, gaps, motion.skeleton.height)
 
 
 def _hidden(
-    project: Project, action: Action, proposed: c.Times, times: Array, gaps: tuple[Array, Array]
-) -> c.Times:
+    project: Project, action: Action, proposed: c.ProposedTimes, times: Array, gaps: tuple[Array, Array]
+) -> c.ProposedTimes:
     """Return proposed times at whose ends no joint is farther from the stances than a blend hides.
 
     An end that is goes to the nearest moment that is near the stance, else its blend becomes as long as it

@@ -47,7 +47,7 @@ class JohnsonSB:
         return self.low + (self.high - self.low) * u
 
 
-def fit(values: ArrayLike, low: float, high: float) -> JohnsonSB:
+def fit_johnson(values: ArrayLike, low: float, high: float) -> JohnsonSB:
     """Return the distribution that makes values likeliest, given its bounds. Raises ValueError without
     values, or where low >= high.
     """

@@ -17,18 +17,18 @@ if TYPE_CHECKING:
     from metagraph.suggest.jumps.found import Curves
 
 
-class Seen:
+class SeenJumps:
     """An action's curves as its blends are now. times, enter, leave `[F]`; pivot: the frame from which on
     leaving is shown.
     """
 
     def __init__(self, action: Action, curves: Curves) -> None:
-        from metagraph.suggest.jumps.compatibility import shown
+        from metagraph.suggest.jumps.compatibility import visible_difference
 
         t = action.timing
         self.loops, self.times, self.proposed = action.kind == "stance", curves.times, curves.proposed
-        self.enter = np.array(shown(curves.enter, t.blend_in))
-        self.leave = np.array(shown(curves.leave, t.blend_in if self.loops else t.blend_out))
+        self.enter = np.array(visible_difference(curves.enter, t.blend_in))
+        self.leave = np.array(visible_difference(curves.leave, t.blend_in if self.loops else t.blend_out))
         if curves.gaps is not None:  # a long blend covers an unhurried pace, none covers what is far
             for cost, gap, blend in zip(
                 (self.enter, self.leave), curves.gaps, (t.blend_in, t.blend_out), strict=True
@@ -83,7 +83,7 @@ class Seen:
         return []
 
 
-def words_at(project: Project, action: Action, seen: Seen, seconds: float) -> str:
+def words_at(project: Project, action: Action, seen: SeenJumps, seconds: float) -> str:
     """Say what a moment would be like to begin or end at."""
     entering = seen.at(seconds) < seen.pivot
     cost = seen.cost("start" if entering else "end", seconds)
@@ -109,7 +109,7 @@ def words_at(project: Project, action: Action, seen: Seen, seconds: float) -> st
     return said
 
 
-def verdict(costs: Mapping[str, float], far: Mapping[str, str] | None = None) -> str:
+def describe_ends(costs: Mapping[str, float], far: Mapping[str, str] | None = None) -> str:
     """Say what beginning and ending cost: "Begins without a jump, ends 2.7 times what shows as one". far: of
     those that begin or end too far from their stance, what the problems say of it.
     """
@@ -144,19 +144,19 @@ def far_ends(project: Project, action: Action) -> dict[str, str]:
     graph = project.graphs[action.layer]
     return {
         "Begins" if gap.edge == "begins" else "ends": _gap_words(gap, graph.stances[gap.stance].name)
-        for gap in end_gaps.gaps(project, graph, action)
+        for gap in end_gaps.find_end_gaps(project, graph, action)
         if gap.far and gap.stance in graph.stances
     }
 
 
-def _gap_words(gap: end_gaps.Gap, stance: str) -> str:
+def _gap_words(gap: end_gaps.EndGap, stance: str) -> str:
     """Say a gap as the problems do; what begins a sentence with a capital."""
     if gap.edge == "begins":
         return phrase("Begins {far:.0f} cm from stance '{stance}'", far=gap.metres * 100, stance=stance)
-    return end_gaps.gap_words(gap, stance)
+    return end_gaps.describe_gap(gap, stance)
 
 
-def times_words(seen: Seen) -> str:
+def describe_times(seen: SeenJumps) -> str:
     """Say proposed times."""
     p = seen.proposed
     if seen.loops:

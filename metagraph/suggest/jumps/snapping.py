@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from metagraph.common.wording import phrase
 from metagraph.graph.checks import end_gaps
 from metagraph.graph.model import Action, Project
-from metagraph.playback.timing.handles import EDGES, times_of
+from metagraph.playback.timing.handles import EDGES, handle_times
 from metagraph.playback.timing.phases import phases
-from metagraph.suggest.jumps.seen_jumps import Seen
+from metagraph.suggest.jumps.seen_jumps import SeenJumps
 
 Array = NDArray[Any]
 
@@ -34,7 +34,7 @@ def snaps_of(
     project: Project,
     action: Action,
     handle: str,
-    seen: Seen | None = None,
+    seen: SeenJumps | None = None,
     speeds: Sequence[float] | Array = (),
     stresses: Iterable[float] = (),
     playhead: float | None = None,
@@ -60,7 +60,7 @@ def snaps_of(
     return tuple(s for s in found if -1e-6 <= s.at <= entry.duration + 1e-6)
 
 
-def nearest(snaps: Iterable[Snap], seconds: float, within: float) -> Snap | None:
+def find_nearest_snap(snaps: Iterable[Snap], seconds: float, within: float) -> Snap | None:
     """Return the nearest place to rest within some seconds, of equally near ones the first; None where there
     is none.
     """
@@ -72,7 +72,7 @@ def _last(duration: float) -> Snap:
     return Snap(duration, phrase("the clip's last frame"))
 
 
-def _edge(seen: Seen | None, handle: str) -> Iterator[Snap]:
+def _edge(seen: SeenJumps | None, handle: str) -> Iterator[Snap]:
     if seen is None:
         return
     if seen.loops:
@@ -95,14 +95,14 @@ def _blend(project: Project, action: Action, handle: str) -> Iterator[Snap]:
     start, end = project.span(action)
     graph, motion = project.graphs[action.layer], end_gaps.motion_of(project, action)
     edge = "begins" if handle == "in" else "ends"
-    for gap in end_gaps.gaps(project, graph, action):
+    for gap in end_gaps.find_end_gaps(project, graph, action):
         if gap.edge != edge or motion is None or gap.metres <= end_gaps.hidden(motion.skeleton.height, 0.0):
             continue
         needed = end_gaps.blend_for(motion.skeleton.height, gap.metres) + SLACK
         if needed <= end - start:
             at = start + needed if handle == "in" else end - needed
             yield Snap(at, phrase("long enough for {length:.0f} cm to the stance", length=gap.metres * 100))
-    now = times_of(project, action)
+    now = handle_times(project, action)
     ready, relax = now["ready"], now["relax"]
     if handle == "in" and ready is not None:
         yield Snap(ready, phrase("its preparation ends"))
@@ -119,7 +119,7 @@ def _moment(project: Project, action: Action, handle: str, speeds: Array, fps: f
         by = {"ready": found.ready, "hold": found.stroke_end, "relax": found.relax, "stroke": found.stroke}
         yield Snap(round(by[handle], 3), phrase("as found from the motion"))
     if handle == "exit":
-        relax = times_of(project, action)["relax"]
+        relax = handle_times(project, action)["relax"]
         if relax is not None:
             yield Snap(relax, phrase("its hold ends"))
     for frame in turning(speeds, most=handle == "stroke"):

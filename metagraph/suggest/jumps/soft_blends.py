@@ -8,14 +8,14 @@ from collections.abc import Collection
 from math import ceil
 
 from metagraph.graph import edits
-from metagraph.graph.checks.end_gaps import TALL, UNHURRIED, gaps
+from metagraph.graph.checks.end_gaps import TALL, UNHURRIED, find_end_gaps
 from metagraph.graph.model import LAYERS, Project
 
 NEAR = 0.05  # metres of a figure TALL metres high that nobody sees a blend go
 SHARE = 0.45  # of a clip that a blend may take
 
 
-def softened(project: Project, but: Collection[str] = ()) -> Project:
+def soften_blends(project: Project, but: Collection[str] = ()) -> Project:
     """Return the project with longer blends where gestures, fidgets and transitions begin or end far from
     their stances. None becomes shorter. but: ids of actions that stay as they are.
     """
@@ -29,7 +29,7 @@ def softened(project: Project, but: Collection[str] = ()) -> Project:
                 continue
             start, end = project.span(action)
             most, timing = SHARE * (end - start), action.timing
-            far = {g.edge: g.metres for g in gaps(project, project.graphs[layer], action)}
+            far = {g.edge: g.metres for g in find_end_gaps(project, project.graphs[layer], action)}
             into, out = (
                 min(most, gap / pace) if (gap := far.get(edge, 0.0)) > near else 0.0
                 for edge in ("begins", "ends")

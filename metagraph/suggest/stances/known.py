@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from metagraph.graph.model import Project
 from metagraph.graph.words import KINDS, LAYERS, Layer
-from metagraph.suggest.clip_measures import HELD, SUREST, energy, layer_of, nothing, resting, walks
+from metagraph.suggest.clip_measures import HELD, SUREST, energy, is_walk, layer_of, no_measures, resting
 from metagraph.suggest.traits import LayerTraits, Traits
 
 Array = NDArray[Any]
@@ -73,7 +73,7 @@ class Shape:
 Stances = Mapping[Layer, Sequence[Shape]]
 
 
-def known(project: Project, traits: Mapping[str, Traits]) -> dict[Layer, tuple[Shape, ...]]:
+def list_known_stances(project: Project, traits: Mapping[str, Traits]) -> dict[Layer, tuple[Shape, ...]]:
     """Return the stances that a project has, the most used first, as their loops show them; those without as
     transitions end in them.
     """
@@ -120,7 +120,7 @@ def _shape(
     )
 
 
-def distance(shape: Shape, names: tuple[str, ...], pose: Array) -> float:
+def distance_from_stance(shape: Shape, names: tuple[str, ...], pose: Array) -> float:
     """Return how far a pose `[n, 3]` is from a stance: of the farthest point, heights; infinite where they
     share none.
     """
@@ -138,9 +138,9 @@ def distance(shape: Shape, names: tuple[str, ...], pose: Array) -> float:
     return float((np.linalg.norm(theirs - mine, axis=-1) * _weights(names)).max(-1).min())
 
 
-def nearest(shapes: Sequence[Shape], names: tuple[str, ...], pose: Array) -> list[tuple[float, Shape]]:
+def rank_stances(shapes: Sequence[Shape], names: tuple[str, ...], pose: Array) -> list[tuple[float, Shape]]:
     """Return the stances with how far a pose is from them, heights, the nearest first."""
-    found = [(distance(shape, names, pose), shape) for shape in shapes]
+    found = [(distance_from_stance(shape, names, pose), shape) for shape in shapes]
     return sorted((x for x in found if x[0] < float("inf")), key=lambda x: x[0])
 
 
@@ -152,7 +152,8 @@ def likely(shapes: Sequence[Shape], names: tuple[str, ...], pose: Array) -> list
     meet, and some lie far off.
     """
     weights = [
-        ((1 + (away / shape.scale()) ** 2 / 3) ** -2, shape) for away, shape in nearest(shapes, names, pose)
+        ((1 + (away / shape.scale()) ** 2 / 3) ** -2, shape)
+        for away, shape in rank_stances(shapes, names, pose)
     ]
     whole = sum(w for w, _ in weights) + STRAY
     return sorted(((w / whole, shape) for w, shape in weights), key=lambda x: -x[0])
@@ -173,7 +174,7 @@ def discover(traits: Mapping[str, Traits], layer: Layer, together: bool = False)
     moving = {
         clip: t
         for clip, t in sorted(traits.items())
-        if not (0 < t.duration < HELD and nothing(t)) and not walks(t)
+        if not (0 < t.duration < HELD and no_measures(t)) and not is_walk(t)
     }
     mine = {
         clip: t
@@ -246,7 +247,9 @@ def discover(traits: Mapping[str, Traits], layer: Layer, together: bool = False)
 Ends = Sequence[tuple[str, float, Array, str]]  # clip, second, pose there, and what its name says of it
 
 
-def settled(shapes: Sequence[Shape], ends: Sequence[tuple[tuple[str, ...], Array]]) -> tuple[Shape, ...]:
+def settle_stances(
+    shapes: Sequence[Shape], ends: Sequence[tuple[tuple[str, ...], Array]]
+) -> tuple[Shape, ...]:
     """Return the discovered stances; only the first where clips begin and end anywhere, as those do that are
     cut from longer takes: then there is nothing to tell stances by. ends: names and poses.
     """
@@ -255,11 +258,13 @@ def settled(shapes: Sequence[Shape], ends: Sequence[tuple[tuple[str, ...], Array
     weights = _weights(shapes[0].names)
     apart = _apart(np.array([shape.poses[0] for shape in shapes]), weights)
     usual = float(np.median(apart[np.triu_indices(len(shapes), 1)]))
-    near = [found[0][0] < STANDS * usual for names, pose in ends if (found := nearest(shapes, names, pose))]
+    near = [
+        found[0][0] < STANDS * usual for names, pose in ends if (found := rank_stances(shapes, names, pose))
+    ]
     return tuple(shapes) if sum(near) >= SETTLED * len(near) else tuple(shapes[:1])
 
 
-def parted(shapes: Sequence[Shape], ends: Ends) -> tuple[Shape, ...]:
+def split_stances(shapes: Sequence[Shape], ends: Ends) -> tuple[Shape, ...]:
     """Return discovered stances, those parted in which clips of different words have different poses: "idle
     1" and "idle 2" that stand close by. ends: first and last poses that names speak of.
     """
@@ -325,7 +330,7 @@ def _far(x: LayerTraits, pose: str, middle: Array, names: tuple[str, ...]) -> fl
     return float((np.linalg.norm(getattr(x, pose) - middle, axis=-1) * _weights(names)).max())
 
 
-def discovered(traits: Mapping[str, Traits]) -> dict[Layer, tuple[Shape, ...]]:
+def discover_stances(traits: Mapping[str, Traits]) -> dict[Layer, tuple[Shape, ...]]:
     """Return what `discover` finds on each layer."""
     return {layer: discover(traits, layer) for layer in LAYERS}
 

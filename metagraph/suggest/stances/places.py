@@ -19,9 +19,9 @@ from metagraph.common.wording import change_quoted
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.motion_guess import Likely, MotionGuess
-from metagraph.suggest.proposal import Place, plain
+from metagraph.suggest.proposal import StancePlace, plain_stance_name
 from metagraph.suggest.stances.known import Shape
-from metagraph.suggest.stances.pose_words import pose_words
+from metagraph.suggest.stances.pose_words import describe_pose
 from metagraph.suggest.traits import LayerTraits, Traits
 from metagraph.suggest.vote_fusion import Agreed, combine
 from metagraph.suggest.whole_body import CARRIER, SCALE
@@ -38,7 +38,7 @@ NEVER = 0.3  # of how sure a source is at least, so that its vote counts
 
 
 @dataclass
-class Heard:
+class ClipEvidence:
     """What the sources say of a clip. motion: what it seems to be; beside: the same when it is of the layer
     that all agree on. posture: its poses as stances are told.
     """
@@ -83,30 +83,30 @@ class Heard:
         return combine(self.votes(what), count)
 
 
-class Places:
+class StancePlaces:
     """by_key: the stances; which word and which shape is which, and how far words can be believed."""
 
     def __init__(
-        self, project: Project, heard: Sequence[Heard], shapes: Mapping[Layer, Sequence[Shape]]
+        self, project: Project, heard: Sequence[ClipEvidence], shapes: Mapping[Layer, Sequence[Shape]]
     ) -> None:
-        self.by_key: dict[str, Place] = {}
+        self.by_key: dict[str, StancePlace] = {}
         self._of_shape: dict[int, str] = {}
         self._of_word: dict[tuple[Layer, str], str] = {}
         self._trusted: dict[tuple[Layer, str], float] = {}
         for layer in LAYERS:
             for stance in project.graphs[layer].stances.values():
-                self.by_key[stance.id] = Place(stance.id, layer, stance.name, True)
-                self._of_word[(layer, plain(stance.name))] = stance.id
+                self.by_key[stance.id] = StancePlace(stance.id, layer, stance.name, True)
+                self._of_word[(layer, plain_stance_name(stance.name))] = stance.id
         for layer in LAYERS:
             self._joined(layer, shapes.get(layer, ()), [each for each in heard if each.layer == layer])
         for each in heard:
             for word, *_ in each.called():
-                if (each.layer, plain(word)) not in self._of_word:
-                    key = f"new {each.layer} {plain(word)}"
-                    self.by_key.setdefault(key, Place(key, each.layer, word))
-                    self._of_word[(each.layer, plain(word))] = key
+                if (each.layer, plain_stance_name(word)) not in self._of_word:
+                    key = f"new {each.layer} {plain_stance_name(word)}"
+                    self.by_key.setdefault(key, StancePlace(key, each.layer, word))
+                    self._of_word[(each.layer, plain_stance_name(word))] = key
 
-    def _joined(self, layer: Layer, shapes: Sequence[Shape], heard: Sequence[Heard]) -> None:
+    def _joined(self, layer: Layer, shapes: Sequence[Shape], heard: Sequence[ClipEvidence]) -> None:
         """Join the words and the shapes of a layer."""
         votes, spoken = _votes(heard)
         free = dict(enumerate(shapes))
@@ -126,20 +126,20 @@ class Places:
         )
         taken: dict[str, str] = {}
         for _, word, n in pairs:
-            told = (layer, plain(word))
+            told = (layer, plain_stance_name(word))
             if n in free and word not in taken and not self._placed(told):
                 key = self._of_word.get(told, f"new {layer} {n + 1}")
                 name, there = (self.by_key[key].name, True) if key in self.by_key else (word, False)
-                self.by_key[key] = Place(key, layer, name, there, free[n])
+                self.by_key[key] = StancePlace(key, layer, name, there, free[n])
                 self._of_shape[id(free.pop(n))] = key
                 self._of_word.setdefault(told, key)
                 taken[word] = key
         for n, shape in free.items():
             key = f"new {layer} {n + 1}"
-            self.by_key[key] = Place(key, layer, self._named(layer, shape, shapes), False, shape)
+            self.by_key[key] = StancePlace(key, layer, self._named(layer, shape, shapes), False, shape)
             self._of_shape[id(shape)] = key
         for word, mine in votes.items():
-            told, best = (layer, plain(word)), max(mine, key=lambda s: mine[s], default=None)
+            told, best = (layer, plain_stance_name(word)), max(mine, key=lambda s: mine[s], default=None)
             if told not in self._of_word and best is not None and mine[best] >= MEANS * spoken[word]:
                 self._of_word[told] = self._of_shape[best]
             if told in self._of_word:
@@ -149,7 +149,7 @@ class Places:
     def _named(self, layer: Layer, shape: Shape, shapes: Sequence[Shape]) -> str:
         """Return what a stance is called that no name speaks of: as its pose looks."""
         whole = SCALE if layer == CARRIER and "hips" in shape.names else None
-        words = pose_words(shape, shapes[0] if shapes and shapes[0] is not shape else None, whole)
+        words = describe_pose(shape, shapes[0] if shapes and shapes[0] is not shape else None, whole)
         there = {place.name for place in self.by_key.values() if place.layer == layer}
         n, name = 1, words
         while name in there:
@@ -157,11 +157,11 @@ class Places:
             name = f"{words} {n}"
         return name
 
-    def vote(self, each: Heard, what: str, layer: Layer) -> list[Belief[str]]:
+    def vote(self, each: ClipEvidence, what: str, layer: Layer) -> list[Belief[str]]:
         """Return beliefs about a stance as keys."""
         out: list[Belief[str]] = []
         said: Belief[str] | None = getattr(each.said, what)
-        told = (layer, plain(said.value)) if said is not None else None
+        told = (layer, plain_stance_name(said.value)) if said is not None else None
         if said is not None and told is not None and (key := self._of_word.get(told)) is not None:
             out.append(Belief(key, said.confidence * self._trusted.get(told, 1.0), said.reason))
         seen: Belief[Shape] | None = getattr(each.beside, what, None)
@@ -183,7 +183,7 @@ class Places:
         return max(2, sum(1 for p in self.by_key.values() if p.layer == layer))
 
 
-def _votes(heard: Sequence[Heard]) -> tuple[dict[str, dict[int, float]], dict[str, float]]:
+def _votes(heard: Sequence[ClipEvidence]) -> tuple[dict[str, dict[int, float]], dict[str, float]]:
     """Return word -> shape -> how many ends that the word names are of it; and word -> how many it names,
     those that are of no shape among them.
     """

@@ -21,7 +21,9 @@ AWRY = 0.015  # heights the crown or nose is to a side, of a head that is tilted
 WEIGHT = 0.02  # heights the hips are to a side of the feet, of a body that rests on one leg
 
 
-def pose_words(shape: Shape, usual: Shape | None = None, scale: Mapping[Layer, float] | None = None) -> str:
+def describe_pose(
+    shape: Shape, usual: Shape | None = None, scale: Mapping[Layer, float] | None = None
+) -> str:
     """Return words for a stance's pose: "sitting, arms crossed". usual: the most used stance, where that is
     another. scale: how much longer each layer's points are than they are (see `whole_body`).
     """

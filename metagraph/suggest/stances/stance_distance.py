@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.checks import end_gaps
-from metagraph.graph.expand import ends_in
+from metagraph.graph.expand import find_end_stance
 from metagraph.graph.model import Action, Project
-from metagraph.suggest.jumps.seen_jumps import Seen
+from metagraph.suggest.jumps.seen_jumps import SeenJumps
 
 Array = NDArray[Any]
 
@@ -49,12 +49,12 @@ class StanceDistance:
 
 
 def distance_of(
-    project: Project, action: Action, seen: Seen | None, both: tuple[Array, Array, Array] | None = None
+    project: Project, action: Action, seen: SeenJumps | None, both: tuple[Array, Array, Array] | None = None
 ) -> StanceDistance:
     """Return an action's distances. seen: what is known of its jumps, which decides what shows. both: what
     `measured` returned for the same action, where that is known.
     """
-    times, into, left = measured(project, action) if both is None else both
+    times, into, left = measure_stance_distance(project, action) if both is None else both
     motion = end_gaps.motion_of(project, action)
     height = motion.skeleton.height if motion is not None else end_gaps.TALL
     t = action.timing
@@ -66,21 +66,21 @@ def distance_of(
     if seen is not None and len(seen.times):
         nearest = np.clip(np.searchsorted(seen.times, times - 1e-6), 0, len(seen.times) - 1)
         shows = seen.curve()[nearest] > 1
-    stances = (project.stance(action.stance), project.stance(ends_in(action)))
+    stances = (project.stance(action.stance), project.stance(find_end_stance(action)))
     names = tuple(s.name if s is not None else "?" for s in stances)
     return StanceDistance(times, metres, shows, pivot, limits, (names[0], names[1]))
 
 
-def measured(project: Project, action: Action) -> tuple[Array, Array, Array]:
+def measure_stance_distance(project: Project, action: Action) -> tuple[Array, Array, Array]:
     """Return moments of an action's clip `[F]` and how far it is at each from both stances, metres."""
     motion = end_gaps.motion_of(project, action)
     if motion is None:
         return np.zeros(0), np.zeros(0), np.zeros(0)
     times = np.linspace(0, motion.duration, max(2, round(motion.duration * RATE) + 1))
-    return (times, *end_gaps.distances(project, action, times))
+    return (times, *end_gaps.distances_to_stance(project, action, times))
 
 
-def _pivot(action: Action, times: Array, into: Array, left: Array, seen: Seen | None) -> int:
+def _pivot(action: Action, times: Array, into: Array, left: Array, seen: SeenJumps | None) -> int:
     if seen is not None and len(seen.times):
         return int(np.searchsorted(times, seen.times[min(seen.pivot, len(seen.times) - 1)] - 1e-6))
     if action.kind == "stance" or not len(times):

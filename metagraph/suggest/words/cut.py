@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Final
 
-from metagraph.suggest.words.folded import folded, is_run_together
+from metagraph.suggest.words.folded import fold_letters, is_run_together
 
 _PIECES = re.compile(r"\d+[hH](?![^\W_])|\d+|[^\W\d_]+|[\W_]+")
 _ARROW = re.compile("[→⇒➔➜]|[-=]+>")
@@ -19,7 +19,7 @@ _ELIDED = frozenset((
 ))  # fmt: skip
 
 
-class Word(str):
+class EnglishWord(str):
     """A word of English that stands for what a name says in another language. written: what that is, small
     letters; "" for all but the first of several that stand for it together. start, end: where in the name.
     """
@@ -28,15 +28,15 @@ class Word(str):
     start: int
     end: int
 
-    def __new__(cls, text: str, written: str = "", start: int = 0, end: int = 0) -> Word:
+    def __new__(cls, text: str, written: str = "", start: int = 0, end: int = 0) -> EnglishWord:
         word = super().__new__(cls, text)
         word.written, word.start, word.end = written, start, end
         return word
 
 
-def written(words: Iterable[str]) -> tuple[str, ...]:
+def as_written(words: Iterable[str]) -> tuple[str, ...]:
     """Return words as their name has them."""
-    said = ((w.written if isinstance(w, Word) else w) for w in words)
+    said = ((w.written if isinstance(w, EnglishWord) else w) for w in words)
     return tuple(w for w in said if w)
 
 
@@ -60,19 +60,19 @@ class Token:
 
 
 @dataclass(frozen=True, slots=True)
-class Break:
+class TokenBreak:
     """What stands between tokens."""
 
     text: str
 
 
-def tokens(text: str, offset: int = 0, whole: str | None = None) -> list[Token | Break]:
+def cut_tokens(text: str, offset: int = 0, whole: str | None = None) -> list[Token | TokenBreak]:
     """Take a text apart at separators, capitals, digits and where the writing changes. offset: of the text in
     the name.
     """
     name = text if whole is None else whole
-    letters, places = folded(text)
-    out: list[Token | Break] = []
+    letters, places = fold_letters(text)
+    out: list[Token | TokenBreak] = []
     for piece in _PIECES.finditer(letters):
         said, at = piece[0], piece.start()
         if not (said[0].isalpha() or said[0].isdecimal()):
@@ -81,7 +81,7 @@ def tokens(text: str, offset: int = 0, whole: str | None = None) -> list[Token |
                 start, stop = (places[at + k] + offset for k in arrow.span())
                 out.append(Token(ARROW, letters[slice(*(at + k for k in arrow.span()))], start, stop))
             else:
-                out.append(Break(said))
+                out.append(TokenBreak(said))
             continue
         for part in _camel(said) if said[0].isalpha() else [said]:
             end = at + len(part)

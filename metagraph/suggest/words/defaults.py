@@ -11,7 +11,7 @@ from typing import Final, Literal, get_args
 
 from msgspec.structs import asdict
 
-from metagraph.suggest.words.files import english, listed
+from metagraph.suggest.words.files import english_meanings, list_phrases
 from metagraph.suggest.words.languages import synonyms
 
 Field = Literal["kinds", "layers", "limbs", "tags", "postures", "joins", "junk", "synonyms"]
@@ -21,8 +21,10 @@ Meanings = Mapping[str, str]  # phrase -> meaning
 @cache
 def _english() -> Mapping[str, Meanings]:
     return {
-        field: MappingProxyType({phrase: meaning for meaning, said in of.items() for phrase in listed(said)})
-        for field, of in asdict(english()).items()
+        field: MappingProxyType(
+            {phrase: meaning for meaning, said in of.items() for phrase in list_phrases(said)}
+        )
+        for field, of in asdict(english_meanings()).items()
     }
 
 

@@ -55,7 +55,7 @@ class LanguageFile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 
     def __post_init__(self) -> None:
         for meaning, said in self.words.items():
-            if not meaning.strip() or not listed(said):
+            if not meaning.strip() or not list_phrases(said):
                 raise ValueError(f"'{meaning}' has no phrases")
         if len(self.sides.split()) not in (0, 2):
             raise ValueError(f"sides are two letters, for left and for right, not '{self.sides}'")
@@ -65,19 +65,19 @@ class LanguageFile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
         """Phrase -> English, as people write it. Of two meanings the first counts."""
         out: dict[str, str] = {}
         for meaning, said in self.words.items():
-            for phrase in listed(said):
+            for phrase in list_phrases(said):
                 out.setdefault(phrase, meaning)
         return MappingProxyType(out)
 
 
-def listed(said: Phrases) -> list[str]:
+def list_phrases(said: Phrases) -> list[str]:
     """Return the phrases of a text, or of several."""
     texts = (said,) if isinstance(said, str) else said
     return [p for text in texts for part in text.split(",") if (p := " ".join(part.split()))]
 
 
 @cache
-def english() -> EnglishFile:
+def english_meanings() -> EnglishFile:
     """Return what English phrases mean."""
     return read_words(FOLDER / f"{ENGLISH}.json", EnglishFile)
 

@@ -26,7 +26,7 @@ _LONG = (("ou", "o"), ("oo", "o"), ("uu", "u"), ("aa", "a"), ("ii", "i"), ("ei",
 _VOWELS = "aiueo"
 
 
-def folded(text: str) -> tuple[str, tuple[int, ...]]:
+def fold_letters(text: str) -> tuple[str, tuple[int, ...]]:
     """Return a text's letters as they are compared, case kept, and where in the text each one comes from.
 
     The places have one entry more than letters: the text's length.
@@ -64,22 +64,22 @@ def _bases(cluster: str) -> str:
     return "".join(out)
 
 
-def plain(text: str) -> str:
+def plain_letters(text: str) -> str:
     """Return a phrase's letters alone: folded, small, without blanks, hyphens or apostrophes."""
     if text.isascii() and text.isalnum():
         return text.lower()
-    return "".join(c for c in folded(text)[0].lower() if c.isalnum() or c == "ー")
+    return "".join(c for c in fold_letters(text)[0].lower() if c.isalnum() or c == "ー")
 
 
 @lru_cache(maxsize=4096)  # the words of a language's phrases come in every order
 def spellings(phrase: str) -> frozenset[str]:
     """Return the ways in which a phrase may stand in a name, each as `plain` has it."""
-    kana = plain(phrase)
+    kana = plain_letters(phrase)
     out = {kana}
     if phrase.isascii():
         return frozenset(out) if kana else frozenset()
     if any(ord(c) in _UMLAUTS for c in phrase):
-        out.add(plain(phrase.translate(_UMLAUTS)))
+        out.add(plain_letters(phrase.translate(_UMLAUTS)))
     if kana and all("ぁ" <= c <= "ゖ" or c == "ー" for c in kana):
         out |= romaji(kana)
     return frozenset(s for s in out if s)

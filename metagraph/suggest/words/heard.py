@@ -8,13 +8,20 @@ from typing import Any
 
 from metagraph.suggest.words.cut import Token
 from metagraph.suggest.words.folded import spellings
-from metagraph.suggest.words.languages import MARKS, Language, languages
-from metagraph.suggest.words.spoken import PARTS, Spoken, compound_of, cut_run, in_english, is_english
+from metagraph.suggest.words.languages import MARKS, WordLanguage, list_word_languages
+from metagraph.suggest.words.spoken import (
+    PARTS,
+    SpokenLanguages,
+    cut_run,
+    is_english,
+    means_something_in_english,
+    split_compound,
+)
 
 _ALONE = 7  # letters of a word that tells its language though no other does
 
 
-def own_words(changes: Mapping[Any, Mapping[str, str | None]]) -> dict[str, str | None]:
+def list_own_words(changes: Mapping[Any, Mapping[str, str | None]]) -> dict[str, str | None]:
     """Return what a user says about words: letters -> English, themselves where they mean something of their
     own, None for nothing any more.
     """
@@ -26,17 +33,17 @@ def own_words(changes: Mapping[Any, Mapping[str, str | None]]) -> dict[str, str 
     return own
 
 
-def spoken(batch: Sequence[Sequence[Token]], patterns: Any) -> Spoken | None:
+def find_spoken_languages(batch: Sequence[Sequence[Token]], patterns: Any) -> SpokenLanguages | None:
     """Return what languages a batch of names speaks beside English, None where it is English alone."""
     meanings = patterns.meanings
-    own = own_words(patterns.changes)
+    own = list_own_words(patterns.changes)
     distinct = list(dict.fromkeys(tuple(t for t in name if not t.text.isdecimal()) for name in batch))
     runs = [_phrases(name, meanings, own) for name in distinct]
     found = {
         tongue: [_told(name, some, tongue, meanings, own) for name, some in zip(distinct, runs, strict=True)]
-        for tongue in languages()
+        for tongue in list_word_languages()
     }
-    tongues: list[Language] = []
+    tongues: list[WordLanguage] = []
     spent: list[set[int]] = [set() for _ in distinct]
     while True:
         best, most = None, (0, 0)
@@ -64,7 +71,7 @@ def spoken(batch: Sequence[Sequence[Token]], patterns: Any) -> Spoken | None:
             gone.update(one)
     mine = {k: v for k, v in own.items() if v != k}
     if not tongues:
-        return Spoken((), False, own) if mine and "synonyms" in patterns.changes else None
+        return SpokenLanguages((), False, own) if mine and "synonyms" in patterns.changes else None
     theirs = sum(1 for gone in spent if gone)
     english = sum(
         1
@@ -79,16 +86,16 @@ def spoken(batch: Sequence[Sequence[Token]], patterns: Any) -> Spoken | None:
     if len(tongues[0].sides) == 2 and ends.issuperset(tongues[0].sides):
         # Both stand at ends, or it may be a letter that counts ("a", "b", "c", "d").
         sides = dict(zip(tongues[0].sides, ("left", "right"), strict=True)) if not {"a", "b"} <= ends else {}
-    return Spoken(tuple(tongues), theirs >= english, own, sides)
+    return SpokenLanguages(tuple(tongues), theirs >= english, own, sides)
 
 
-def _shared(word: str, tongues: Sequence[Language]) -> bool:
+def _shared(word: str, tongues: Sequence[WordLanguage]) -> bool:
     return any(word in tongue.exact for tongue in tongues)
 
 
 @lru_cache(maxsize=1)
 def _any_language() -> frozenset[str]:
-    return frozenset(key for tongue in languages() for key in tongue.exact)
+    return frozenset(key for tongue in list_word_languages() for key in tongue.exact)
 
 
 def _phrases(
@@ -105,9 +112,13 @@ def _phrases(
             key = "".join(t.text for t in some)
             if key not in known or key in own or any(t.run or t.alone for t in some):
                 continue
-            if n == 1 and in_english(key, meanings):
+            if n == 1 and means_something_in_english(key, meanings):
                 continue
-            if n > 1 and len(key) < 2 * _ALONE and any(in_english(t.text, meanings) for t in some):
+            if (
+                n > 1
+                and len(key) < 2 * _ALONE
+                and any(means_something_in_english(t.text, meanings) for t in some)
+            ):
                 continue  # "sit a" is no word of Japanese
             out.setdefault(at, []).append((n, key))
     return out
@@ -116,7 +127,7 @@ def _phrases(
 def _told(
     name: Sequence[Token],
     known: Mapping[int, Sequence[tuple[int, str]]],
-    tongue: Language,
+    tongue: WordLanguage,
     meanings: Any,
     own: Mapping[str, str | None],
 ) -> dict[int, int]:
@@ -143,18 +154,18 @@ def _told(
                 break
         else:
             word = token.text
-            passed = len(word) <= 5 or at in out or word in own or in_english(word, meanings)
+            passed = len(word) <= 5 or at in out or word in own or means_something_in_english(word, meanings)
             if not passed and (size := _resembles(word, tongue)):
                 out[at] = size
     return out
 
 
 @lru_cache(maxsize=65536)
-def _resembles(word: str, tongue: Language) -> int:
+def _resembles(word: str, tongue: WordLanguage) -> int:
     """Return how many letters of a word tell a language by its stem or its parts, 0 for none."""
     stem = tongue.stem(word)
     if len(stem) > 4 and stem in tongue.stemmed and tongue.stemmed[stem] not in MARKS:
         return len(stem) - 1
-    if len(word) > 8 and word.isascii() and len(cut := compound_of(word, tongue)) > 1:
+    if len(word) > 8 and word.isascii() and len(cut := split_compound(word, tongue)) > 1:
         return max(map(len, cut))
     return 0

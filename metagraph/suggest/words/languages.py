@@ -11,8 +11,8 @@ from itertools import permutations
 from types import MappingProxyType
 from typing import Final
 
-from metagraph.suggest.words.files import LanguageFile, listed, sources
-from metagraph.suggest.words.folded import is_run_together, plain, spellings
+from metagraph.suggest.words.files import LanguageFile, list_phrases, sources
+from metagraph.suggest.words.folded import is_run_together, plain_letters, spellings
 
 # What stands for no word of English: nothing; what joins two stances only beside one ("a" of Spanish); and
 # what follows the stance it is about (Japanese, Korean).
@@ -30,7 +30,7 @@ _ROOT = 4  # letters that are left where an ending goes
 
 
 @dataclass(frozen=True, eq=False)
-class Language:
+class WordLanguage:
     """Words of a language as they are looked up. exact: letters of a phrase -> English. stemmed: the same of
     words without endings, joined by blanks. doubtful: those of `exact` that tell no language.
     """
@@ -64,9 +64,9 @@ class Language:
         return max((len(k) for k in self.exact if is_run_together(k[0])), default=0)
 
 
-def _language(name: str, source: LanguageFile) -> Language:
-    endings = tuple(sorted(set(map(plain, source.endings.split())), key=lambda e: (-len(e), e)))
-    bare = Language(name, {}, {}, frozenset(), endings, tuple(source.links.split()))
+def _language(name: str, source: LanguageFile) -> WordLanguage:
+    endings = tuple(sorted(set(map(plain_letters, source.endings.split())), key=lambda e: (-len(e), e)))
+    bare = WordLanguage(name, {}, {}, frozenset(), endings, tuple(source.links.split()))
     exact: dict[str, str] = {}
     turned: dict[str, str] = {}
     stemmed: dict[str, str] = {}
@@ -89,14 +89,14 @@ def _language(name: str, source: LanguageFile) -> Language:
                     stemmed.setdefault(text, meaning)
     for key, meaning in turned.items():
         exact.setdefault(key, meaning)
-    doubtful = frozenset(s for w in listed(source.doubtful) for s in spellings(w))
-    return Language(
+    doubtful = frozenset(s for w in list_phrases(source.doubtful) for s in spellings(w))
+    return WordLanguage(
         name, exact, stemmed, doubtful | _ENGLISH_TOO, endings, bare.links, tuple(source.sides.split())
     )
 
 
 @lru_cache(maxsize=1)
-def languages() -> tuple[Language, ...]:
+def list_word_languages() -> tuple[WordLanguage, ...]:
     """Return every language, ready to look words up in."""
     return tuple(_language(name, source) for name, source in sources().items())
 

@@ -12,24 +12,39 @@ from typing import Final, TypeVar, cast
 from metagraph.common.wording import change_quoted, phrase
 from metagraph.graph.words import Kind, Layer, Limb
 from metagraph.suggest.estimate import Belief
-from metagraph.suggest.words.cut import written
+from metagraph.suggest.words.cut import as_written
 from metagraph.suggest.words.defaults import Field
-from metagraph.suggest.words.patterns import Patterns, PatternsError, forget, merged, recalled, remembered
+from metagraph.suggest.words.patterns import (
+    Patterns,
+    PatternsError,
+    count_correction,
+    forget_learned,
+    merge_patterns,
+    recall_correction,
+)
 from metagraph.suggest.words.stances import FoundStance, Stances, Words, is_low, label
 from metagraph.suggest.words.tokens import (
-    Phrase,
-    Taken,
-    is_number,
+    FoundPhrase,
+    TakenName,
+    drop_numbers,
+    drop_shared_words,
+    find_name_languages,
+    is_number_word,
     phrases,
-    quoted,
-    speech_of,
-    take_apart,
+    quote_words,
+    split_clip_name,
     variant,
-    without_numbers,
-    without_shared,
 )
 
-__all__ = ["NameGuess", "Patterns", "PatternsError", "forget", "learn", "merged", "read_names"]
+__all__ = [
+    "NameGuess",
+    "Patterns",
+    "PatternsError",
+    "forget_learned",
+    "learn_correction",
+    "merge_patterns",
+    "read_names",
+]
 
 T = TypeVar("T")
 EXPLICIT: Final = 0.98  # how often a word for what is done, after its stance, says the kind rightly
@@ -83,7 +98,7 @@ def read_names(names: Sequence[str], patterns: Patterns | None = None) -> dict[s
     return {name: reader.guess(name) for name in dict.fromkeys(names)}
 
 
-def learn(
+def learn_correction(
     patterns: Patterns, name: str, field: str, value: str | Sequence[str], names: Sequence[str] = ()
 ) -> Patterns:
     """Remember a correction: the words of `name` mean `value`. names: the batch it stands in, which tells its
@@ -91,17 +106,17 @@ def learn(
     """
     reader = _Reader([*names, name], patterns)
     said = " ".join(value.split()) if isinstance(value, str) else " ".join(value)
-    return remembered(patterns, field, reader.key(reader.parse(name), field), said)
+    return count_correction(patterns, field, reader.key(reader.parse(name), field), said)
 
 
 @lru_cache(maxsize=4)  # a correction stands in the batch that was read just before
 def _batch(
     names: tuple[str, ...], changes: tuple[tuple[Field, tuple[tuple[str, str | None], ...]], ...]
-) -> tuple[dict[str, Taken], Stances]:
+) -> tuple[dict[str, TakenName], Stances]:
     """Return the distinct names taken apart, and the stances they have together."""
     patterns = Patterns({field: dict(mine) for field, mine in changes})
-    speech = speech_of(names, patterns)
-    taken = without_shared([take_apart(name, patterns, speech) for name in names], patterns)
+    speech = find_name_languages(names, patterns)
+    taken = drop_shared_words([split_clip_name(name, patterns, speech) for name in names], patterns)
     return dict(zip(names, taken, strict=True)), Stances(taken, patterns)
 
 
@@ -121,7 +136,7 @@ class _Reader:
         begun = self._stances.of(words, taken.split)
         stance, used = begun or (None, 0)
         rest = words[used:]
-        while rest and is_number(rest[0]) and not self._two(rest):
+        while rest and is_number_word(rest[0]) and not self._two(rest):
             rest = rest[1:]
         if len(rest) > 2 and rest[0] in ("trans", "transition") and rest[1] in self._joins:
             rest = rest[1:]
@@ -135,7 +150,7 @@ class _Reader:
         return rest[0] == "2" and len(rest) > 1 and self._stances.named(rest[1:]) is not None
 
     def _act(self, rest: Words) -> Words:
-        return without_numbers(rest[: len(rest) - variant(rest)] or rest)
+        return drop_numbers(rest[: len(rest) - variant(rest)] or rest)
 
     def _passing(self, words: Words, stance: FoundStance | None, rest: Words) -> _Parse | None:
         """Read a transition: from one stance to another, down into one, up out of one."""
@@ -183,7 +198,7 @@ class _Reader:
 
     def _moving(self, words: Words, stance: FoundStance | None, rest: Words) -> _Parse | None:
         told = next((p for p in phrases(words, self._kinds) if p.meaning == "transition"), None)
-        text = without_numbers(rest)
+        text = drop_numbers(rest)
         if (
             stance is not None
             and len(text) == 1
@@ -215,12 +230,12 @@ class _Reader:
             return _Parse(words, low, 0, (), told.text, *self._end(self._stances.standing(), ("stand",)), 0.9)
         if (pair := self._pair(words[told.end :])) is not None:  # "trans sit stand"
             return _Parse(words, pair[0], 0, (), told.text, pair[1], pair[1].words, 0.85, 0.9)
-        others = without_numbers((*words[: told.start], *words[told.end :]))
+        others = drop_numbers((*words[: told.start], *words[told.end :]))
         about = self._stances.named(others) if others else None
         if told.text == "exit":
             return _Parse(words, about[0] if about else stance, 0, (), told.text, None, (), 0.0, 0.85)
         start = stance if told.start else None
-        after = self._stances.named(without_numbers(words[told.end :]), start.words if start else ())
+        after = self._stances.named(drop_numbers(words[told.end :]), start.words if start else ())
         return _Parse(
             words,
             start,
@@ -251,26 +266,26 @@ class _Reader:
         if belief is None or "'" not in belief.reason:
             return belief
         taken = self._taken[name]
-        reason = change_quoted(belief.reason, lambda words: quoted(name, words.split(), taken)[1:-1])
+        reason = change_quoted(belief.reason, lambda words: quote_words(name, words.split(), taken)[1:-1])
         return Belief(belief.value, belief.confidence, reason)
 
     def key(self, parse: _Parse, field: str) -> Words:
         """Return the words a correction of a field is remembered by, as the name has them."""
-        return written(self._key(parse, field))
+        return as_written(self._key(parse, field))
 
     def _key(self, parse: _Parse, field: str) -> Words:
         limbs = self._patterns.meanings["limbs"]
         if field == "stance" and parse.stance and parse.own:
-            return without_numbers(parse.stance.words)
+            return drop_numbers(parse.stance.words)
         if field == "end_stance" and parse.joined:
-            return without_numbers(parse.end_words)
-        words = parse.act or without_numbers(parse.words)
+            return drop_numbers(parse.end_words)
+        words = parse.act or drop_numbers(parse.words)
         return words if field == "limb" else tuple(w for w in words if w not in limbs or len(w) > 5) or words
 
     def guess(self, name: str) -> NameGuess:
         parse = self.parse(name)
         words = parse.words
-        if not any(not is_number(w) for w in words):
+        if not any(not is_number_word(w) for w in words):
             return NameGuess(number=self._number(words))
         kind = self._kind(parse)
         return NameGuess(
@@ -289,7 +304,7 @@ class _Reader:
         return Belief(said.text, 0.85, _says(said.text)) if said is not None else None
 
     def _recalled(self, parse: _Parse, field: str) -> Belief[str] | None:
-        found = recalled(self._patterns, field, self.key(parse, field))
+        found = recall_correction(self._patterns, field, self.key(parse, field))
         if found is None:
             return None
         value, words, count = found
@@ -381,7 +396,7 @@ class _Reader:
 
     def _called(self, stance: FoundStance) -> str:
         """Return a stance's name, as the user corrected it where that happened."""
-        found = recalled(self._patterns, "stance", written(without_numbers(stance.words)))
+        found = recall_correction(self._patterns, "stance", as_written(drop_numbers(stance.words)))
         return found[0] if found else stance.text
 
     def _layer(self, parse: _Parse, kind: Belief[Kind] | None) -> Belief[Layer] | None:
@@ -408,7 +423,7 @@ class _Reader:
         from_words = self._told((*about, *parse.words), layers)
         return _layer(from_words, 0.8 if about else 0.7) if from_words else None
 
-    def _told(self, words: Words, table: Mapping[str, str]) -> Phrase | None:
+    def _told(self, words: Words, table: Mapping[str, str]) -> FoundPhrase | None:
         """Return the longest phrase of a table in the words, the first of equal ones."""
         return max(phrases(words, table), key=lambda p: (p.end - p.start, -p.start), default=None)
 
@@ -448,12 +463,12 @@ class _Reader:
         return Belief(tags, 0.8, _says(*(p.text for p in said)))
 
     def _number(self, words: Words) -> Belief[int] | None:
-        if not words or not is_number(words[-1]) or len(words[-1]) > 9:
+        if not words or not is_number_word(words[-1]) or len(words[-1]) > 9:
             return None
         return Belief(int(words[-1]), 0.95, phrase("name ends in '{words}'", words=str(words[-1])))
 
 
-def _layer(said: Phrase, confidence: float) -> Belief[Layer]:
+def _layer(said: FoundPhrase, confidence: float) -> Belief[Layer]:
     return Belief(cast("Layer", said.meaning), confidence, _says(said.text))
 
 

@@ -185,7 +185,7 @@ def _kind_of(data: Any) -> str:
 # --- learning
 
 
-def remembered(patterns: Patterns, name: str, words: Sequence[str], value: str) -> Patterns:
+def count_correction(patterns: Patterns, name: str, words: Sequence[str], value: str) -> Patterns:
     """Count a correction for the whole phrase and, where there are several, for each of its words."""
     if name not in LEARNABLE:
         raise PatternsError(f"nothing is learned about '{name}'; it is about {', '.join(LEARNABLE)}")
@@ -201,7 +201,7 @@ def remembered(patterns: Patterns, name: str, words: Sequence[str], value: str) 
     return replace(patterns, learned={**patterns.learned, name: mine})
 
 
-def recalled(patterns: Patterns, name: str, words: Sequence[str]) -> tuple[str, str, int] | None:
+def recall_correction(patterns: Patterns, name: str, words: Sequence[str]) -> tuple[str, str, int] | None:
     """Return (meaning, the words it comes from, how often) of what was corrected before; None where that is
     unknown or disputed.
 
@@ -232,7 +232,7 @@ def _agreed(counts: Mapping[str, int], least: int, share: float) -> tuple[str, i
     )
 
 
-def forget(patterns: Patterns, name: str | None = None, phrase: str | None = None) -> Patterns:
+def forget_learned(patterns: Patterns, name: str | None = None, phrase: str | None = None) -> Patterns:
     """Return patterns without what was learned: all, of one field, or of one phrase in it (or in every
     field).
     """
@@ -245,7 +245,7 @@ def forget(patterns: Patterns, name: str | None = None, phrase: str | None = Non
     return replace(patterns, learned={known: words for known, words in kept.items() if words})
 
 
-def merged(mine: Patterns, theirs: Patterns) -> Patterns:
+def merge_patterns(mine: Patterns, theirs: Patterns) -> Patterns:
     """Return patterns with another's on top: its meanings win, its corrections count as often as they counted
     there, or here if more.
     """

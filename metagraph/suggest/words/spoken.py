@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from metagraph.suggest.words.cut import ARROW, Token, Word
+from metagraph.suggest.words.cut import ARROW, EnglishWord, Token
 from metagraph.suggest.words.languages import (
     AFTER_FROM,
     AFTER_TO,
@@ -15,7 +15,7 @@ from metagraph.suggest.words.languages import (
     MAYBE_FROM,
     MAYBE_TO,
     NOTHING,
-    Language,
+    WordLanguage,
 )
 
 _LOANED = frozenset((
@@ -41,13 +41,13 @@ class _Said:
 
 
 @dataclass
-class Spoken:
+class SpokenLanguages:
     """The languages that a batch speaks, the one most spoken first. leading: more than English. own: letters
     of phrases -> what the user says they mean in English, None for nothing; a phrase with a meaning of its
     own stands for itself. sides: letters that names end in -> left or right.
     """
 
-    tongues: tuple[Language, ...]
+    tongues: tuple[WordLanguage, ...]
     leading: bool
     own: Mapping[str, str | None] = field(default_factory=dict)
     sides: Mapping[str, str] = field(default_factory=dict)
@@ -81,7 +81,7 @@ class Spoken:
         if word not in self._compounds:
             cut: tuple[str, ...] = ()
             if len(word) in _COMPOUND and word not in self.own:
-                cut = next((c for t in self.tongues if (c := compound_of(word, t))), ())
+                cut = next((c for t in self.tongues if (c := split_compound(word, t))), ())
             self._compounds[word] = cut
         return self._compounds[word]
 
@@ -120,7 +120,8 @@ class Spoken:
                 continue
             words = item.meaning.split()
             made = [
-                Word(w, item.written if k == 0 else "", item.start, item.end) for k, w in enumerate(words)
+                EnglishWord(w, item.written if k == 0 else "", item.start, item.end)
+                for k, w in enumerate(words)
             ]
             single = len(made) == 1
             if single and alone and f"{out[-1]} {made[0]}" not in kinds and f"{made[0]} {out[-1]}" in kinds:
@@ -199,14 +200,14 @@ class Spoken:
                 return None
             if meaning == NOTHING and some[0].text in meanings["joins"]:
                 return None  # "to" among Japanese words in Latin letters
-            if not bold and in_english(some[0].text, meanings):
+            if not bold and means_something_in_english(some[0].text, meanings):
                 return None
             return meaning
         if found is not None:
             if any(t.alone for t in some):
                 return None
             return found[0] if found[1] or bold else None
-        if len(some) == 1 and (in_english(some[0].text, meanings) or len(some[0].text) < 5):
+        if len(some) == 1 and (means_something_in_english(some[0].text, meanings) or len(some[0].text) < 5):
             return None
         if any(t.run for t in some) or (len(some) > 1 and not bold):
             return None
@@ -214,20 +215,20 @@ class Spoken:
         return got if got not in MARKS else None
 
 
-def in_english(word: str, meanings: Any) -> bool:
+def means_something_in_english(word: str, meanings: Any) -> bool:
     """Whether a word itself means something in English, as the patterns have it."""
     return any(word in meanings[table] for table in ("kinds", "layers", "limbs", "postures", "joins"))
 
 
 def is_english(word: str, meanings: Any) -> bool:
     """Whether a word tells that a name is in English."""
-    return len(word) > 2 and word not in _LOANED and in_english(word, meanings)
+    return len(word) > 2 and word not in _LOANED and means_something_in_english(word, meanings)
 
 
 def english_words(token: Token, english: Callable[[str], tuple[str, ...]]) -> tuple[str, ...]:
     """Return a token that no other language knows: its letters folded where English knows them so."""
     if token.text == ARROW:
-        return (Word("to", token.shown, token.start, token.end),)
+        return (EnglishWord("to", token.shown, token.start, token.end),)
     if token.text == token.shown or unicodedata.normalize("NFKC", token.shown) == token.text:
         return english(token.text)
     known = english(token.text)
@@ -278,7 +279,7 @@ def cut_run(
     return tuple(out)
 
 
-def compound_of(word: str, tongue: Language) -> tuple[str, ...]:
+def split_compound(word: str, tongue: WordLanguage) -> tuple[str, ...]:
     """Cut a word into parts that a language knows, into as few as possible."""
     best: dict[int, tuple[str, ...]] = {0: ()}
     for end in range(2, len(word) + 1):

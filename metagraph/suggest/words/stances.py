@@ -8,16 +8,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from metagraph.common.wording import phrase
-from metagraph.suggest.words.cut import written
+from metagraph.suggest.words.cut import as_written
 from metagraph.suggest.words.patterns import Patterns
 from metagraph.suggest.words.tokens import (
-    Taken,
+    TakenName,
+    drop_numbers,
     is_designator,
-    is_number,
+    is_number_word,
     phrases,
     stem,
     variant,
-    without_numbers,
 )
 
 Words = tuple[str, ...]
@@ -105,14 +105,14 @@ class FoundStance:
 
 def label(words: Sequence[str]) -> str:
     """Return the stance as people write it: without a leading "body", numbers without zeros."""
-    told = written(words[1:] if len(words) > 1 and words[0] in _BARE else words)
-    return " ".join(str(int(w)) if is_number(w) and len(w) < 10 else w for w in told)
+    told = as_written(words[1:] if len(words) > 1 and words[0] in _BARE else words)
+    return " ".join(str(int(w)) if is_number_word(w) and len(w) < 10 else w for w in told)
 
 
 class Stances:
     """The stances of a batch, found once, asked for by how a name begins or by the words of an end."""
 
-    def __init__(self, batch: Sequence[Taken], patterns: Patterns) -> None:
+    def __init__(self, batch: Sequence[TakenName], patterns: Patterns) -> None:
         self._patterns = patterns
         self._kinds = patterns.meanings["kinds"]
         self._joins = patterns.meanings["joins"]
@@ -197,7 +197,7 @@ class Stances:
         elif self._kinds.get(core[0]) == "stance" and not self._acts(core) and self.postural(core[1:]):
             self._add(core, 0.95, core[0], core, words)
         elif self.postural(core) and not self._acts(core):
-            self._add(core, 0.7, " ".join(written(core)), core, words)
+            self._add(core, 0.7, " ".join(as_written(core)), core, words)
 
     def _passes_over(self, rest: Words) -> bool:
         """Whether words before "idle" tell a transition ("walk to idle") and not a stance ("hand to chin
@@ -222,7 +222,7 @@ class Stances:
         while at < len(words):
             if at in postures and (at not in starts or postures[at].end >= starts[at].end):
                 at, told = postures[at].end, True
-            elif at in starts or not (words[at] in _PARTS or (told and is_number(words[at]))):
+            elif at in starts or not (words[at] in _PARTS or (told and is_number_word(words[at]))):
                 break
             elif words[at] in self._joins and at + 1 in postures:
                 break  # "sit 2 stand"
@@ -250,7 +250,7 @@ class Stances:
         doing = [r for r in rests if self._acts(r) or r[0] in self._joins]
         return len(doing) > 1 and 2 * len(doing) >= len(rests)
 
-    def _heads(self, distinct: Sequence[Taken]) -> None:
+    def _heads(self, distinct: Sequence[TakenName]) -> None:
         """Beginnings before a double underscore, and beginnings that tell a posture."""
         heads: dict[Words, int] = {}
         for taken in distinct:
@@ -281,7 +281,7 @@ class Stances:
                 or any(self._bare(run) == self._bare(s.words) for s in self.found.values())
             ):
                 bare = run[:-1] if len(run) > 1 and self._kinds.get(run[-1]) == "stance" else run
-                self._add(bare, 0.75, " ".join(written(run)), run)
+                self._add(bare, 0.75, " ".join(as_written(run)), run)
 
     def _trimmed(self, run: Words) -> Words:
         """Leave out what belongs to the act that follows: numbers and body parts, "idle finger" of "idle
@@ -293,7 +293,7 @@ class Stances:
             run = run[:-1]
         return run
 
-    def _passed_between(self, distinct: Sequence[Taken]) -> None:
+    def _passed_between(self, distinct: Sequence[TakenName]) -> None:
         """Stances that only transitions name: the other end of one that is known, or both where there is a
         way back.
         """
@@ -315,7 +315,7 @@ class Stances:
                 and not self._other(end)
                 and not self._sister(end)
             ):
-                self._add(end, 0.7, " ".join(written((joined, *end))), end)
+                self._add(end, 0.7, " ".join(as_written((joined, *end))), end)
 
     def _sister(self, end: Words) -> bool:
         """Whether an end is short for a stance that is known: "tilt left" for "head tilt left"."""
@@ -328,7 +328,7 @@ class Stances:
     def _only_number(self, words: Words) -> bool:
         return variant(words) == len(words)
 
-    def _designated(self, distinct: Sequence[Taken]) -> None:
+    def _designated(self, distinct: Sequence[TakenName]) -> None:
         """Stances called alike but for a number or letter ("idle 1", "idle 2", "sit a") are different ones
         where clips go on from one or pass into it, whether or not they have clips of their own.
         """
@@ -348,7 +348,7 @@ class Stances:
             if len(mine) < 2 or not any(mine.values()):
                 continue
             held = self.found.get(core)
-            confidence, why = (held.confidence, held.why) if held else (0.75, " ".join(written(core)))
+            confidence, why = (held.confidence, held.why) if held else (0.75, " ".join(as_written(core)))
             for mark in mine:
                 if held is not None:
                     held.prefixes.discard((*core, mark))
@@ -429,7 +429,7 @@ class Stances:
         asked = self._bare(words)
         marks = _marks(words)
         if not asked:
-            whole = [w for w in words if not is_number(w)]
+            whole = [w for w in words if not is_number_word(w)]
             plain = [s for s in self.found.values() if whole and s.words == tuple(whole)]
             return (plain[0], 0.95) if plain else None
         best: tuple[tuple[float, float, int, Words], FoundStance] | None = None
@@ -458,7 +458,7 @@ class Stances:
         """Return the words by which stances are compared: stems, without numbers and "idle"."""
         known = self._bares.get(words)
         if known is None:
-            kept = [w for w in without_numbers(words) if self._kinds.get(w) != "stance" and w not in _BARE]
+            kept = [w for w in drop_numbers(words) if self._kinds.get(w) != "stance" and w not in _BARE]
             known = self._bares[words] = tuple(stem(w) for w in kept)
         return known
 
@@ -472,7 +472,7 @@ class Stances:
     def low(self, words: Sequence[str] = ()) -> FoundStance | None:
         """Return the stance of sitting or lying that words speak of; without any, the only one there is."""
         there = [s for s in self.found.values() if is_low(s.words)]
-        told = {stem(w) for w in without_numbers(words)}
+        told = {stem(w) for w in drop_numbers(words)}
         verb = told & set(_STEMS_DOWN)
         fitting = [s for s in there if not verb or verb & {stem(w) for w in s.words}]
         if not fitting or (len(fitting) > 1 and not verb):
@@ -496,7 +496,7 @@ def is_low(words: Sequence[str]) -> bool:
     return any(stem(w) in _STEMS_DOWN for w in words)
 
 
-def _followers(distinct: Sequence[Taken]) -> dict[Words, int]:
+def _followers(distinct: Sequence[TakenName]) -> dict[Words, int]:
     """For every name's words: how many other names begin with them and go on with more than a number."""
     own = {t.words for t in distinct}
     out: dict[Words, int] = {}

@@ -10,11 +10,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
-from metagraph.suggest.words.cut import Token, Word, tokens, written
+from metagraph.suggest.words.cut import EnglishWord, Token, as_written, cut_tokens
 from metagraph.suggest.words.defaults import Meanings
-from metagraph.suggest.words.heard import spoken
+from metagraph.suggest.words.heard import find_spoken_languages
 from metagraph.suggest.words.patterns import Patterns
-from metagraph.suggest.words.spoken import Spoken, english_words
+from metagraph.suggest.words.spoken import SpokenLanguages, english_words
 
 _EXTENSION = re.compile(r"\.(?:fbx|bvh|glb|gltf|anim|dae|c3d|ma|mb|blend|uasset)$", re.IGNORECASE)
 _LONGEST = 4  # words in a phrase
@@ -24,7 +24,7 @@ _GLUED = range(6, 25)  # letters of a word that may be several written as one
 
 
 @dataclass(frozen=True, slots=True)
-class Taken:
+class TakenName:
     """words: lower case, numbers without leading zeros. splits: how many words stand before each double
     underscore.
     """
@@ -37,13 +37,13 @@ class Taken:
         """How many words stand before the first double underscore, 0 without one."""
         return self.splits[0] if self.splits else 0
 
-    def without(self, count: int) -> Taken:
+    def without(self, count: int) -> TakenName:
         """Return what is left without the first words."""
-        return Taken(self.words[count:], tuple(n - count for n in self.splits if n > count))
+        return TakenName(self.words[count:], tuple(n - count for n in self.splits if n > count))
 
 
 @dataclass(frozen=True, slots=True)
-class Phrase:
+class FoundPhrase:
     """A phrase found at words[start:end]."""
 
     start: int
@@ -52,7 +52,7 @@ class Phrase:
     meaning: str
 
 
-def take_apart(name: str, patterns: Patterns, speech: Spoken | None = None) -> Taken:
+def split_clip_name(name: str, patterns: Patterns, speech: SpokenLanguages | None = None) -> TakenName:
     """Split a name into words, leaving out file endings and what exporters add ("Armature|mixamo.com|Layer0",
     "Take 001"). speech: the languages its batch speaks, None for English alone.
     """
@@ -62,7 +62,7 @@ def take_apart(name: str, patterns: Patterns, speech: Spoken | None = None) -> T
     for segment in [s for s in segments if any(not w.isdecimal() for w in s.words)] or segments:
         splits += (len(words) + n for n in segment.splits)
         words += segment.words
-    return Taken(tuple(words), tuple(splits))
+    return TakenName(tuple(words), tuple(splits))
 
 
 def _parts(name: str) -> list[tuple[str, int]]:
@@ -71,11 +71,11 @@ def _parts(name: str) -> list[tuple[str, int]]:
     return [(found[0], found.start()) for found in re.finditer(r"[^|:]+", bare)] or [(bare, 0)]
 
 
-def speech_of(names: Sequence[str], patterns: Patterns) -> Spoken | None:
+def find_name_languages(names: Sequence[str], patterns: Patterns) -> SpokenLanguages | None:
     """Return what languages names speak beside English, None where they are English alone."""
-    return spoken(
+    return find_spoken_languages(
         [
-            [t for part, at in _parts(name) for t in tokens(part, at) if isinstance(t, Token)]
+            [t for part, at in _parts(name) for t in cut_tokens(part, at) if isinstance(t, Token)]
             for name in names
         ],
         patterns,
@@ -87,7 +87,9 @@ def _number(piece: str) -> str:
     return str(int(piece)) if piece.isdecimal() and len(piece) < 10 else piece
 
 
-def _segment(text: str, patterns: Patterns, speech: Spoken | None = None, offset: int = 0) -> Taken:
+def _segment(
+    text: str, patterns: Patterns, speech: SpokenLanguages | None = None, offset: int = 0
+) -> TakenName:
     words: list[str] = []
     splits: list[int] = []
     said: list[Token] = []
@@ -103,7 +105,7 @@ def _segment(text: str, patterns: Patterns, speech: Spoken | None = None, offset
             words.extend(speech.read(said, english, patterns.meanings))
         said.clear()
 
-    for piece in tokens(text, offset):
+    for piece in cut_tokens(text, offset):
         if isinstance(piece, Token):
             said.append(piece)
         elif "__" in piece.text:
@@ -116,12 +118,12 @@ def _segment(text: str, patterns: Patterns, speech: Spoken | None = None, offset
         del words[-n:]
     if len(words) > 1 and words[-1].isdecimal() and words[-2] in junk and " ".join(words[-3:-1]) not in kinds:
         if len(words) == 2 and words[0] != "take":
-            return Taken(())  # "Layer0" counts nothing
+            return TakenName(())  # "Layer0" counts nothing
         del words[-2]  # "Shrug_Take2": the number stays
-    return _without_junk(Taken(tuple(words), tuple(n for n in splits if n < len(words))), patterns)
+    return _without_junk(TakenName(tuple(words), tuple(n for n in splits if n < len(words))), patterns)
 
 
-def _without_junk(taken: Taken, patterns: Patterns) -> Taken:
+def _without_junk(taken: TakenName, patterns: Patterns) -> TakenName:
     """Leave out what exporters write before a name, unless it is part of a phrase ("take item")."""
     junk = patterns.meanings["junk"]
     while (n := _junk_at(taken.words, junk, front=True)) and (
@@ -166,7 +168,7 @@ def _unglued(word: str, vocabulary: frozenset[str]) -> tuple[str, ...]:
     return best.get(len(word), (word,))
 
 
-def without_shared(taken: Sequence[Taken], patterns: Patterns) -> list[Taken]:
+def drop_shared_words(taken: Sequence[TakenName], patterns: Patterns) -> list[TakenName]:
     """Leave out the words names begin with (a character, a project) as far as they tell nothing apart: words
     nobody knows that nearly all begin with, and any but those of posture that all do. A name keeps one word
     at least.
@@ -180,7 +182,7 @@ def without_shared(taken: Sequence[Taken], patterns: Patterns) -> list[Taken]:
     return out
 
 
-def _shared_first(taken: Sequence[Taken], patterns: Patterns) -> str | None:
+def _shared_first(taken: Sequence[TakenName], patterns: Patterns) -> str | None:
     """Return the word that names begin with and that says nothing of any, None where there is none."""
     named = [t.words for t in taken if t.words and not _is_other(t.words, patterns)]
     if len(named) < 2:
@@ -206,15 +208,15 @@ def _is_other(words: Sequence[str], patterns: Patterns) -> bool:
     return bool(found) and all(p.meaning == "other" for p in found)
 
 
-def phrases(words: Sequence[str], table: Meanings) -> list[Phrase]:
+def phrases(words: Sequence[str], table: Meanings) -> list[FoundPhrase]:
     """Find the table's phrases, from the left, the longest first, none overlapping."""
-    out: list[Phrase] = []
+    out: list[FoundPhrase] = []
     at = 0
     while at < len(words):
         for n in range(min(_LONGEST, len(words) - at), 0, -1):
             text = " ".join(words[at : at + n])
             if text in table:
-                out.append(Phrase(at, at + n, text, table[text]))
+                out.append(FoundPhrase(at, at + n, text, table[text]))
                 at += n
                 break
         else:
@@ -222,7 +224,7 @@ def phrases(words: Sequence[str], table: Meanings) -> list[Phrase]:
     return out
 
 
-def quoted(name: str, words: Sequence[str], taken: Taken | None = None) -> str:
+def quote_words(name: str, words: Sequence[str], taken: TakenName | None = None) -> str:
     """Return words in quotes as the name writes them, or plainly where they do not stand together in it.
     taken: the name taken apart, to find words of other languages by the English ones they stand for.
     """
@@ -231,21 +233,21 @@ def quoted(name: str, words: Sequence[str], taken: Taken | None = None) -> str:
     for at in range(len(there) - n, -1, -1) if n else ():
         if tuple(words) != there[at : at + n]:
             continue
-        some = [w for w in there[at : at + n] if isinstance(w, Word)]
+        some = [w for w in there[at : at + n] if isinstance(w, EnglishWord)]
         if len(some) == n:
             return f"'{name[min(w.start for w in some) : max(w.end for w in some)]}'"
-        words = written(there[at : at + n])
+        words = as_written(there[at : at + n])
         break
     parts = (f"0*{word}" if word.isdecimal() else re.escape(word) for word in words)
     found = list(re.finditer(r"[\W_]*".join(parts), name, re.IGNORECASE)) if words else []
     return f"'{found[-1][0]}'" if found else f"'{' '.join(words)}'"
 
 
-def is_number(word: str) -> bool:
+def is_number_word(word: str) -> bool:
     return word.isdecimal()
 
 
-def without_numbers(words: Iterable[str]) -> tuple[str, ...]:
+def drop_numbers(words: Iterable[str]) -> tuple[str, ...]:
     return tuple(w for w in words if not w.isdecimal())
 
 

@@ -16,7 +16,7 @@ from metagraph.synthesis.kernels import compiled_exactly
 Array = Any
 
 
-class Shown(NamedTuple):
+class KnownStates(NamedTuple):
     """What is known of states. kinds `[F]` uint8: bits of what was heard there. events `[F]` uint8: STRESS
     and EDGE. stops `[F]`: the first state behind a run that goes through each. recent `[F]` float32: 1 where
     it was shown a moment ago, less where that is longer ago.
@@ -89,7 +89,7 @@ def _noise(random: Any, number: Any) -> Any:
 
 
 @compiled_exactly
-def extend(
+def extend_path(
     state: Any, since: Any, met: Any, links: Any, shown: Any, prices: Any, rules: Array, least: Any,
     tries: Any, work: Any, random: Any, lines: Array, nodes: Any,
 ) -> Any:  # fmt: skip

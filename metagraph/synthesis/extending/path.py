@@ -20,7 +20,7 @@ from metagraph.synthesis.extending.speech_so_far import LATE, SpeechNews, Speech
 from metagraph.synthesis.graph import MotionGraph
 from metagraph.synthesis.search.lookups import CHEAPEST
 from metagraph.synthesis.search.path import Path
-from metagraph.synthesis.search.ruled_search import JumpRules, ruled
+from metagraph.synthesis.search.ruled_search import JumpRules, apply_rules
 from metagraph.synthesis.states import States, SynthesisError, terms_of
 
 Array = NDArray[Any]
@@ -84,7 +84,7 @@ def driver_graph(graph: MotionGraph, heard: HeardStates, rules: ExtendingRules |
     """Return a graph made ready: no way through it comes to an end. Raises SynthesisError where nothing is
     left of it to move with.
     """
-    from metagraph.synthesis.search.greedy_search_kernels import next_of
+    from metagraph.synthesis.search.greedy_search_kernels import find_next_marked
 
     rules = ExtendingRules() if rules is None else rules
     if not len(graph.keys) or graph.kept.sum() < 2:
@@ -95,8 +95,8 @@ def driver_graph(graph: MotionGraph, heard: HeardStates, rules: ExtendingRules |
         )
     last = graph.states.last.copy()
     last[:-1] |= graph.kept[:-1] & ~graph.kept[1:]
-    stops = (next_of(last) + 1).astype(np.int32)
-    return DriverGraph(graph, heard, _ways_out(ruled(graph, rules.jumps), last), stops, rules)
+    stops = (find_next_marked(last) + 1).astype(np.int32)
+    return DriverGraph(graph, heard, _ways_out(apply_rules(graph, rules.jumps), last), stops, rules)
 
 
 def _ways_out(graph: MotionGraph, last: Array) -> MotionGraph:
@@ -139,7 +139,7 @@ class PathExtender:
     """
 
     def __init__(self, graph: DriverGraph, seed: int = 1) -> None:
-        from metagraph.synthesis.extending.extension_kernels import Shown
+        from metagraph.synthesis.extending.extension_kernels import KnownStates
         from metagraph.synthesis.search.greedy_search_kernels import Links, cheapest
 
         self.graph, self.rules, self.seed = graph, graph.rules, seed
@@ -153,7 +153,7 @@ class PathExtender:
         events = STRESS * graph.heard.happens(STRESS) | EDGE * graph.heard.happens(EDGE)
         self._events = events.astype(np.uint8)
         self._recent = np.zeros(len(graph.states), np.float32)
-        self._shown = Shown(graph.heard.kinds, self._events, graph.stops, self._recent)
+        self._shown = KnownStates(graph.heard.kinds, self._events, graph.stops, self._recent)
         self._lines = np.full(len(graph.states) + self.rules.horizon + 1, np.inf, np.float32)
         self._searched = -(10**6)
         self._first = 0  # the frame of the first state that is kept
@@ -195,7 +195,7 @@ class PathExtender:
 
     def _search(self, first: int) -> None:
         """Plan anew from a frame on, or from where the plan ends before."""
-        from metagraph.synthesis.extending.extension_kernels import Prices, extend
+        from metagraph.synthesis.extending.extension_kernels import Prices, extend_path
 
         first = max(self._first + 1, min(first, self.end))
         self._searched, self.speech.changed = self.frame, False
@@ -227,7 +227,7 @@ class PathExtender:
             [rules.again * limit, MISSING * limit, AHEAD * limit / RATE, LOOK, NOISE * limit], np.float32
         )
         random = np.uint64((self.seed * 0x9E3779B97F4A7C15 + self.found * 0xD1342543DE82EF95) & (2**64 - 1))
-        way, _, self.spent, _ = extend(
+        way, _, self.spent, _ = extend_path(
             state,
             since,
             False,
@@ -255,7 +255,7 @@ class PathExtender:
         self.speech.forget((self.frame / RATE) - BEHIND)
 
 
-def replayed(graph: DriverGraph, told: Sequence[Told], frames: int, seed: int = 1) -> Path:
+def replay_path(graph: DriverGraph, told: Sequence[Told], frames: int, seed: int = 1) -> Path:
     """Return the path that was extended so far when this was told: the same, frame by frame. told: by frame;
     frames: how many were shown.
     """

@@ -18,7 +18,7 @@ STEPS = 64  # of costs
 
 
 @compiled
-def counted(targets: Array, states: Any) -> Array:
+def count_transitions(targets: Array, states: Any) -> Array:
     """Return `[F + 1]` where each state's transitions begin once they are turned round: states are numbered
     from the last one then.
     """
@@ -31,7 +31,7 @@ def counted(targets: Array, states: Any) -> Array:
 
 
 @compiled
-def turned(starts: Array, targets: Array, costs: Array, at: Array, out: Array, prices: Array) -> None:
+def turn_round(starts: Array, targets: Array, costs: Array, at: Array, out: Array, prices: Array) -> None:
     """Write the transitions turned round to out and prices `[E]`. at `[F]`: where each state's begin;
     changed.
     """
@@ -44,7 +44,7 @@ def turned(starts: Array, targets: Array, costs: Array, at: Array, out: Array, p
 
 
 @compiled
-def arranged(
+def arrange_by_class(
     starts: Array,
     targets: Array,
     costs: Array,

@@ -28,7 +28,7 @@ from metagraph.synthesis.search.exact_search_links import SearchLinks, both_ways
 from metagraph.synthesis.search.exact_search_problem import SearchProblem
 from metagraph.synthesis.search.exact_search_sweep import Foresight, Sweep
 from metagraph.synthesis.search.frame_costs import FrameCosts
-from metagraph.synthesis.search.path import Cancelled, Path, go_on, jumps_of
+from metagraph.synthesis.search.path import Cancelled, Path, check_cancelled, jumps_of
 from metagraph.synthesis.states import SynthesisError
 
 Array = NDArray[Any]
@@ -41,7 +41,7 @@ REUSED = 0.3  # of a bound, at least, that what was foreseen for a lower one doe
 EACH = 2.0**-22  # of a bound: sums of 32 bits that are made forwards and backwards differ by less, a frame
 
 
-def best(
+def find_best_path(
     graph: MotionGraph,
     heard: HeardStates,
     wanted: WantedSegment,
@@ -67,7 +67,7 @@ def best(
         for bound in bounds:
             with suppress(SynthesisError):
                 return search.within(min(bound, search.through) * ROUND + 1e-6)
-            go_on(cancelled)
+            check_cancelled(cancelled)
         return search.within(float("inf"))
 
 
@@ -118,7 +118,7 @@ class ExactSearch:
             sweep.forwards()
             self.through = float(sweep.cost.min())
         self._exact = sweep.exact
-        go_on(self._cancelled)
+        check_cancelled(self._cancelled)
         return self.through
 
     def within(self, bound: float) -> Path:

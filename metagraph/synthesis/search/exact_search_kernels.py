@@ -33,7 +33,7 @@ def foresee(codes: Array, costs: Array, crossing: Any, otherwise: Any, ahead: Ar
 
 
 @compiled_exactly
-def forget(codes: Array, otherwise: Any, ahead: Array) -> None:
+def undo_foresight(codes: Array, otherwise: Any, ahead: Array) -> None:
     """Undo what `foresee` wrote."""
     states = len(ahead) // 2
     for n in range(len(codes)):
@@ -81,7 +81,7 @@ def weigh(cost: Array, alive: Array, starts: Array, reach: Any, width: Any) -> A
 
 
 @compiled_exactly
-def least_of(cost: Array, alive: Array, classes: Array, count: Any) -> Array:
+def find_least(cost: Array, alive: Array, classes: Array, count: Any) -> Array:
     """Return `[2, C]` what the cheapest of each class costs, without and with the event met; infinite where
     nobody is. classes `[F]`: of states.
     """
@@ -161,7 +161,7 @@ def leap(
 
 
 @compiled_exactly
-def draw(
+def draw_leap(
     cost: Array,
     lowest: Any,
     landed: Array,
@@ -239,7 +239,7 @@ def land(landed: Array, reached: Array, before: Array) -> None:
 
 
 @compiled_exactly
-def follow(
+def follow_takes(
     cost: Array,
     alive: Array,
     then: Array,

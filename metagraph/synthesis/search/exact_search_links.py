@@ -64,7 +64,12 @@ def both_ways(
 def _arranged(
     graph: MotionGraph, classes: StateClasses, other: ThreadPoolExecutor
 ) -> tuple[SearchLinks, SearchLinks]:
-    from metagraph.synthesis.search.exact_links_kernels import STEPS, arranged, counted, turned
+    from metagraph.synthesis.search.exact_links_kernels import (
+        STEPS,
+        arrange_by_class,
+        count_transitions,
+        turn_round,
+    )
 
     states, count = len(graph.states), classes.count
     cheapest, dearest = graph.costs.min(initial=np.inf), float(graph.costs.max(initial=0.0))
@@ -72,14 +77,14 @@ def _arranged(
 
     def made(starts: Array, links: tuple[Array, Array], of: Array, room: tuple[Array, Array]) -> Made:
         firsts = np.empty(states * (count + 1), np.int64)
-        arranged(starts, *links, of, count, width, *room, firsts)
+        arrange_by_class(starts, *links, of, count, width, *room, firsts)
         return firsts, *room
 
     links = graph.targets, graph.costs
     there = other.submit(made, graph.starts, links, classes.of_state, _room(len(graph.targets)))
-    starts = counted(graph.targets, states)
+    starts = count_transitions(graph.targets, states)
     turning = _room(len(graph.targets))
-    turned(graph.starts, *links, starts[:-1].copy(), *turning)
+    turn_round(graph.starts, *links, starts[:-1].copy(), *turning)
     back: Future[Made] = Future()
     back.set_result(made(starts, turning, np.ascontiguousarray(classes.of_state[::-1]), turning))
     leaving, entered = (

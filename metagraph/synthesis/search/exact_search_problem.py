@@ -92,9 +92,9 @@ class SearchProblem:
     @cached_property
     def upcoming(self) -> Array:
         """`[2, F]` the next state that is such an event, from each on."""
-        from metagraph.synthesis.search.greedy_search_kernels import next_of
+        from metagraph.synthesis.search.greedy_search_kernels import find_next_marked
 
-        return np.stack([next_of(row) for row in self.happening])
+        return np.stack([find_next_marked(row) for row in self.happening])
 
     @cached_property
     def spans(self) -> list[tuple[int, int, int]]:

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from metagraph.synthesis.search.exact_search_links import SearchLinks
 from metagraph.synthesis.search.exact_search_problem import SearchProblem
 from metagraph.synthesis.search.frame_costs import PaidAlong
-from metagraph.synthesis.search.lookups import closes_at
-from metagraph.synthesis.search.path import Cancelled, go_on, stuck
+from metagraph.synthesis.search.lookups import is_due_at
+from metagraph.synthesis.search.path import Cancelled, check_cancelled, stuck
 from metagraph.synthesis.states import SynthesisError
 
 Array = NDArray[Any]
@@ -177,9 +177,9 @@ class Sweep:
 
     def _step(self, t: int) -> bool:
         """Come from the frame before to frame t; return whether anybody was there."""
-        from metagraph.synthesis.search.exact_search_kernels import arrive, follow, land
+        from metagraph.synthesis.search.exact_search_kernels import arrive, follow_takes, land
 
-        go_on(self._cancelled)
+        check_cancelled(self._cancelled)
         problem, run, frames = self._problem, self._run, len(self._problem.wanted)
         self._pay()
         some, place = self._number > 0, t % run
@@ -187,7 +187,7 @@ class Sweep:
         if self._paid is not None:
             self._paid.go_on(t)
             land(self._landed[place], self._reached[place], self._paid.before)
-        self._number = follow(
+        self._number = follow_takes(
             self.cost,
             self.alive,
             self._then,
@@ -227,7 +227,13 @@ class Sweep:
 
     def _leap(self, t: int, place: int) -> None:
         """Jump to arrive at frame t."""
-        from metagraph.synthesis.search.exact_search_kernels import draw, forget, leap, least_of, weigh
+        from metagraph.synthesis.search.exact_search_kernels import (
+            draw_leap,
+            find_least,
+            leap,
+            undo_foresight,
+            weigh,
+        )
 
         problem, classes = self._problem, self._problem.classes
         landed, sources = self._landed[place], self._sources[place]
@@ -238,8 +244,8 @@ class Sweep:
         ahead = (problem.ahead[t], min(self._run, len(problem.ahead) - t), self._ahead)
         number = 0
         if work > DRAWN * len(self._opposite.leaving) * len(self._links.leaving) / max(low, 1):
-            lowest = least_of(self._whole, self.alive, classes.of_state, classes.count)
-            number, through = draw(
+            lowest = find_least(self._whole, self.alive, classes.of_state, classes.count)
+            number, through = draw_leap(
                 self._whole,
                 lowest,
                 landed,
@@ -278,7 +284,7 @@ class Sweep:
             self._bound = min(self._bound, through * self._slack)
         self._reached[place] = self._room[:number].copy()
         if len(codes):
-            forget(codes, self._unknown, self._ahead)
+            undo_foresight(codes, self._unknown, self._ahead)
 
     def _narrowed(self, reach: Any) -> tuple[Array, Any]:
         """Return who jumps, and what nobody may cost more than by then."""
@@ -308,5 +314,5 @@ class Sweep:
         """Forget ways on which the event was not met whose window ends; the others begin anew."""
         from metagraph.synthesis.search.exact_search_kernels import close
 
-        if closes_at(self._problem.wanted, t):
+        if is_due_at(self._problem.wanted, t):
             self._number = close(self.cost, self.alive, self._back, self.runs)

@@ -70,7 +70,7 @@ class FrameCosts:
         return {kind.name: kind.paid(np.asarray(way)) for kind in self.kinds}
 
 
-def together(kinds: Iterable[FrameCost | None]) -> FrameCosts | None:
+def join_costs(kinds: Iterable[FrameCost | None]) -> FrameCosts | None:
     """Return kinds of costs as one, None where nothing is charged. Raises SynthesisError where they would not
     fit into memory.
     """

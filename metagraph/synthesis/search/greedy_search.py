@@ -17,8 +17,8 @@ from metagraph.suggest.tracks import RATE
 from metagraph.synthesis.constraints import HeardStates, WantedSegment
 from metagraph.synthesis.graph import MotionGraph
 from metagraph.synthesis.search.frame_costs import FrameCosts
-from metagraph.synthesis.search.lookups import charges_of, fits_of, links_of, speech_of
-from metagraph.synthesis.search.path import Cancelled, Path, go_on, jumps_of, stuck
+from metagraph.synthesis.search.lookups import charges_of, cheapest_links, find_fitting_states, look_up_speech
+from metagraph.synthesis.search.path import Cancelled, Path, check_cancelled, jumps_of, stuck
 from metagraph.synthesis.states import SynthesisError
 
 Array = NDArray[Any]
@@ -82,12 +82,12 @@ def greedy(
     *first, last = width.deeper()
     for wide in first:
         with suppress(SynthesisError):
-            return greedy_once(graph, heard, wanted, seed, wide, cancelled, run, charged)
-        go_on(cancelled)
-    return greedy_once(graph, heard, wanted, seed, last, cancelled, run, charged)
+            return search_greedily_once(graph, heard, wanted, seed, wide, cancelled, run, charged)
+        check_cancelled(cancelled)
+    return search_greedily_once(graph, heard, wanted, seed, last, cancelled, run, charged)
 
 
-def greedy_once(
+def search_greedily_once(
     graph: MotionGraph,
     heard: HeardStates,
     wanted: WantedSegment,
@@ -103,12 +103,16 @@ def greedy_once(
     from metagraph.synthesis.search.greedy_search_kernels import segment
 
     frames, chance = len(wanted), np.random.default_rng(seed)
-    fits = np.flatnonzero(fits_of(graph, heard, wanted, 0))
+    fits = np.flatnonzero(find_fitting_states(graph, heard, wanted, 0))
     if not len(fits):
         raise SynthesisError(stuck(0))
     own = np.sort(chance.choice(fits, min(STARTS * width.saved, len(fits)), replace=False)).astype(np.int32)
     at, cost, met = np.zeros(len(own), np.int32), np.zeros(len(own), np.float32), np.zeros(len(own), bool)
-    links, speech, charges = links_of(graph), speech_of(graph, heard, wanted), charges_of(charged, frames)
+    links, speech, charges = (
+        cheapest_links(graph),
+        look_up_speech(graph, heard, wanted),
+        charges_of(charged, frames),
+    )
     best_at = np.full(2 * len(graph.states), -1, np.int32)
     ahead = AHEAD * graph.threshold.limit / RATE
     random = np.uint64(chance.integers(1 << 62))
@@ -116,7 +120,7 @@ def greedy_once(
     tree = [(np.full(count, -1), at, own)]
     t0 = 0
     for t1 in _stretches(wanted):
-        go_on(cancelled)
+        check_cancelled(cancelled)
         off, ats, owns, _, found, paid, random = segment(
             t0,
             t1,

@@ -15,7 +15,7 @@ from metagraph.synthesis.kernels import compiled, compiled_exactly
 Array = Any
 
 
-class Speech(NamedTuple):
+class WantedSpeech(NamedTuple):
     """What is wanted, as runs look it up. Stretches `[S]` are frames that want the same.
 
     stretch `[T]`: which one a frame is in. ends `[S]`: the frame after each. rows `[S]`: its row of until
@@ -62,7 +62,7 @@ class Charges(NamedTuple):
 
 
 @compiled
-def charged(t: Any, after: Any, state: Any, charges: Any) -> Any:
+def charge_frames(t: Any, after: Any, state: Any, charges: Any) -> Any:
     """Return what the frames t .. after - 1 cost of a run that is in a state at frame t."""
     total = 0.0
     while t < after:
@@ -76,7 +76,7 @@ def charged(t: Any, after: Any, state: Any, charges: Any) -> Any:
 
 
 @compiled
-def until_of(fits: Array, last: Array) -> Array:
+def find_next_until(fits: Array, last: Array) -> Array:
     """Return `[F]` the first state from each on, itself included, that does not fit, or is past the take."""
     out = np.empty(len(fits), np.int32)
     end = len(fits)
@@ -90,7 +90,7 @@ def until_of(fits: Array, last: Array) -> Array:
 
 
 @compiled
-def next_of(marked: Array) -> Array:
+def find_next_marked(marked: Array) -> Array:
     """Return `[F]` the first marked state from each on, itself included; F where there is none."""
     out = np.empty(len(marked), np.int32)
     at = len(marked)
@@ -262,7 +262,7 @@ def segment(
                 through = _met(begin, t1, state, met, speech)
                 all_of_it = so_far
                 if paying:
-                    all_of_it += charged(begin, t1, state, charges)
+                    all_of_it += charge_frames(begin, t1, state, charges)
                 count = _note(
                     run, all_of_it, -1, state, end, state + t1 - 1 - begin, through, count, found, paid, best
                 )
@@ -277,7 +277,7 @@ def segment(
                     row = speech.events[speech.stretch[t]]
                     met = not speech.closes[t] and (met or speech.peak_at[row, x] == x)
                 if paying and t >= begin:
-                    so_far += charged(t, t + 1, x, charges)
+                    so_far += charge_frames(t, t + 1, x, charges)
                 if at[run] > 0 and t - at[run] + 1 < least:  # it came here a moment ago
                     continue
                 first, after = links.starts[x], links.starts[x + 1]
@@ -306,7 +306,7 @@ def segment(
                     if far >= t1:
                         through = _met(t + 1, t1, target, met, speech)
                         if paying:
-                            total += charged(t + 1, t1, target, charges)
+                            total += charge_frames(t + 1, t1, target, charges)
                         count = _note(
                             run,
                             total,
@@ -325,7 +325,7 @@ def segment(
                         chance = np.float32(random >> np.uint64(40)) / np.float32(1 << 24)
                         dear = links.costs[place]
                         if paying:
-                            dear += charged(t + 1, min(far, t1), target, charges)
+                            dear += charge_frames(t + 1, min(far, t1), target, charges)
                         worth = dear / (far - end) * (np.float32(0.5) + chance)
                         spot = picks
                         if picks == branches:

@@ -16,7 +16,7 @@ from metagraph.synthesis.graph import MotionGraph
 from metagraph.synthesis.search.frame_costs import FrameCosts
 
 if TYPE_CHECKING:
-    from metagraph.synthesis.search.greedy_search_kernels import Charges, Links, Speech
+    from metagraph.synthesis.search.greedy_search_kernels import Charges, Links, WantedSpeech
 
 Array = NDArray[Any]
 
@@ -26,7 +26,7 @@ EVENTS = (STRESS, EDGE)  # in the order of rows that are looked up
 _LINKS: WeakKeyDictionary[MotionGraph, Links] = WeakKeyDictionary()
 
 
-def links_of(graph: MotionGraph) -> Links:
+def cheapest_links(graph: MotionGraph) -> Links:
     """Return a graph's transitions, and the cheapest of each state; those are looked for once."""
     from metagraph.synthesis.search.greedy_search_kernels import Links, cheapest
 
@@ -39,9 +39,13 @@ def links_of(graph: MotionGraph) -> Links:
     return found
 
 
-def speech_of(graph: MotionGraph, heard: HeardStates, wanted: WantedSegment) -> Speech:
+def look_up_speech(graph: MotionGraph, heard: HeardStates, wanted: WantedSegment) -> WantedSpeech:
     """Return what is wanted as the greedy search looks it up."""
-    from metagraph.synthesis.search.greedy_search_kernels import Speech, next_of, until_of
+    from metagraph.synthesis.search.greedy_search_kernels import (
+        WantedSpeech,
+        find_next_marked,
+        find_next_until,
+    )
 
     events = np.array([EVENTS.index(wanted.event(t)) for t in range(len(wanted))], np.int32)
     barred = np.array([wanted.bars(t) for t in range(len(wanted))], np.uint8)
@@ -55,10 +59,12 @@ def speech_of(graph: MotionGraph, heard: HeardStates, wanted: WantedSegment) -> 
     alike = np.stack([wanted.allowed[begins], barred[begins], only[begins]], 1)
     _, firsts, rows = np.unique(alike, axis=0, return_index=True, return_inverse=True)
     last = graph.states.last
-    until = np.stack([until_of(fits_of(graph, heard, wanted, int(t)), last) for t in begins[firsts]])
-    stresses, closes = wanted.window >= 0, np.array([closes_at(wanted, t) for t in range(len(wanted))])
+    until = np.stack(
+        [find_next_until(find_fitting_states(graph, heard, wanted, int(t)), last) for t in begins[firsts]]
+    )
+    stresses, closes = wanted.window >= 0, np.array([is_due_at(wanted, t) for t in range(len(wanted))])
     stretch = (np.cumsum(new) - 1).astype(np.int32)
-    return Speech(
+    return WantedSpeech(
         stretch,
         ends,
         rows.reshape(-1),
@@ -68,8 +74,8 @@ def speech_of(graph: MotionGraph, heard: HeardStates, wanted: WantedSegment) -> 
         stresses,
         closes,
         events[begins],
-        np.stack([next_of(heard.happens(what)) for what in EVENTS]),
-        next_of(last) + 1,
+        np.stack([find_next_marked(heard.happens(what)) for what in EVENTS]),
+        find_next_marked(last) + 1,
     )
 
 
@@ -85,7 +91,7 @@ def charges_of(charged: FrameCosts | None, frames: int) -> Charges:
     return Charges(at, ends, np.pad(np.cumsum(rows, axis=1, dtype=np.float64), ((0, 0), (1, 0))))
 
 
-def fits_of(graph: MotionGraph, heard: HeardStates, wanted: WantedSegment, t: int) -> Array:
+def find_fitting_states(graph: MotionGraph, heard: HeardStates, wanted: WantedSegment, t: int) -> Array:
     """Return `[F]` which states may come at a frame, whatever events are waited for."""
     fits = graph.kept & ((heard.kinds & wanted.allowed[t]) != 0)
     if barred := wanted.bars(t):
@@ -95,13 +101,13 @@ def fits_of(graph: MotionGraph, heard: HeardStates, wanted: WantedSegment, t: in
     return np.asarray(fits)
 
 
-def meets_of(happening: Sequence[Array], wanted: WantedSegment, t: int) -> Array:
+def find_meeting_states(happening: Sequence[Array], wanted: WantedSegment, t: int) -> Array:
     """Return `[F]` which states are the event that the window of a frame waits for."""
     if wanted.window[t] < 0:
         return np.zeros(len(happening[0]), bool)
     return happening[EVENTS.index(wanted.event(t))]
 
 
-def closes_at(wanted: WantedSegment, t: int) -> bool:
+def is_due_at(wanted: WantedSegment, t: int) -> bool:
     """Return whether an event has to have been met by now."""
     return bool(wanted.window[t] >= 0 and (t + 1 == len(wanted) or wanted.window[t + 1] != wanted.window[t]))

@@ -29,7 +29,7 @@ class Path:
     price: float = 0.0
 
 
-def go_on(cancelled: Cancelled) -> None:
+def check_cancelled(cancelled: Cancelled) -> None:
     """Raise SynthesisError when it was cancelled."""
     if cancelled is not None and cancelled():
         raise SynthesisError("the search was cancelled")

@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from metagraph.graph.conversation.model import SOUNDS, Segment, Sound
 from metagraph.suggest.tracks import RATE
-from metagraph.synthesis.constraints import EDGE, STRESS, TOLERANCE, HeardStates, WantedSegment, wanted
+from metagraph.synthesis.constraints import EDGE, STRESS, TOLERANCE, HeardStates, WantedSegment, list_wanted
 from metagraph.synthesis.graph import MotionGraph
-from metagraph.synthesis.iconic_words import only_words
-from metagraph.synthesis.retiming import FARTHER, NEARER, Retiming, keeps_to, timing_cost
-from metagraph.synthesis.search.frame_costs import together
+from metagraph.synthesis.iconic_words import only_states_of_words
+from metagraph.synthesis.retiming import FARTHER, NEARER, Retiming, keeps_constraints, timing_cost
+from metagraph.synthesis.search.frame_costs import join_costs
 from metagraph.synthesis.search.path import Path
 from metagraph.synthesis.search.ruled_search import FREE, JUMP_RULES, JumpRules, Search, find_path
 from metagraph.synthesis.soft_constraints import NOTHING, SoftConstraints
@@ -46,8 +46,8 @@ class Constraints:
 
     def wanted(self, segments: Sequence[Segment], seconds: float, soft: SoftConstraints) -> WantedSegment:
         """Return what is wanted frame by frame by that."""
-        want = wanted(segments, seconds, self.tolerance, self.use, self.peaks, self.edges)
-        return replace(want, only=only_words(soft.places)) if self.words else want
+        want = list_wanted(segments, seconds, self.tolerance, self.use, self.peaks, self.edges)
+        return replace(want, only=only_states_of_words(soft.places)) if self.words else want
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class Miss:
 
 
 @dataclass(frozen=True, eq=False)
-class Answer:
+class RelaxedAnswer:
     """path: what was found. kept: the constraints it keeps to. given_up: the others, in words. misses: what
     is off by more than the tolerance that was asked for. retiming: how it is played faster and slower, None
     where it is not.
@@ -90,7 +90,7 @@ class Answer:
         return f"given up: {', '.join(self.given_up)}; {missed}{more}"
 
 
-def steps(asked: Constraints) -> Iterator[Constraints]:
+def list_relaxations(asked: Constraints) -> Iterator[Constraints]:
     """Yield the constraints that are tried one after another, those asked for first: what is seen least is
     given up first. The last constrain nothing.
     """
@@ -125,7 +125,7 @@ def _taken_back(kept: Constraints, asked: Constraints) -> Iterator[Constraints]:
             yield changed
 
 
-def given_up(asked: Constraints, kept: Constraints) -> tuple[str, ...]:
+def describe_given_up(asked: Constraints, kept: Constraints) -> tuple[str, ...]:
     """Return which constraints were not kept, in words."""
     out = [f"{kind}s" for kind in asked.use if kind not in kept.use and kind != "idle"]
     out += ["silence"] if "idle" in asked.use and "idle" not in kept.use else []
@@ -154,7 +154,7 @@ class Searching:
 EXACTLY = Searching()
 
 
-def answer(
+def answer_speech(
     graph: MotionGraph,
     heard: HeardStates,
     segments: Sequence[Segment],
@@ -163,7 +163,7 @@ def answer(
     searching: Searching = EXACTLY,
     cancelled: Callable[[], bool] | None = None,
     soft: SoftConstraints = NOTHING,
-) -> Answer:
+) -> RelaxedAnswer:
     """Return motion for speech, with as many of the constraints as there is any for: they are given up until
     there is some, and then taken back one by one. soft: what it should have beside them. Raises
     SynthesisError where the takes cannot even go on so long, or with nothing given up, or when it was
@@ -191,7 +191,7 @@ class _Task:
     cancelled: Callable[[], bool] | None
     soft: SoftConstraints
 
-    def relaxed(self) -> Answer:
+    def relaxed(self) -> RelaxedAnswer:
         """Return motion that keeps to what it can."""
         path, kept = self._first()
         failed: set[Constraints] = set()
@@ -202,11 +202,11 @@ class _Task:
             else:
                 kept, path = more, found
         retiming, kept = self._retimed(path, kept)
-        words = given_up(self.asked, kept)
+        words = describe_given_up(self.asked, kept)
         missed = misses(self.heard, path, self.segments, self.asked, retiming) if words else ()
-        return Answer(path, kept, words, missed, retiming)
+        return RelaxedAnswer(path, kept, words, missed, retiming)
 
-    def strictly(self) -> Answer:
+    def strictly(self) -> RelaxedAnswer:
         """Return motion that keeps to all that is asked, retimed where that helps. Raises SynthesisError."""
         asked = self.asked
         try:
@@ -219,13 +219,13 @@ class _Task:
                 path = self._path(wider)
                 retiming, kept = self._retimed(path, wider)
                 if kept == asked:
-                    return Answer(path, kept, retiming=retiming)
+                    return RelaxedAnswer(path, kept, retiming=retiming)
             raise
-        return Answer(path, asked, retiming=self._retimed(path, asked)[0])
+        return RelaxedAnswer(path, asked, retiming=self._retimed(path, asked)[0])
 
     def _first(self) -> tuple[Path, Constraints]:
         """Return a path that keeps to as much as the first for which there is one. Raises SynthesisError."""
-        for kept in steps(self.asked):
+        for kept in list_relaxations(self.asked):
             path = self._path_or_none(kept)
             if path is not None:
                 return path, kept
@@ -242,7 +242,7 @@ class _Task:
         if soft.free is not None:
             kinds = charged.kinds if charged is not None else ()
             price = NEARER if kept.tolerance <= self.asked.tolerance else FARTHER
-            charged = together([*kinds, timing_cost(self.heard, want, self.graph.threshold.limit, price)])
+            charged = join_costs([*kinds, timing_cost(self.heard, want, self.graph.threshold.limit, price)])
         return find_path(
             self.graph, self.heard, want, how.search, kept.rules, how.seed, self.cancelled, charged
         )
@@ -273,9 +273,9 @@ class _Task:
             retiming = self.soft.retimed(path, self.heard, held, reach, part)
             if retiming is None:
                 break
-            if keeps_to(path.states, retiming.moments, self.heard, nearer):
+            if keeps_constraints(path.states, retiming.moments, self.heard, nearer):
                 return retiming, exactly
-            if keeps_to(path.states, retiming.moments, self.heard, held):
+            if keeps_constraints(path.states, retiming.moments, self.heard, held):
                 return retiming, kept
         return None, kept
 

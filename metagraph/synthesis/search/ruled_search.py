@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from metagraph.suggest.tracks import RATE
 from metagraph.synthesis.constraints import HeardStates, WantedSegment
 from metagraph.synthesis.graph import MotionGraph
-from metagraph.synthesis.search.exact_search import best
+from metagraph.synthesis.search.exact_search import find_best_path
 from metagraph.synthesis.search.frame_costs import FrameCosts
 from metagraph.synthesis.search.greedy_search import greedy
 from metagraph.synthesis.search.path import Path
@@ -53,7 +53,7 @@ JUMP_RULES = JumpRules()
 FREE = JumpRules(run=0.0, apart=0.0, price=0.0, recent=0.0, again=0.0)  # the paper's: what it looks like
 
 
-def ruled(graph: MotionGraph, rules: JumpRules) -> MotionGraph:
+def apply_rules(graph: MotionGraph, rules: JumpRules) -> MotionGraph:
     """Return a graph with the transitions that rules leave, at their prices. How long a run is is left to the
     search.
     """
@@ -99,7 +99,7 @@ def find_path(
     allowed = _allowed(graph, rules)
     try:
         if search == "exact":
-            path = best(allowed, heard, wanted, cancelled, rules.frames, charged)
+            path = find_best_path(allowed, heard, wanted, cancelled, rules.frames, charged)
         else:
             path = greedy(
                 allowed, heard, wanted, seed, cancelled=cancelled, run=rules.frames, charged=charged
@@ -117,7 +117,7 @@ def _allowed(graph: MotionGraph, rules: JumpRules) -> MotionGraph:
         return graph
     known = _RULED.get(graph)
     if known is None or known[0] != rules:
-        known = _RULED[graph] = rules, ruled(graph, rules)
+        known = _RULED[graph] = rules, apply_rules(graph, rules)
     return known[1]
 
 

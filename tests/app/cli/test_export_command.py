@@ -14,7 +14,7 @@ import pytest
 
 from app.cli.parser import main
 from metagraph.engines import vectors
-from metagraph.engines.vectors import check_vectors, every_case
+from metagraph.engines.vectors import check_vectors, list_cases
 from tests.processes import metagraph, started, until
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -38,7 +38,7 @@ def test_a_target_is_written_and_its_losses_are_told(few, tmp_path, capsys):
 
 
 def test_vectors_are_written_beside_the_graph_they_are_of(few, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(vectors, "every_case", lambda project: list(every_case(project))[::8])
+    monkeypatch.setattr(vectors, "list_cases", lambda project: list(list_cases(project))[::8])
     assert main(["export", str(few), "-o", str(tmp_path), "--vectors", "--no-mesh"]) == 0
     assert check_vectors(tmp_path).failures == [] and "vectors" not in capsys.readouterr().err
     assert main(["export", str(few), "-o", str(tmp_path / "x"), "--vectors", "-t", "bml"]) == 0

@@ -19,20 +19,20 @@ import soundfile
 
 from app.cli import generate_training
 from app.cli.parser import main
-from metagraph.formats.clips import read_clips
+from metagraph.formats.clips import read_clip_file
 from metagraph.formats.gltf.writer import write_glb
 from metagraph.formats.store import open_project, save_project
 from metagraph.generation import train_process
 from metagraph.generation.chunks import GUIDANCE
 from metagraph.generation.features import RATE
 from metagraph.generation.stored import read_model, write_model
-from metagraph.generation.take_files import find_takes, read_takes
+from metagraph.generation.take_files import find_takes, read_take_batch
 from metagraph.generation.train_plan import card_of
 from metagraph.graph.conversation.model import Conversation
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
-from metagraph.research.generation.planted import performed as perform
+from metagraph.research.generation.planted import perform_planted as perform
 from tests.generation.makers import babble, moving, stance, tiny, untrained
 
 WHOLE = Path(__file__).resolve().parents[3] / "sample_clips" / "conversation" / "talk.ogg"
@@ -60,7 +60,7 @@ def performed_once() -> Iterator[None]:
         return known[key]
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("metagraph.research.generation.planted.performed", performed)
+        patch.setattr("metagraph.research.generation.planted.perform_planted", performed)
         yield
 
 
@@ -75,7 +75,7 @@ def takes(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def model(takes: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """One that has learned nothing, but says it was made of the first conversation."""
     found = untrained("matching")
-    first, second = (read_takes(find_takes([takes])[0]).takes[n : n + 2] for n in (0, 2))
+    first, second = (read_take_batch(find_takes([takes])[0]).takes[n : n + 2] for n in (0, 2))
     card = msgspec.structs.replace(
         found.card, takes=tuple(map(card_of, first)), held_out=tuple(map(card_of, second)), loss="matching"
     )
@@ -207,7 +207,7 @@ def test_motion_is_sampled_and_the_same_seed_gives_the_same(
     data = json.loads(
         run(capsys, "sample", model, "--speech", talk, "--side", 2, "-o", tmp_path / "d.glb", "--json")
     )
-    clip = read_clips(tmp_path / "d.glb")[0]
+    clip = read_clip_file(tmp_path / "d.glb")[0]
     assert clip.frames == data["frames"] and data["activity"]["speaking"] > 0.2
 
 
@@ -278,7 +278,7 @@ def test_what_is_odd_about_a_sound_is_told_and_it_is_used(
     holed = np.stack([babble(3.0), babble(3.0, 2)])
     holed[0, 100] = np.nan  # read as silence, as everywhere
     assert np.isfinite(
-        read_clips(_sampled(model, sound(tmp_path / "h.wav", holed, "FLOAT")))[0].rotations
+        read_clip_file(_sampled(model, sound(tmp_path / "h.wav", holed, "FLOAT")))[0].rotations
     ).all()
     for path, words in ((alone, "one voice only"), (loud, "cut off at full scale")):
         assert (
@@ -310,7 +310,7 @@ def test_pieces_are_cut_and_know_model_and_seed(
     assert [p["seed"] for p in data["pieces"]] == [7, 7] and data["added"] == 2
     entries = json.loads((tmp_path / "clips" / "pieces.json").read_text())
     assert {e["model"] for e in entries} == {"plain.mgmodel"} and entries == data["pieces"]
-    found = read_clips(tmp_path / "clips" / entries[0]["file"])[0]
+    found = read_clip_file(tmp_path / "clips" / entries[0]["file"])[0]
     assert found.duration == pytest.approx(2.0, abs=0.05)
     names = [e.name for e in open_project(tmp_path / "mine.metagraph.yaml").project.clips.values()]
     assert all("plain_seed7" in n for n in names) and len(names) == 2
@@ -439,7 +439,7 @@ def test_takes_none_of_which_can_be_used_are_an_error(
 def test_without_torch_it_is_said_what_to_install(
     takes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(train_process, "missing", lambda: train_process.TORCH)
+    monkeypatch.setattr(train_process, "find_missing_tools", lambda: train_process.TORCH)
     text = run(capsys, "train", takes, "-o", tmp_path / "m.mgmodel", code=1)
     assert "pip install" in text and "750 MB" in text
     assert not list(tmp_path.iterdir())
@@ -448,7 +448,7 @@ def test_without_torch_it_is_said_what_to_install(
 def test_what_cannot_be_trained_is_told_before_anything_is_read(
     takes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(train_process, "missing", lambda: None)
+    monkeypatch.setattr(train_process, "find_missing_tools", lambda: None)
     out = ("-o", tmp_path / "m.mgmodel")
     assert "written as .mgmodel" in run(capsys, "train", takes, "-o", tmp_path / "m.pt", code=1)
     assert "--minutes is more than 0" in run(capsys, "train", takes, *out, "--minutes", 0, code=1)
@@ -480,7 +480,7 @@ def test_stopping_a_training_keeps_what_was_learned(
         """Writes its model once it is asked to stop, as `TrainingProcess` does."""
 
         running = False
-        last = train_process.Event(event="end", minutes=0.5, seconds=20.0, stopped=True)
+        last = train_process.TrainingEvent(event="end", minutes=0.5, seconds=20.0, stopped=True)
 
         def __init__(self, out: Path, heard: object) -> None:
             self.out, self.asked = out, False
@@ -494,7 +494,7 @@ def test_stopping_a_training_keeps_what_was_learned(
             write_model(untrained("matching"), self.out)
             return self.out
 
-    monkeypatch.setattr(train_process, "missing", lambda: None)
+    monkeypatch.setattr(train_process, "find_missing_tools", lambda: None)
     monkeypatch.setattr(train_process, "TrainingProcess", Process)
     before = signal.getsignal(signal.SIGINT)
     text = run(capsys, "train", takes, "-o", tmp_path / "m.mgmodel")
@@ -512,7 +512,7 @@ def test_an_ablation_is_a_table_and_is_taken_up_again(
         done.append(job.out.name)
         write_model(untrained(job.kind, sizes=tiny(job.kind)), job.out)
 
-    monkeypatch.setattr(train_process, "missing", lambda: None)
+    monkeypatch.setattr(train_process, "find_missing_tools", lambda: None)
     monkeypatch.setattr(generate_training, "_train_one", trained)
     words = (
         "ablate",

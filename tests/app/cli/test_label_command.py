@@ -11,7 +11,7 @@ import pytest
 
 from app.cli.parser import main
 from metagraph.formats.store import open_project
-from metagraph.graph.check import check
+from metagraph.graph.check import check_project
 
 ROOT = Path(__file__).resolve().parents[3]
 CLIPS = ROOT / "sample_clips" / "clips"
@@ -42,7 +42,7 @@ def test_a_folder_becomes_a_project_and_a_report(folder: Path, capsys: pytest.Ca
         and not data["errors"]
     )
     assert {s.name for s in project.graphs["arms"].stances.values()} == {"hands at sides", "on hips"}
-    assert not [p for p in check(project) if p.severity == "error"]
+    assert not [p for p in check_project(project) if p.severity == "error"]
     page = Path(data["report"]).read_text()
     stances = sum(len(graph.stances) for graph in project.graphs.values())
     assert page.count("data:image/jpeg") == len(project.clips) + stances

@@ -14,12 +14,12 @@ from typing import Any
 
 import pytest
 
-from app.cli.label_report import open_command, report
+from app.cli.label_report import format_label_report, open_command
 from app.cli.parser import main
 from metagraph.formats.store import read_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
-from metagraph.suggest.accept import Taken
+from metagraph.suggest.accept import AcceptedProposals
 from metagraph.suggest.proposal import Proposals
 from tests.projects import clip
 
@@ -108,23 +108,23 @@ def test_what_was_left_aside_stands_at_the_end_by_reason_with_a_count() -> None:
     )
     one, two, three = project.clips
     aside = {one: "name says 'x<y'", two: "goes 2.0 m away", three: "goes 3.5 m away"}
-    taken = Taken(project, (), {})
-    page = report(project, Proposals({}, {}, aside), taken, {})
+    taken = AcceptedProposals(project, (), {})
+    page = format_label_report(project, Proposals({}, {}, aside), taken, {})
     assert "<h2 id='aside'>Left aside (3)</h2>" in page
     assert "2 clips: goes 2.0 to 3.5 m away" in page and "(run, jog)" in page
     assert "1 clip: name says &#x27;x&lt;y&#x27;" in page and "a&lt;b&gt;" in page and "a<b>" not in page
     assert page.index("2 clips: goes") < page.index("1 clip: name")
-    assert "Left aside" not in report(project, Proposals({}, {}), taken, {})
+    assert "Left aside" not in format_label_report(project, Proposals({}, {}), taken, {})
 
 
 def test_many_notes_of_the_same_are_one_in_the_report() -> None:
-    from app.cli.label_report import report
+    from app.cli.label_report import format_label_report
     from metagraph.suggest.propose import accept, propose
 
     project = edits.add_clips(Project("p"), [("a.glb", 0, "", clip("a"))])
     found = propose(project)
     notes = [f"f{n}.glb: the scale of {n} joints is animated" for n in range(1, 27)]
-    page = report(project, found, accept(project, found), {}, notes)
+    page = format_label_report(project, found, accept(project, found), {}, notes)
     assert page.count("is animated") == 1
     assert "f1.glb and 25 more: the scale of 1 to 26 joints is animated" in page
 
@@ -133,8 +133,8 @@ WINDOW = """
 import sys
 from pathlib import Path
 from PySide6.QtCore import QTimer
-from app.main import open_window, prepare
-app = prepare()
+from app.main import open_window, prepare_application
+app = prepare_application()
 window = open_window(Path(sys.argv[1]), clip=sys.argv[2])
 session = window.shell.stage.session
 

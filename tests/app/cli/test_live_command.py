@@ -172,7 +172,7 @@ def test_a_session_that_no_disk_takes_stands_on_standard_output(
     def full(*_: object) -> None:
         raise FileError(options.project, "cannot be saved: the disk is full", remedy="Make room.")
 
-    monkeypatch.setattr(store, "encoded", full)
+    monkeypatch.setattr(store, "encode_project", full)
     with pytest.raises(FileError, match="the disk is full"):
         live_command._keep(session, options)
     kept = msgspec.json.decode(capsys.readouterr().out, type=Performance)

@@ -16,9 +16,9 @@ import msgspec
 import numpy as np
 import pytest
 
-from app.cli.live_graph_options import NAME, graphs_of
+from app.cli.live_graph_options import NAME, read_graphs
 from app.cli.parser import main
-from metagraph.formats.clips import read_clips
+from metagraph.formats.clips import read_clip_file
 from metagraph.formats.conversations.writers import write_json
 from metagraph.formats.gltf.writer import write_glb
 from metagraph.graph.conversation.model import Conversation, Side
@@ -77,20 +77,20 @@ def test_options_that_do_not_go_together_are_said(
 def test_takes_of_another_skeleton_are_refused_or_brought_onto_the_characters(
     folder: Path, sample: Project, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert graphs_of(Namespace(takes=[]), sample) == {}  # no conversation of it has takes
+    assert read_graphs(Namespace(takes=[]), sample) == {}  # no conversation of it has takes
     (tmp_path / "takes").mkdir()
     for path in sorted((folder / "takes").glob("*.glb")):
-        take = read_clips(path)[0]
+        take = read_clip_file(path)[0]
         s = take.skeleton
         tall = Skeleton(s.names, s.parents, s.rest_rotations, (1.2 * s.rest_translations).astype(np.float32))
         moved = np.asarray(1.2 * take.translations, np.float32)
         write_glb(tmp_path / "takes" / path.name, [replace(take, skeleton=tall, translations=moved)])
         shutil.copy(folder / f"{path.stem}.json", tmp_path)
     with pytest.raises(ValueError, match="--retarget"):
-        graphs_of(options(tmp_path), sample)
+        read_graphs(options(tmp_path), sample)
     brought = options(tmp_path)
     brought.retarget = True
-    graph = graphs_of(brought, sample)[NAME]
+    graph = read_graphs(brought, sample)[NAME]
     assert graph.fits(sample) and "states and" in capsys.readouterr().err
 
 
@@ -123,5 +123,5 @@ def test_a_file_is_moved_to_kept_and_made_again(few: Path, folder: Path, tmp_pat
     again = ["--again", str(tmp_path / "few - talk.motion.json"), "-o", str(out)]
     takes = words(folder)[1:]
     assert main(["motion-graph", "synthesize", *takes, *again]) == 0
-    assert read_clips(out)[0].frames == kept.frames
+    assert read_clip_file(out)[0].frames == kept.frames
     assert msgspec.json.decode((tmp_path / "few - talk.motion.json").read_bytes())["version"] == 1

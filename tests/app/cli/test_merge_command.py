@@ -14,7 +14,7 @@ import pytest
 from app.cli.parser import main
 from metagraph.formats.store import SUFFIX, read_project, save_project
 from metagraph.graph import edits
-from metagraph.graph.check import check
+from metagraph.graph.check import check_project
 from metagraph.graph.model import Project
 from tests.projects import clip
 
@@ -31,7 +31,7 @@ def with_gesture(project: Project, name: str) -> Project:
     """A person imports a clip and drops it on the stance."""
     after = edits.add_clips(project, [(f"clips/{name}.glb", 0, f"{len(name):02x}" * 32, clip(name))])
     (stance,) = after.graphs["arms"].stances
-    return edits.place(after, [*after.clips][-1:], "arms", "gesture", stance)
+    return edits.place_clips(after, [*after.clips][-1:], "arms", "gesture", stance)
 
 
 def gestures(project: Project) -> dict[str, str]:
@@ -51,7 +51,7 @@ def test_both_clips_are_there_and_each_gesture_plays_its_own(tmp_path: Path) -> 
     assert main(["merge", *paths]) == 0
     merged = read_project(paths[1])
     assert gestures(merged) == {"wave": "wave", "point": "point"}
-    assert not [p for p in check(merged) if p.code in ("swapped-clip", "lost-clip")]
+    assert not [p for p in check_project(merged) if p.code in ("swapped-clip", "lost-clip")]
 
 
 def test_what_both_changed_is_ours_and_reported_in_the_projects_words(
@@ -178,22 +178,22 @@ def test_git_stops_at_a_conflict_and_the_project_can_be_opened(shared: Path) -> 
 
 def test_a_text_merge_that_keeps_one_sides_clip_is_found_by_check() -> None:
     """Two people had made `c12` before ids were told apart; by hand somebody kept the wrong line."""
-    from metagraph.formats.store import encoded, from_text
+    from metagraph.formats.store import encode_project, parse_project
 
     base = beginning()
     (idle,) = base.clips
     texts = {}
     for name in ("wave", "point"):
-        text = encoded(with_gesture(base, name), Path(NAME)).decode()
+        text = encode_project(with_gesture(base, name), Path(NAME)).decode()
         new = next(i for i in with_gesture(base, name).clips if i != idle)
         texts[name] = text.replace(new, "c12")
     ours, theirs = (text.splitlines(keepends=True) for text in texts.values())
     line = next(n for n, words in enumerate(ours) if "- {id: c12" in words)
     ours[line] = next(words for words in theirs if "- {id: c12" in words)
-    project = from_text("".join(ours), Path(NAME))
-    (found,) = (p for p in check(project) if p.code == "swapped-clip")
+    project = parse_project("".join(ours), Path(NAME))
+    (found,) = (p for p in check_project(project) if p.code == "swapped-clip")
     assert "'wave'" in found.message and "'point'" in found.message
-    kept = from_text(encoded(project, Path(NAME)).decode(), Path(NAME))
+    kept = parse_project(encode_project(project, Path(NAME)).decode(), Path(NAME))
     assert kept == project, "saving it does not hide the swap"
 
 

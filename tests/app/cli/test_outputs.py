@@ -127,7 +127,7 @@ def project(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Path:
     of = {entry.name: ident for ident, entry in made.clips.items()}
     made = edits.add_stance(made, "arms", "rest", [of["idle"]])
     (stance,) = made.graphs["arms"].stances
-    save_project(edits.place(made, [of["wave"], of["nod"]], "arms", "gesture", stance), path)
+    save_project(edits.place_clips(made, [of["wave"], of["nod"]], "arms", "gesture", stance), path)
     capsys.readouterr()
     return path
 

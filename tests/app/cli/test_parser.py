@@ -54,7 +54,7 @@ def small(clips: Path, capsys: pytest.CaptureFixture[str]) -> Path:
     path = clips.parent / f"small{SUFFIX}"
     assert main(["import", str(path), str(clips)]) == 0
     project = edits.add_stance(open_project(path).project, "arms", "rest", ["c1"])
-    project = edits.place(project, ["c2", "c3"], "arms", "gesture", "s4")
+    project = edits.place_clips(project, ["c2", "c3"], "arms", "gesture", "s4")
     save_project(project, path)
     capsys.readouterr()
     return path
@@ -310,7 +310,9 @@ def test_a_whole_day_from_the_command_line_on_real_clips(
     by_name = {e.name.removeprefix("dataset-1_"): e.id for e in project.clips.values()}
     project = edits.add_stance(project, "body", "ready", [by_name["call_normal_001"]])
     gestures = [by_name[f"{n}_normal_001"] for n in ("bow", "bye", "guide", "respond")]
-    project = edits.place(project, gestures, "body", "gesture", next(iter(project.graphs["body"].stances)))
+    project = edits.place_clips(
+        project, gestures, "body", "gesture", next(iter(project.graphs["body"].stances))
+    )
     save_project(project, path)
     assert main(["check", str(path)]) == 0
     capsys.readouterr()

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from app.cli import render_command
-from app.cli.render_command import Shot, draw_to, figure_of
+from app.cli.render_command import Shot, draw_to, load_figure
 from app.project.files import SAMPLE
 from app.project.opening import open_whole
-from app.stage.playback_source import Shown
+from app.stage.playback_source import ShownPlayback
 from metagraph.playback.planner import make_plan
 
 
@@ -34,8 +34,8 @@ def test_actions_are_called_as_their_node_calls_them(project, tmp_path, monkeypa
         return np.zeros((4, 4, 4), np.uint8)
 
     monkeypatch.setattr("preview.sheet.contact_sheet", contact_sheet)
-    shown = Shown(project, make_plan(project, 10.0), 10.0)
-    seen = [(figure_of(project, SAMPLE.parent), shown)]
+    shown = ShownPlayback(project, make_plan(project, 10.0), 10.0)
+    seen = [(load_figure(project, SAMPLE.parent), shown)]
     draw_to(tmp_path / "sheet.png", seen, Shot(10.0, (96, 72), 30, 16, "dark"))
     assert len(under) == 16 and under[0].startswith("0.00 s")
     named = [words for words in under if words.partition(" s")[2].strip()]
@@ -44,4 +44,4 @@ def test_actions_are_called_as_their_node_calls_them(project, tmp_path, monkeypa
 
 def test_where_nothing_is_played_only_the_time_is_told(project):
     plan = make_plan(project, 1.0, idle=False)
-    assert render_command._doing(Shown(project, plan, 1.0), 0.5) == ""
+    assert render_command._doing(ShownPlayback(project, plan, 1.0), 0.5) == ""

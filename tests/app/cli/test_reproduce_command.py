@@ -95,7 +95,7 @@ def test_an_exhibit_that_fails_in_a_way_nobody_foresaw_spoils_no_other(
     def broken(_: object) -> None:
         raise KeyError("odd")
 
-    monkeypatch.setattr("metagraph.research.exhibits.planning.matrix", broken)
+    monkeypatch.setattr("metagraph.research.exhibits.planning.exhibit_matrix", broken)
     assert main(["reproduce", "matrix", "ratings", "--into", str(tmp_path / "out")]) == 3
     told = capsys.readouterr().out
     assert "it failed (KeyError: 'odd')" in told and "without responses" in told

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.look.names import apart, node_names, plain, row_names
+from app.look.names import node_names, plain_action_name, row_names, tell_apart
 from metagraph.graph import edits
 
 
@@ -24,19 +24,19 @@ from metagraph.graph import edits
     ],
 )
 def test_a_name_is_read_without_what_the_place_says(name, stance, limb, words):
-    assert plain(name, stance, limb) == words
+    assert plain_action_name(name, stance, limb) == words
 
 
 def test_numbers_of_takes_go_where_nothing_else_has_the_name():
-    assert apart([]) == []
-    assert apart(["shrug 01", "nod 01", "nod 02", "07", "wave (2)"]) == [
+    assert tell_apart([]) == []
+    assert tell_apart(["shrug 01", "nod 01", "nod 02", "07", "wave (2)"]) == [
         "shrug",
         "nod 01",
         "nod 02",
         "07",
         "wave",
     ]
-    assert apart(["nod", "nod 01"]) == ["nod", "nod 01"]
+    assert tell_apart(["nod", "nod 01"]) == ["nod", "nod 01"]
 
 
 def test_two_ways_to_one_stance_are_told_apart(toy):
@@ -45,7 +45,7 @@ def test_two_ways_to_one_stance_are_told_apart(toy):
     there = project.graphs["arms"].of(rest, "transition")
     assert list(row_names(project, there).values()) == [project.stance(a.end_stance).name for a in there]
     clip, end = there[0].clip, there[0].end_stance
-    project = edits.place(project, [clip], "arms", "transition", rest, end)
+    project = edits.place_clips(project, [clip], "arms", "transition", rest, end)
     names = list(row_names(project, project.graphs["arms"].of(rest, "transition")).values())
     assert all(names) and any(":" in n for n in names)
 
@@ -64,7 +64,7 @@ def test_a_stance_called_after_its_loop_is_left_out_by_what_all_share(toy):
     clips = list(project.clips)
     project = edits.add_stance(project, "arms", "sitting_low__loop", [clips[0]])
     stance = list(project.graphs["arms"].stances)[-1]
-    project = edits.place(project, clips[1:3], "arms", "gesture", stance)
+    project = edits.place_clips(project, clips[1:3], "arms", "gesture", stance)
     graph = project.graphs["arms"]
     (loop,) = graph.of(stance, "stance")
     one, two = graph.of(stance, "gesture")

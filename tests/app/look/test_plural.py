@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.look.plural import short
+from app.look.plural import strip_stance
 from app.translation import tr_plural
 
 
@@ -28,7 +28,7 @@ from app.translation import tr_plural
     ],
 )
 def test_a_stances_name_in_front_of_its_actions_is_left_out(name, stance, expected):
-    assert short(name, stance) == expected
+    assert strip_stance(name, stance) == expected
 
 
 def test_one_is_one_and_thousands_are_grouped():

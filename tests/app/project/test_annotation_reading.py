@@ -7,19 +7,19 @@ from typing import Any
 
 import pytest
 
-from app.project.annotation_reading import begin, into, remember, told
+from app.project.annotation_reading import begin_reading, describe_doubts, remember_reading, work_into_project
 from metagraph.formats.elan import read_elan
 from metagraph.formats.project.data import from_data, to_data
 from metagraph.graph.model import LAYERS, Project
-from metagraph.playback.learning.annotation import Annotation, Interval, Tier
+from metagraph.playback.learning.annotation import Annotation, AnnotationInterval, AnnotationTier
 from metagraph.playback.learning.learn import acts_of_asks
-from metagraph.playback.planning.running_plan import perform
+from metagraph.playback.planning.running_plan import plan_performance
 
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "annotation" / "conversation.eaf"
 
 
-def tier(name: str, *texts: str) -> Tier:
-    return Tier(name, tuple(Interval(n, n + 0.5, t) for n, t in enumerate(texts)))
+def tier(name: str, *texts: str) -> AnnotationTier:
+    return AnnotationTier(name, tuple(AnnotationInterval(n, n + 0.5, t) for n, t in enumerate(texts)))
 
 
 @pytest.fixture(scope="module")
@@ -28,16 +28,16 @@ def conversation() -> Annotation:
 
 
 def test_an_annotation_with_nothing_in_it_says_so_and_changes_nothing_but_the_memory() -> None:
-    reading = begin(Annotation((tier("words", "hello"),)))
+    reading = begin_reading(Annotation((tier("words", "hello"),)))
     assert reading.observed == {} and reading.labels == ()
-    assert "tiers" in told(reading)[0]
-    made = into(Project(), reading, LAYERS, True, "talk")
+    assert "tiers" in describe_doubts(reading)[0]
+    made = work_into_project(Project(), reading, LAYERS, True, "talk")
     assert (made.learned, made.performance) == ((), None)
     assert made.project == Project(tiers={"words": "ignore"})
 
 
 def test_roles_and_meanings_can_be_said_otherwise_and_what_was_said_stays() -> None:
-    reading = begin(Annotation((tier("A", "cup", "box"), tier("B", "cup"))))
+    reading = begin_reading(Annotation((tier("A", "cup", "box"), tier("B", "cup"))))
     assert reading.observed == {}
     reading = reading.with_role("A", "left arm")
     assert [a.kind for a in reading.observed["arms"]] == ["gesture", "gesture"]
@@ -52,44 +52,48 @@ def test_roles_and_meanings_can_be_said_otherwise_and_what_was_said_stays() -> N
 
 def test_the_project_remembers_how_it_was_read_and_the_next_reading_begins_so() -> None:
     annotation = Annotation((tier("LH", "cup", "gesture"), tier("B", "cup")))
-    reading = begin(annotation).with_role("B", "body")
+    reading = begin_reading(annotation).with_role("B", "body")
     reading = reading.with_meaning(reading.labels[0], "fidget")
-    project = remember(Project(labels={"arms: old": "hold", "body: cup": "gesture"}), reading)
+    project = remember_reading(Project(labels={"arms: old": "hold", "body: cup": "gesture"}), reading)
     assert project.tiers == {"LH": "left arm", "B": "body"}
     assert project.labels == {"arms: old": "hold", "arms: cup": "fidget"}, (
         "what is as it would be guessed is not written down"
     )
     assert from_data(to_data(project)) == project
-    again = begin(annotation, project.tiers, labels=(project.labels,))
+    again = begin_reading(annotation, project.tiers, labels=(project.labels,))
     assert again.observed == reading.observed
     guessed = again.with_meaning(again.labels[0], "gesture")
-    assert remember(project, guessed).labels == {"arms: old": "hold"}, "and forgotten when it is taken back"
+    assert remember_reading(project, guessed).labels == {"arms: old": "hold"}, (
+        "and forgotten when it is taken back"
+    )
 
 
 def test_models_are_learned_of_the_layers_that_are_wanted_and_were_seen(conversation: Annotation) -> None:
-    reading = begin(conversation)
-    made = into(Project(), reading, ("arms", "head"), False, None)
+    reading = begin_reading(conversation)
+    made = work_into_project(Project(), reading, ("arms", "head"), False, None)
     assert made.learned == ("arms", "head") and made.performance is None
     assert set(made.project.markov) == {"arms", "head"}
     assert made.project.markov["head"].positive > 0.8 and made.project.markov["head"].tags == ()
     assert from_data(to_data(made.project)) == made.project
-    tagged = into(Project(), reading, LAYERS, True, None, smoothing=0.5).project.markov
+    tagged = work_into_project(Project(), reading, LAYERS, True, None, smoothing=0.5).project.markov
     assert tagged["head"].tags == ("positive", "negative", "")
     assert all(p > 0 for row in tagged["arms"].matrix for p in row)
-    assert into(Project(), begin(Annotation((tier("LH", "beat"),))), LAYERS, False, None).learned == ("arms",)
+    assert work_into_project(
+        Project(), begin_reading(Annotation((tier("LH", "beat"),))), LAYERS, False, None
+    ).learned == ("arms",)
 
 
 def test_few_actions_are_doubted(conversation: Annotation) -> None:
-    (doubt,) = told(begin(conversation))
+    (doubt,) = describe_doubts(begin_reading(conversation))
     assert "12 actions" in doubt and "body" in doubt
-    assert "hold nothing that counts" in told(begin(Annotation((tier("LH", "rest"),))))[0]
-    assert told(begin(Annotation((), notes=("one left out",))))[0] == "one left out"
+    assert "hold nothing that counts" in describe_doubts(begin_reading(Annotation((tier("LH", "rest"),))))[0]
+    assert describe_doubts(begin_reading(Annotation((), notes=("one left out",))))[0] == "one left out"
 
 
 def test_what_was_seen_is_kept_as_a_performance_of_its_own_name(conversation: Annotation) -> None:
-    reading = begin(conversation)
-    first = into(Project(), reading, (), False, "talk")
-    second = into(first.project, reading, (), False, "talk")
+    reading = begin_reading(conversation)
+    first = work_into_project(Project(), reading, (), False, "talk")
+    second = work_into_project(first.project, reading, (), False, "talk")
     assert [p.name for p in second.project.performances.values()] == ["talk", "talk 2"]
     kept = second.project.performances[second.performance or ""]
     assert not kept.idle and kept.length >= conversation.end
@@ -105,11 +109,12 @@ def test_what_was_seen_is_kept_as_a_performance_of_its_own_name(conversation: An
 def test_an_annotation_is_performed_as_it_was_seen_and_other_seeds_vary_the_actions(
     conversation: Annotation, sample: Project
 ) -> None:
-    reading = begin(conversation)
-    made = into(sample, reading, (), False, "talk")
+    reading = begin_reading(conversation)
+    made = work_into_project(sample, reading, (), False, "talk")
     kept = made.project.performances[made.performance or ""]
     plans = [
-        perform(made.project, kept.asks, kept.length, seed, dict(kept.stances), kept.idle) for seed in (1, 2)
+        plan_performance(made.project, kept.asks, kept.length, seed, dict(kept.stances), kept.idle)
+        for seed in (1, 2)
     ]
     for layer, acts in reading.observed.items():
         names = []
@@ -132,13 +137,20 @@ def test_an_annotation_is_performed_as_it_was_seen_and_other_seeds_vary_the_acti
 
 def test_a_change_of_one_arm_is_performed_by_any_transition(toy: Any) -> None:
     project = toy.project()
-    reading = begin(
-        Annotation((Tier("LH", (Interval(0.5, 1.5, "stance-transition"), Interval(6, 7, "change"))),))
+    reading = begin_reading(
+        Annotation(
+            (
+                AnnotationTier(
+                    "LH",
+                    (AnnotationInterval(0.5, 1.5, "stance-transition"), AnnotationInterval(6, 7, "change")),
+                ),
+            )
+        )
     )
-    made = into(project, reading, (), False, "shift")
+    made = work_into_project(project, reading, (), False, "shift")
     kept = made.project.performances[made.performance or ""]
     assert [ask.limb for ask in kept.asks] == ["left", "left"]  # type: ignore[union-attr]
-    plan = perform(made.project, kept.asks, kept.length, 1, dict(kept.stances), kept.idle)
+    plan = plan_performance(made.project, kept.asks, kept.length, 1, dict(kept.stances), kept.idle)
     assert [cue.action.kind for cue in plan.layers["arms"].cues] == ["transition", "transition"]
     assert [cue.action.limb for cue in plan.layers["arms"].cues] == ["both", "both"]
     assert not plan.reports

@@ -8,11 +8,11 @@ from itertools import pairwise
 
 import pytest
 
-from app.project.autosave import shelter, state_folder
+from app.project.autosave import journal_shelter, state_folder
 from app.project.document import UNDO_STEPS, Document
-from app.project.writing import project_name
+from app.project.writing import name_after_file
 from metagraph.errors import FileError
-from metagraph.formats.project.history import Step
+from metagraph.formats.project.history import UndoStep
 from metagraph.formats.project.journal_records import read_records
 from metagraph.formats.recovery import read_journal, recover
 from metagraph.formats.store import SUFFIX, read_project, save_project
@@ -58,7 +58,7 @@ def test_an_edit_that_changes_nothing_is_no_step(document, toy):
 def test_a_refused_edit_leaves_everything_as_it_was(document, toy):
     before = document.project
     with pytest.raises(EditError):
-        document.edit("Bad", lambda p: edits.place(p, ["no such clip"], "arms", "gesture", None))
+        document.edit("Bad", lambda p: edits.place_clips(p, ["no such clip"], "arms", "gesture", None))
     assert document.project is before
     assert document.undo_stack.count() == 0
 
@@ -146,7 +146,7 @@ def test_saving_elsewhere_names_the_project_and_makes_paths_relative(document, t
     ],
 )
 def test_a_project_is_named_after_its_file(tmp_path, file, name):
-    assert project_name(tmp_path / file) == name
+    assert name_after_file(tmp_path / file) == name
 
 
 def test_a_failed_save_changes_nothing(document, toy, tmp_path):
@@ -222,8 +222,8 @@ def test_a_journal_that_cannot_be_written_is_told_and_the_edit_stands(document, 
     place = document.journal_place
     place.mkdir()
     if shelter_too:
-        shutil.rmtree(shelter(state_folder()), ignore_errors=True)
-        shelter(state_folder()).write_text("in the way")
+        shutil.rmtree(journal_shelter(state_folder()), ignore_errors=True)
+        journal_shelter(state_folder()).write_text("in the way")
     seen = []
     document.changed.connect(lambda a, b: seen.append(b))
     likely(document, beat, 2.0)
@@ -232,7 +232,7 @@ def test_a_journal_that_cannot_be_written_is_told_and_the_edit_stands(document, 
     assert len(told) == 1
     if shelter_too:
         assert "autosaved" in told[0]
-        shelter(state_folder()).unlink()
+        journal_shelter(state_folder()).unlink()
     else:
         assert "Metagraph's own folder" in told[0]
         found = read_journal(document.journal_place, path)
@@ -277,7 +277,7 @@ def test_steps_that_a_crash_left_are_undone_as_far_as_any(document, toy):
     beat = toy.id(document.project, "rest beat lf")
     for n in range(UNDO_STEPS + 3):
         states.append(edits.update_actions(states[-1], (beat,), likelihood=2.0 + n))
-    steps = tuple(Step(f"Step {n}", *two) for n, two in enumerate(pairwise(states)))
+    steps = tuple(UndoStep(f"Step {n}", *two) for n, two in enumerate(pairwise(states)))
     document.load(states[-1], None, steps=steps)
     assert document.undo_stack.count() == UNDO_STEPS and document.project == states[-1]
     while document.undo_stack.canUndo():

@@ -17,7 +17,7 @@ from app.project.document import Document
 from app.project.files import Files
 from app.project.importing import Importing
 from app.project.jobs import Jobs
-from app.project.leftovers import untitled_journals
+from app.project.leftovers import list_untitled_journals
 from metagraph.formats.bvh.file import write_bvh
 from metagraph.formats.locking import lock_path, new_owner
 from metagraph.formats.project.journal_records import read_records
@@ -276,7 +276,7 @@ def test_a_project_never_saved_is_offered_too(desk, person, clips, qtbot, answer
     assert bool(otherwise) is (answer != "recover")
     assert "never saved" in person.asked[0] and "3 clips" in person.asked[0]
     assert len(desk.document.project.clips) == (3 if answer == "recover" else 0)
-    kept = [path for path in untitled_journals() if path != desk.document.journal_place]
+    kept = [path for path in list_untitled_journals() if path != desk.document.journal_place]
     assert len(kept) == (1 if answer in ("later", None) else 0), (
         "what is not wanted now is there another time"
     )

@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 
 from metagraph.formats.locking import lock_path
-from metagraph.formats.recovery import left_journals, read_journal
+from metagraph.formats.recovery import find_left_journals, read_journal
 from metagraph.formats.store import read_project, save_project
 from metagraph.graph.model import Project
 from tests.processes import started
@@ -32,11 +32,11 @@ import sys, threading
 from pathlib import Path
 from PySide6.QtCore import QObject, QTimer, Signal
 from PySide6.QtWidgets import QApplication, QLabel, QMessageBox
-from app.main import open_window, prepare
+from app.main import open_window, prepare_application
 from app.project.recovering import RecoverDialog
 from metagraph.graph import edits
 
-app = prepare()
+app = prepare_application()
 asked = set()
 
 class Ears(QObject):
@@ -182,7 +182,7 @@ def test_the_second_window_says_who_has_it_and_takes_over_what_a_killed_one_left
         assert third.tells("opened") == f"show[*] - Metagraph {seed}"
         copy = read_project(saved.with_name("show recovered.metagraph.yaml"))
         assert {seed, copy.settings.seed} == {6, 8}, "nothing is lost"
-        assert left_journals(saved) == []
+        assert find_left_journals(saved) == []
 
 
 # --- killed while it saves
@@ -238,7 +238,9 @@ def test_killed_at_any_moment_of_saving_and_editing_no_finished_edit_is_lost(tmp
             child.kill()
             finished = max([finished, *map(int, child.stdout.read().split())])
             child.wait(10)
-        left = [found for path in left_journals(saved) if (found := read_journal(path, saved)) is not None]
+        left = [
+            found for path in find_left_journals(saved) if (found := read_journal(path, saved)) is not None
+        ]
         latest = max([read_project(saved).settings.seed, *(found.project.settings.seed for found in left)])
         assert latest in (finished, finished + 1), "at most one more, whose number was not printed yet"
         behind += bool(left)

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 from PySide6.QtWidgets import QFileDialog
 
-from app.project.label_files import clips_beside
+from app.project.label_files import find_clips_beside
 from metagraph.formats.bvh.file import write_bvh
-from metagraph.formats.clips import read_clips
+from metagraph.formats.clips import read_clip_file
 
 pytestmark = pytest.mark.window
 
@@ -24,7 +24,7 @@ def labels(tmp_path, toys):
     motion = project.clips[known.clip].motion
     write_bvh(motion, tmp_path / "back.bvh")
     shutil.copy(tmp_path / "back.bvh", tmp_path / "other.bvh")
-    (name,) = (clip.name for clip in read_clips(tmp_path / "back.bvh"))
+    (name,) = (clip.name for clip in read_clip_file(tmp_path / "back.bvh"))
     stance = project.graphs["arms"].stances[known.stance].name if known.layer == "arms" else "apart"
     rows = [
         {"clip": name, "name": "new there", "kind": "gesture", "layer": "arms", "stance": stance},
@@ -70,4 +70,4 @@ def test_dropped_labels_are_taken_in_and_a_broken_file_is_told(toys, labels, tmp
 
 def test_clips_that_are_called_as_the_labels_are_come_with_them(labels):
     path, _ = labels
-    assert [p.name for p in clips_beside(path)] == ["back.bvh"]
+    assert [p.name for p in find_clips_beside(path)] == ["back.bvh"]

@@ -14,7 +14,7 @@ from app.project.autosave import state_folder
 from app.project.document import Document
 from app.project.files import Files
 from app.project.jobs import Jobs
-from app.project.leftovers import known_journals, look_beside
+from app.project.leftovers import list_known_journals, look_beside
 from metagraph.formats.locking import lock_path, new_owner
 from metagraph.formats.recovery import DAMAGED
 from metagraph.formats.store import read_project, save_project
@@ -185,7 +185,7 @@ def test_a_damaged_journal_says_what_is_lost_and_is_kept_until_it_is_discarded(d
     assert kept.exists() and not place.exists()
     desk.document.save()
     desk.new()
-    assert known_journals([saved]) == [kept], "it can be looked for again"
+    assert list_known_journals([saved]) == [kept], "it can be looked for again"
     desk.next = [("discard",)]
     desk.recover()
     qtbot.waitUntil(lambda: not desk.next and desk.idle())

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QApplication, QMessageBox
 
 from metagraph.common import network_paths
 from metagraph.formats.bvh.file import write_bvh
-from metagraph.formats.store import closed_paths
+from metagraph.formats.store import list_closed_paths
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 
@@ -65,7 +65,7 @@ def test_they_are_opened_when_the_user_says_so_and_not_asked_about_again(drive, 
     _opened(drive, project)
     drive.wait(lambda: drive.document.project.clips["c1"].motion is not None, 30)
     assert len(answer.asked) == 1 and "walk.bvh" in answer.asked[0]
-    assert not closed_paths(drive.document.project)
+    assert not list_closed_paths(drive.document.project)
     drive.files.save()
     drive.wait(lambda: not drive.document.dirty, 30)
     assert network_paths.FOLDER not in project.read_text() and "//" in project.read_text()

@@ -7,7 +7,13 @@ from pathlib import Path
 import numpy as np
 import soundfile
 
-from app.project.speech_files import beside, channels_of, converses, facts_of, kinds_of
+from app.project.speech_files import (
+    channels_of,
+    facts_of,
+    find_transcripts_beside,
+    is_conversation,
+    sort_speech_files,
+)
 
 
 def sound(path: Path, channels: int, seconds: float = 0.1) -> Path:
@@ -17,13 +23,13 @@ def sound(path: Path, channels: int, seconds: float = 0.1) -> Path:
 
 def test_two_channels_two_sounds_or_a_sound_with_words_are_a_conversation(tmp_path: Path) -> None:
     mono, stereo, words = sound(tmp_path / "a.wav", 1), sound(tmp_path / "b.wav", 2), tmp_path / "a.TextGrid"
-    assert converses([stereo])
-    assert converses([mono, stereo])
-    assert converses([mono, words])
-    assert not converses([mono]), "a line of dialogue"
-    assert not converses([words])
-    assert not converses([mono, stereo, tmp_path / "c.flac"]), "lines of dialogue"
-    assert not converses([stereo, tmp_path / "notes.pdf"])
+    assert is_conversation([stereo])
+    assert is_conversation([mono, stereo])
+    assert is_conversation([mono, words])
+    assert not is_conversation([mono]), "a line of dialogue"
+    assert not is_conversation([words])
+    assert not is_conversation([mono, stereo, tmp_path / "c.flac"]), "lines of dialogue"
+    assert not is_conversation([stereo, tmp_path / "notes.pdf"])
 
 
 def test_three_sounds_are_a_conversation_where_they_last_long_and_as_long_as_each_other(
@@ -32,21 +38,25 @@ def test_three_sounds_are_a_conversation_where_they_last_long_and_as_long_as_eac
     def some(*lasts: float) -> list[Path]:
         return [sound(tmp_path / f"{n}.wav", 1, seconds) for n, seconds in enumerate(lasts)]
 
-    assert converses(some(12.0, 12.3, 12.1))
-    assert not converses(some(12.0, 12.0, 14.0)) and not converses(some(1.0, 1.1, 1.2)), "lines of dialogue"
-    assert converses([sound(tmp_path / "b.wav", 3)]) and not converses([sound(tmp_path / "c.wav", 9)])
+    assert is_conversation(some(12.0, 12.3, 12.1))
+    assert not is_conversation(some(12.0, 12.0, 14.0)) and not is_conversation(some(1.0, 1.1, 1.2)), (
+        "lines of dialogue"
+    )
+    assert is_conversation([sound(tmp_path / "b.wav", 3)]) and not is_conversation(
+        [sound(tmp_path / "c.wav", 9)]
+    )
 
 
 def test_sounds_come_first_by_name_and_what_is_neither_is_left_out() -> None:
     paths = [Path(n) for n in ("b.JSON", "B.wav", "a.WAV", "x.png", "a.vtt")]
-    assert kinds_of(paths) == ((Path("a.WAV"), Path("B.wav")), (Path("a.vtt"), Path("b.JSON")))
+    assert sort_speech_files(paths) == ((Path("a.WAV"), Path("B.wav")), (Path("a.vtt"), Path("b.JSON")))
 
 
 def test_words_beside_a_sound_are_found_whatever_the_case(tmp_path: Path) -> None:
     a, b = sound(tmp_path / "a.wav", 1), sound(tmp_path / "b.wav", 1)
     (tmp_path / "A.TextGrid").touch()
-    assert beside([a, b]) == (tmp_path / "A.TextGrid",)
-    assert beside([tmp_path / "nowhere" / "c.wav"]) == ()
+    assert find_transcripts_beside([a, b]) == (tmp_path / "A.TextGrid",)
+    assert find_transcripts_beside([tmp_path / "nowhere" / "c.wav"]) == ()
 
 
 def test_a_file_that_is_no_sound_has_no_channels(tmp_path: Path) -> None:

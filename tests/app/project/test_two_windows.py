@@ -17,7 +17,7 @@ from app.project.files import Files
 from app.project.jobs import Jobs
 from metagraph.formats.locking import STALE, lock_path, new_owner
 from metagraph.formats.project.journal import Journal, journal_path
-from metagraph.formats.recovery import left_journals, read_journal
+from metagraph.formats.recovery import find_left_journals, read_journal
 from metagraph.formats.store import read_project, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
@@ -207,7 +207,7 @@ def test_who_was_taken_over_becomes_read_only_and_loses_nothing(windows, person,
     person.save_as(None)
     assert not one.save(), "it asks for another place"
     kill_sittings(saved.parent)
-    assert len(left_journals(saved)) == 1
+    assert len(find_left_journals(saved)) == 1
 
 
 def test_a_folder_that_takes_no_lock_opens_all_the_same(windows, person, saved, qtbot):
@@ -245,7 +245,7 @@ def test_each_of_two_sittings_that_crashed_is_offered_and_none_is_lost(windows, 
     assert one.document.project.settings.seed == 21 and one.document.dirty
     copy = saved.with_name("show recovered.metagraph.yaml")
     assert on_disk(copy) == 10
-    assert left_journals(saved) == []
+    assert find_left_journals(saved) == []
 
 
 def test_the_older_sitting_is_offered_when_the_newer_is_declined(windows, person, saved, qtbot):

@@ -30,7 +30,7 @@ def opened(drive, toy, tmp_path, monkeypatch):
     ids = {clip.name: clip.id for clip in drive.document.project.clips.values()}
     drive.document.edit("Stance", lambda p: edits.add_stance(p, "arms", "rest", [ids["rest"]]))
     stance = next(iter(drive.document.project.graphs["arms"].stances))
-    drive.document.edit("Wave", lambda p: edits.place(p, [ids["wave"]], "arms", "gesture", stance))
+    drive.document.edit("Wave", lambda p: edits.place_clips(p, [ids["wave"]], "arms", "gesture", stance))
     drive.document.edit(
         "Time",
         lambda p: edits.update_actions(p, [a.id for a in p.actions() if a.kind == "gesture"], tags=("kept",)),

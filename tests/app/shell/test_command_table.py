@@ -9,7 +9,7 @@ import pytest
 
 from app import translation
 from app.shell.actions import Command
-from app.shell.command_table import all_of, any_of, bound, not_
+from app.shell.command_table import all_met, any_met, bind_commands, not_met
 from app.translation import tr_noop
 from tests.app.catalogue_texts import catalogue_texts
 
@@ -38,7 +38,7 @@ def feature():
 
 
 def test_a_command_asks_and_does_what_its_feature_says(feature):
-    undo, fill = bound(TABLE, feature)
+    undo, fill = bind_commands(TABLE, feature)
     undo.run()
     fill.fill("a menu")
     assert feature.done == ["undo", "a menu"]
@@ -51,14 +51,14 @@ def test_a_command_asks_and_does_what_its_feature_says(feature):
 
 def test_two_windows_have_commands_of_their_own(feature):
     other = SimpleNamespace(name="other", on=False, done=[])
-    (mine, _), (theirs, _) = bound(TABLE, feature), bound(TABLE, other)
+    (mine, _), (theirs, _) = bind_commands(TABLE, feature), bind_commands(TABLE, other)
     theirs.run()
     assert other.done and not feature.done and mine.enabled() and not theirs.enabled()
 
 
 def test_texts_are_in_the_language_that_is_chosen_when_the_window_is_made(feature):
     translation.choose("de")
-    undo, fill = bound(TABLE, feature)
+    undo, fill = bind_commands(TABLE, feature)
     assert undo.tip == fill.words == catalogue_texts("de")["Undo"] != "Undo"
 
 
@@ -70,7 +70,7 @@ def test_conditions_combine():
         return feature[1]
 
     for a, b in itertools.product((False, True), repeat=2):
-        assert all_of(first, second)((a, b)) == (a and b)
-        assert any_of(first, second)((a, b)) == (a or b)
-        assert not_(all_of(first, not_(second)))((a, b)) == (not a or b)
-    assert all_of()(()) and not any_of()(())
+        assert all_met(first, second)((a, b)) == (a and b)
+        assert any_met(first, second)((a, b)) == (a or b)
+        assert not_met(all_met(first, not_met(second)))((a, b)) == (not a or b)
+    assert all_met()(()) and not any_met()(())

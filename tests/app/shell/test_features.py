@@ -18,8 +18,8 @@ from tests.thorough import some
 ROOT = Path(__file__).resolve().parents[3]
 START = """
 import sys
-from app.main import make_window, prepare
-app = prepare()
+from app.main import make_window, prepare_application
+app = prepare_application()
 window = make_window()
 window.show()
 window.make_late_panels()

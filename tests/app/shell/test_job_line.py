@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 
-from app.project.jobs import Job, Jobs
+from app.project.jobs import Jobs, WindowJob
 from app.shell.job_line import JobLine
 
 
@@ -16,7 +16,7 @@ def test_many_steps_move_the_bar_a_few_times_and_the_last_is_shown(qtbot) -> Non
     line.bar.valueChanged.connect(shown.append)
     enough = threading.Event()
 
-    def work(job: Job) -> None:
+    def work(job: WindowJob) -> None:
         for n in range(1, 2001):
             job.tell(n, 2000, f"step {n}")
         enough.wait(30)

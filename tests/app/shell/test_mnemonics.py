@@ -11,7 +11,7 @@ from collections import Counter
 import pytest
 
 from app import translation
-from app.shell.mnemonics import distinct, key_of
+from app.shell.mnemonics import mnemonic_key, with_distinct_keys
 
 
 @pytest.mark.parametrize(
@@ -19,18 +19,20 @@ from app.shell.mnemonics import distinct, key_of
     [("&Save", "s"), ("S&ave && go", "a"), ("R&&D", ""), ("none", ""), ("end&", ""), ("", "")],
 )
 def test_a_text_marks_one_key_or_none(text: str, key: str) -> None:
-    assert key_of(text) == key
+    assert mnemonic_key(text) == key
 
 
 def test_the_first_keeps_a_key_and_another_has_one_of_its_other_letters() -> None:
-    assert distinct(("&Save", "&Sample", "Save &as")) == ("&Save", "Sa&mple", "Save &as")
-    assert distinct(("&Open", "&Onion skin")) == ("&Open", "Onion &skin"), "beginnings of words first"
+    assert with_distinct_keys(("&Save", "&Sample", "Save &as")) == ("&Save", "Sa&mple", "Save &as")
+    assert with_distinct_keys(("&Open", "&Onion skin")) == ("&Open", "Onion &skin"), (
+        "beginnings of words first"
+    )
 
 
 def test_a_text_without_a_mark_gets_none_and_one_without_a_free_letter_loses_it() -> None:
-    assert distinct(("&a", "&A", "plain")) == ("&a", "A", "plain")
-    assert distinct(("&b", "&B && b")) == ("&b", "B && b")
-    assert distinct(()) == ()
+    assert with_distinct_keys(("&a", "&A", "plain")) == ("&a", "A", "plain")
+    assert with_distinct_keys(("&b", "&B && b")) == ("&b", "B && b")
+    assert with_distinct_keys(()) == ()
 
 
 _WINDOW = """
@@ -63,5 +65,5 @@ def test_no_menu_has_a_key_twice(code: str) -> None:
     assert len(menus) > 8 and sum(map(len, menus.values())) > 100
     assert menus[""][0] == {"en": "&File", "de": "&Datei", "pl": "&Plik"}[code]
     for menu, texts in menus.items():
-        keys = Counter(key for text in texts if (key := key_of(text)))
+        keys = Counter(key for text in texts if (key := mnemonic_key(text)))
         assert not [key for key, count in keys.items() if count > 1], (menu, texts)

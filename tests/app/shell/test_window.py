@@ -662,7 +662,7 @@ def test_a_project_whose_character_is_missing_opens_as_a_stick_figure(drive, toy
 
 
 def test_requests_and_another_seed_change_the_performance(toys):
-    from app.widgets.request_menu import request_menu
+    from app.widgets.request_menu import make_request_menu
 
     drive = toys
     arms = lambda: drive.performance.shown.plan.layers["arms"].cues  # noqa: E731
@@ -675,18 +675,18 @@ def test_requests_and_another_seed_change_the_performance(toys):
     assert drive.timeline.seed.value() == 1
     drive.wait(lambda: [c.action.id for c in arms()] == before)
     far = drive.id("far")
-    drive.pick(request_menu(drive.timeline, drive.performance, 4.0), "Arms", "Go to far")
+    drive.pick(make_request_menu(drive.timeline, drive.performance, 4.0), "Arms", "Go to far")
     drive.wait(lambda: any(c.then == far and c.start < 8 for c in arms()))
-    drive.pick(request_menu(drive.timeline, drive.performance, None), "Withdraw all requests")
+    drive.pick(make_request_menu(drive.timeline, drive.performance, None), "Withdraw all requests")
     drive.wait(lambda: [c.action.id for c in arms()] == before)
     # A click on a cue selects its action, a double click plays it in context.
-    from app.widgets.lane_geometry import lanes, rows
+    from app.widgets.lane_geometry import place_lanes, split_lane
 
     board = drive.timeline.lanes
     drive.session.transport.set_playing(False)
     drive.session.transport.seek(0.0)
     cue = next(c for c in arms() if board.scale().x(c.end) < board.width())
-    at = rows(lanes(board.height())["arms"])[1].center().toPoint()
+    at = split_lane(place_lanes(board.height())["arms"])[1].center().toPoint()
     at.setX(round(board.scale().x((cue.start + cue.end) / 2)))
     drive.click((board, at))
     assert drive.session.selection.actions == (cue.action.id,)

@@ -15,7 +15,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
 from app.cli.parser import main
-from app.stage.conversation_plans import ConversationPlans, keep
+from app.stage.conversation_plans import ConversationPlans, keep_conversation
 from metagraph.formats.store import absolute, open_project, save_project
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.conversation.model import Conversation, Segment, Side
@@ -275,7 +275,7 @@ def test_a_generated_clip_moves_what_is_above_the_hips_and_is_written_so(talking
         )
 
     plain, made = shown("", None), shown("anna")
-    parts = np.array(anatomy.parts(project))
+    parts = np.array(anatomy.project_parts(project))
     times = np.linspace(0.4, clip.duration - 0.4, 9)
     apart = np.abs(plain.pose(times).rotations - made.pose(times).rotations).max((0, 2))
     assert apart[parts == "legs"].max() < 1e-6 and apart[parts == "arms"].max() > 0.1
@@ -345,19 +345,19 @@ def test_all_of_three_are_shown_whichever_of_them_is_looked_at(three: Path) -> N
 
 
 def test_what_three_do_is_kept_with_whom_they_look_at_and_plays_the_same(three: Path) -> None:
-    from metagraph.playback.planning.running_plan import perform
+    from metagraph.playback.planning.running_plan import plan_performance
     from tests.posing import pose_at
 
     project = open_project(three).project
     shown = ConversationPlans().show(project, "v9000", three.parent)
-    after, made = keep(project, "v9000", shown)
+    after, made = keep_conversation(project, "v9000", shown)
     assert [after.performances[i].name for i in made] == [f"Greeting: {n}" for n in ("Ada", "Ben", "Cleo")]
     times = np.arange(0.0, 8.0, 0.5)
     for ident, one in zip(made, shown.everyone, strict=True):
         kept = after.performances[ident]
         looks = {ask.to for ask in kept.asks if isinstance(ask, Look)}
         assert len(looks) == 2 and looks <= {ask.name for ask in kept.asks if isinstance(ask, Place)}
-        plan = perform(after, kept.asks, kept.length, kept.seed, idle=kept.idle)
+        plan = plan_performance(after, kept.asks, kept.length, kept.seed, idle=kept.idle)
         mine, theirs = pose_at(plan, after, times), one.pose(times)
         assert theirs is not None and np.allclose(mine.rotations, theirs.rotations)
 

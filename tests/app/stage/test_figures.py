@@ -10,7 +10,7 @@ import pytest
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.figures import Figures
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.stage.thumbnails import Thumbnails
 from metagraph.graph import edits
 from preview.figure import SkinnedFigure, StickFigure
@@ -77,7 +77,7 @@ def test_a_character_that_cannot_be_read_is_told_once_and_drawn_as_sticks(
 @pytest.mark.gl
 def test_thumbnails_are_drawn_elsewhere_and_a_loop_moves(document, figures, toy, qtbot):
     document.load(toy.project(), None)
-    thumbnails = Thumbnails(document, Session(document), figures)
+    thumbnails = Thumbnails(document, StageSession(document), figures)
     try:
         loop = toy.id(document.project, "rest loop")
         clip = document.project.action(loop).clip

@@ -12,8 +12,8 @@ import soundfile
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.line_player import RATE, Sound
-from app.stage.performance import Performance
-from app.stage.session import Session
+from app.stage.performance import StagePerformance
+from app.stage.session import StageSession
 from metagraph.graph import requests as a
 
 
@@ -42,8 +42,8 @@ class Stream:
 def stage(qapp, qtbot, toy, tmp_path):
     soundfile.write(tmp_path / "one.wav", 0.5 * np.sin(np.arange(16000) * 0.2), 16000)
     document, jobs = Document(), Jobs()
-    session = Session(document)
-    performance = Performance(document, session, jobs)
+    session = StageSession(document)
+    performance = StagePerformance(document, session, jobs)
     sound = Sound(document, session, performance, jobs)
     session.transport.set_playing(False)
     project = replace(toy.project(), lines={"1": a.Line(audio="one.wav", duration=1.0)})

@@ -11,7 +11,7 @@ from app.stage.live_stage import TAKES, WINDOW, LiveStage
 from metagraph.graph import edits
 from metagraph.graph.conversation.model import Conversation, Side
 from metagraph.graph.model import Project
-from metagraph.live.graph_motion import recorded_takes
+from metagraph.live.graph_motion import list_recorded_takes
 from metagraph.live.messages import Generate
 from tests.synthesis.talking import talkers
 
@@ -55,7 +55,7 @@ def made(stage: LiveStage) -> LiveStage:
 
 
 def test_the_motion_graph_of_the_projects_own_takes_is_offered_once_it_is_made(qapp, recorded):
-    clips, speech = recorded_takes(recorded)
+    clips, speech = list_recorded_takes(recorded)
     assert len(clips) == len(speech) == 2
     stage = LiveStage(recorded)
     stage.session.offer(TAKES, None)
@@ -86,4 +86,4 @@ def test_takes_nobody_said_anything_during_are_left_out(recorded):
         ident: Conversation(name=ident, length=20.0, sides=(Side(take=talk.sides[0].take), Side()))
         for ident, talk in recorded.conversations.items()
     }
-    assert recorded_takes(replace(recorded, conversations=silent)) == ([], [])
+    assert list_recorded_takes(replace(recorded, conversations=silent)) == ([], [])

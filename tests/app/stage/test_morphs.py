@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.cli.render_command import pictures
-from app.stage.playback_source import alone
+from app.cli.render_command import render_pictures
+from app.stage.playback_source import play_clip_alone
 from metagraph.formats.gltf.reader import read_character
 from metagraph.formats.imports import import_files
 from metagraph.graph import edits
@@ -43,7 +43,7 @@ def test_morphs_of_a_clip_and_of_a_plan_are_drawn(shared_data):
     frame = entry.frames // 2
     wanted = entry.motion.morphs_at(frame / entry.fps)
     assert figure.morph_weights(wanted).any()
-    assert alone(project, entry.id).clip == entry.id
+    assert play_clip_alone(project, entry.id).clip == entry.id
 
     project = edits.add_stance(project, "head", "face", [entry.id])
     loop = project.graphs["head"].of(next(iter(project.graphs["head"].stances)), "stance")[0]
@@ -51,10 +51,10 @@ def test_morphs_of_a_clip_and_of_a_plan_are_drawn(shared_data):
         make_plan(project, 5.0), project, frame / entry.fps - project.span(loop)[0]
     ) == pytest.approx({name: min(1.0, max(0.0, value)) for name, value in wanted.items()}, abs=1e-3)
     times = np.array([frame / entry.fps])
-    seen = [(figure, alone(project, entry.id))]
-    shown = next(iter(pictures(seen, times, (160, 160), "dark")))
+    seen = [(figure, play_clip_alone(project, entry.id))]
+    shown = next(iter(render_pictures(seen, times, (160, 160), "dark")))
     figure.morphs = ()
-    still = next(iter(pictures(seen, times, (160, 160), "dark")))
+    still = next(iter(render_pictures(seen, times, (160, 160), "dark")))
     assert (shown != still).any(), "the face differs from the one without morphs"
 
 

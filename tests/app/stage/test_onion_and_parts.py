@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from app.stage.onion import MOST, Onion, Skin
-from app.stage.playback_source import Shown, alone, in_context
+from app.stage.onion import MOST, Onion, OnionSkin
+from app.stage.playback_source import ShownPlayback, play_clip_alone, play_in_context
 from app.stage.playhead import Playhead
 from app.stage.transport import Transport
 
@@ -18,7 +18,7 @@ def wave(toy):
 
 def test_a_moment_of_an_action_is_found_in_context_and_back(wave):
     project, action = wave
-    shown = in_context(project, action.id, "arms", {})
+    shown = play_in_context(project, action.id, "arms", {})
     for moment in (0.1, 0.5, 0.9):
         seconds = shown.seconds_of(action, moment)
         assert seconds is not None and seconds > moment
@@ -30,7 +30,7 @@ def test_a_moment_of_an_action_is_found_in_context_and_back(wave):
 def test_of_a_clip_alone_moments_are_its_seconds_and_others_are_not_there(toy, wave):
     project, action = wave
     other = project.action(toy.id(project, "rest long"))
-    shown: Shown = alone(project, action.clip)
+    shown: ShownPlayback = play_clip_alone(project, action.clip)
     assert shown.clip_seconds(action, 0.4) == shown.seconds_of(action, 0.4) == 0.4
     assert shown.clip_seconds(other, 0.4) is None and shown.seconds_of(other, 0.4) is None
 
@@ -82,7 +82,7 @@ def test_scrubbing_shows_a_clip_still_and_does_not_begin_it_anew(qapp):
 def test_a_skin_is_told_once_and_has_few_ghosts(qapp, wave):
     onion, told = Onion(), []
     onion.changed.connect(lambda: told.append(1))
-    skin = Skin(wave[1], tuple((n / 10, 0.2) for n in range(9)))
+    skin = OnionSkin(wave[1], tuple((n / 10, 0.2) for n in range(9)))
     onion.show(skin)
     onion.show(skin)
     assert len(onion.skin.moments) == MOST and len(told) == 1

@@ -9,10 +9,10 @@ import pytest
 
 from app.project.document import Document
 from app.project.jobs import Jobs
-from app.stage.performance import Performance
-from app.stage.playback_source import LEAD, alone, in_context
+from app.stage.performance import StagePerformance
+from app.stage.playback_source import LEAD, play_clip_alone, play_in_context
 from app.stage.playhead import Playhead
-from app.stage.session import Session
+from app.stage.session import StageSession
 from metagraph.graph import edits
 from metagraph.graph import requests as a
 from metagraph.graph.editing import performances as performance_edits
@@ -26,7 +26,7 @@ def project(toy):
     project = edits.add_clips(toy.project(), [("loose.glb", 0, "", toy.clip("loose", 0.9))])
     clip = {e.name: e.id for e in project.clips.values()}
     project = edits.add_stance(project, "head", "still", [clip["rest loop"]])
-    return edits.place(project, [clip["rest cough"]], "head", "fidget", toy.id(project, "still"))
+    return edits.place_clips(project, [clip["rest cough"]], "head", "fidget", toy.id(project, "still"))
 
 
 def stances(project: Project) -> dict:
@@ -35,16 +35,16 @@ def stances(project: Project) -> dict:
 
 def test_a_clip_alone_lasts_as_long_as_it_is(toy, project):
     clip = next(e for e in project.clips.values() if e.name == "rest wave rt")
-    shown = alone(project, clip.id)
+    shown = play_clip_alone(project, clip.id)
     assert shown.length == pytest.approx(1.2)
     assert shown.clip == clip.id
     empty = replace(project, clips={**project.clips, clip.id: replace(clip, frames=1)})
-    assert alone(empty, clip.id).length > 0
+    assert play_clip_alone(empty, clip.id).length > 0
 
 
 def test_an_action_in_context_is_stance_action_and_stance_again(toy, project):
     beat = toy.id(project, "rest beat lf")
-    shown = in_context(project, beat, "arms", stances(project))
+    shown = play_in_context(project, beat, "arms", stances(project))
     cues = shown.plan.layers["arms"].cues
     assert [c.action.id for c in cues] == [beat]
     assert cues[0].start == pytest.approx(LEAD)
@@ -56,13 +56,13 @@ def test_an_action_in_context_is_stance_action_and_stance_again(toy, project):
 
 def test_an_action_of_another_stance_is_shown_in_its_own(toy, project):
     point = toy.id(project, "up point")
-    cues = in_context(project, point, "arms", stances(project)).plan.layers["arms"].cues
+    cues = play_in_context(project, point, "arms", stances(project)).plan.layers["arms"].cues
     assert [c.action.id for c in cues] == [point], "no transition is needed to get there"
     assert cues[0].stance == toy.id(project, "up")
 
 
 def test_a_transition_ends_in_the_other_stance(toy, project):
-    shown = in_context(project, toy.id(project, "rest to up"), "arms", stances(project))
+    shown = play_in_context(project, toy.id(project, "rest to up"), "arms", stances(project))
     cue = shown.plan.layers["arms"].cues[0]
     assert (cue.stance, cue.then) == (toy.id(project, "rest"), toy.id(project, "up"))
     low, high = pose_at(shown.plan, shown.project, 0.0), pose_at(shown.plan, shown.project, shown.length)
@@ -73,7 +73,7 @@ def test_a_stances_loop_plays_from_its_start_to_its_end(toy, project):
     loop = next(
         a.id for a in project.actions() if a.kind == "stance" and a.layer == "arms" and a.name == "up loop"
     )
-    shown = in_context(project, loop, "arms", stances(project))
+    shown = play_in_context(project, loop, "arms", stances(project))
     assert shown.plan.layers["arms"].cues == ()
     assert shown.length == pytest.approx(2.0)
     assert pose_at(shown.plan, shown.project, 0.5) is not None
@@ -81,16 +81,18 @@ def test_a_stances_loop_plays_from_its_start_to_its_end(toy, project):
 
 def test_a_clip_that_was_placed_is_shown_as_what_it_is(toy, project):
     clip = project.action(toy.id(project, "rest cough")).clip
-    shown = in_context(project, clip, "arms", stances(project))
+    shown = play_in_context(project, clip, "arms", stances(project))
     assert shown.plan.layers["arms"].cues[0].action.kind == "fidget"
-    up_only = in_context(project, project.action(toy.id(project, "up yawn")).clip, "arms", stances(project))
+    up_only = play_in_context(
+        project, project.action(toy.id(project, "up yawn")).clip, "arms", stances(project)
+    )
     assert up_only.plan.layers["arms"].cues[0].stance == toy.id(project, "up"), (
         "where it is, when it is not on the current stance"
     )
 
 
 def test_a_clip_that_was_not_placed_is_tried_as_a_gesture(toy, project):
-    shown = in_context(project, toy.id(project, "loose"), "arms", stances(project))
+    shown = play_in_context(project, toy.id(project, "loose"), "arms", stances(project))
     cue = shown.plan.layers["arms"].cues[0]
     assert (cue.action.kind, cue.stance) == ("gesture", toy.id(project, "rest"))
     assert toy.id(project, "loose") not in project.uses, "trying places nothing"
@@ -98,13 +100,13 @@ def test_a_clip_that_was_not_placed_is_tried_as_a_gesture(toy, project):
 
 def test_without_a_stance_a_clip_in_context_is_shown_alone(toy, project):
     loose = toy.id(project, "loose")
-    assert in_context(project, loose, "body", {}).clip == loose
+    assert play_in_context(project, loose, "body", {}).clip == loose
 
 
 def test_what_is_gone_does_not_break_the_preview(toy, project):
     bare = edits.add_clips(Project(), [("a.glb", 0, "", toy.clip("a"))])
     clip = next(iter(bare.clips))
-    assert in_context(bare, clip, "arms", {}).clip == clip
+    assert play_in_context(bare, clip, "arms", {}).clip == clip
 
 
 @pytest.mark.parametrize("name", ["rest beat lf", "up loop", "rest to up"])
@@ -113,7 +115,7 @@ def test_a_clip_whose_file_is_missing_still_has_a_pose(toy, project, name):
     clips = {**project.clips, action.clip: replace(project.clips[action.clip], motion=None)}
     missing = replace(project, clips=clips)
     for ident in (action.id, action.clip):
-        shown = in_context(missing, ident, "arms", stances(project))
+        shown = play_in_context(missing, ident, "arms", stances(project))
         for seconds in (0.0, 0.9, shown.length):
             assert np.isfinite(pose_at(shown.plan, shown.project, seconds).rotations).all()
 
@@ -125,8 +127,8 @@ def test_a_clip_whose_file_is_missing_still_has_a_pose(toy, project, name):
 def stage(qapp, project):
     document = Document()
     jobs = Jobs()
-    session = Session(document)
-    performance = Performance(document, session, jobs)
+    session = StageSession(document)
+    performance = StagePerformance(document, session, jobs)
     document.load(project, None)
     yield performance
     jobs.stop()

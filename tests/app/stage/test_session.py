@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app.project.document import Document
-from app.stage.session import Session
+from app.stage.session import StageSession
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 
@@ -14,7 +14,7 @@ from metagraph.graph.model import Project
 def session(qapp, toy):
     document = Document()
     document.load(toy.project(), None)
-    session = Session(document)
+    session = StageSession(document)
     yield session
     document.close_journal()
 
@@ -26,7 +26,7 @@ def told(signal) -> list:
 
 
 def test_nothing_is_selected_and_shown_of_an_empty_project(qapp):
-    session = Session(Document())
+    session = StageSession(Document())
     assert session.place.stance() is None
     assert session.place.other() is None
     assert session.selection.selected_actions() == ()

@@ -14,7 +14,7 @@ from PySide6.QtGui import QMouseEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QDoubleSpinBox, QMenu, QSpinBox
 
-from app.widgets.lane_geometry import LEFT, lanes, rows
+from app.widgets.lane_geometry import LEFT, place_lanes, split_lane
 from metagraph.graph import requests as a
 from metagraph.live.server import Options
 
@@ -39,7 +39,7 @@ def board(drive):
 
 
 def spot(drive, seconds: float, lane: str = "arms", upper: bool = True) -> QPoint:
-    row = rows(lanes(board(drive).height())[lane])[0 if upper else 1]
+    row = split_lane(place_lanes(board(drive).height())[lane])[0 if upper else 1]
     return QPoint(round(board(drive).scale().x(seconds)), round(row.center().y()))
 
 
@@ -282,10 +282,10 @@ def test_performances_are_made_renamed_and_removed_from_the_panel(stage, monkeyp
 
 
 def test_a_point_is_put_somewhere_and_looked_at(stage):
-    from app.widgets.request_menu import request_menu
+    from app.widgets.request_menu import make_request_menu
 
     drive = stage
-    menu = request_menu(drive.timeline, drive.performance, 2.0)
+    menu = make_request_menu(drive.timeline, drive.performance, 2.0)
     drive.pick(menu, "Look at", "Another point…")
     drive.wait(lambda: QApplication.activeModalWidget() is not None)
     editor = QApplication.activeModalWidget()

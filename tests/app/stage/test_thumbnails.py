@@ -15,7 +15,7 @@ from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage import thumbnails as module
 from app.stage.figures import Figures
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.stage.thumbnails import Thumbnails
 from metagraph.graph import edits
 
@@ -58,7 +58,7 @@ class Drawer:
 def pictures(qapp, toy):
     document = Document()
     jobs = Jobs()
-    made = Thumbnails(document, Session(document), Figures(document, jobs))
+    made = Thumbnails(document, StageSession(document), Figures(document, jobs))
     made.kept.ask = made.kept.missing.emit  # nothing is on the disk
     document.load(toy.project(), None)
     yield made

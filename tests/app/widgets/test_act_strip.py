@@ -8,8 +8,8 @@ from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QApplication
 
 from app.project.document import Document
-from app.stage.session import Session
-from app.widgets.act_strip import LEFT, Strip, clock, place
+from app.stage.session import StageSession
+from app.widgets.act_strip import LEFT, ActStrip, format_clock, place_act
 from metagraph.playback.learning.learn import Act
 
 ACTS = {
@@ -24,8 +24,8 @@ ACTS = {
 
 @pytest.fixture
 def strip(qtbot):
-    session = Session(Document())
-    widget = Strip(session, None)
+    session = StageSession(Document())
+    widget = ActStrip(session, None)
     qtbot.addWidget(widget)
     widget.resize(LEFT + 8 + 500, 100)
     widget.show_acts(ACTS, 10.0)
@@ -33,7 +33,7 @@ def strip(qtbot):
 
 
 def test_seconds_are_told_as_clocks_do():
-    assert [clock(s) for s in (0, 0.5, 12, 60, 65, 3600, 3725)] == [
+    assert [format_clock(s) for s in (0, 0.5, 12, 60, 65, 3600, 3725)] == [
         "0 s",
         "0.5 s",
         "12 s",
@@ -46,10 +46,10 @@ def test_seconds_are_told_as_clocks_do():
 
 def test_only_arms_have_sides():
     lane = QRectF(0, 10, 100, 30)
-    assert place(lane, ACTS["arms"][0], "arms") == (10, 14)
-    assert place(lane, ACTS["arms"][1], "arms") == (26, 14)
-    assert place(lane, ACTS["arms"][2], "arms") == (10, 30)
-    assert place(lane, ACTS["arms"][0], "head") == (10, 30)
+    assert place_act(lane, ACTS["arms"][0], "arms") == (10, 14)
+    assert place_act(lane, ACTS["arms"][1], "arms") == (26, 14)
+    assert place_act(lane, ACTS["arms"][2], "arms") == (10, 30)
+    assert place_act(lane, ACTS["arms"][0], "head") == (10, 30)
 
 
 def test_what_is_under_the_pointer_is_found_on_its_side(strip):

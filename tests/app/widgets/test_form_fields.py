@@ -7,15 +7,15 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 
-from app.widgets.form_fields import MIXED, Chooser, Field, Mixed, Seconds, common
+from app.widgets.form_fields import MIXED, Field, Mixed, QuietChooser, Seconds, common_value
 
 
 def test_common_is_the_value_all_share_or_mixed():
-    assert common([1]) == 1
-    assert common([None, None]) is None
-    assert common([1, 1.0]) == 1
-    assert common([1, 2]) is Mixed
-    assert common([None, 0]) is Mixed
+    assert common_value([1]) == 1
+    assert common_value([None, None]) is None
+    assert common_value([1, 1.0]) == 1
+    assert common_value([1, 2]) is Mixed
+    assert common_value([None, 0]) is Mixed
     assert repr(Mixed) == "mixed"
 
 
@@ -82,7 +82,7 @@ def test_a_name_being_typed_stays_until_something_else_is_selected(qtbot, monkey
 def test_a_chooser_shows_what_is_set_and_says_nothing_itself(qtbot):
     page = QWidget()
     qtbot.addWidget(page)
-    chooser, told = Chooser(page, toolTip="Stance"), []
+    chooser, told = QuietChooser(page, toolTip="Stance"), []
     chooser.currentIndexChanged.connect(told.append)
     chooser.show_entries([("rest", "s1"), ("up", "s2")], "s2")
     assert chooser.currentData() == "s2"

@@ -4,7 +4,7 @@ import pytest
 from PySide6.QtCore import QEvent, QPointF, Qt
 from PySide6.QtGui import QMouseEvent
 
-from app.widgets.gesture import Hand, PressDrag, Reason
+from app.widgets.gesture import PointerHand, PressDrag, Reason
 
 LEFT, RIGHT = Qt.MouseButton.LeftButton, Qt.MouseButton.RightButton
 
@@ -39,7 +39,7 @@ def of_mouse(kind: QEvent.Type, button: Qt.MouseButton = LEFT) -> QMouseEvent:
 
 @pytest.mark.parametrize(("far", "told"), [(2, ["finish", "click"]), (3, ["finish"])])
 def test_what_is_let_go_before_it_has_begun_is_a_click(far: int, told: list[str]) -> None:
-    hand, gesture = Hand(), Noted()
+    hand, gesture = PointerHand(), Noted()
     hand.take(gesture, QPointF(5, 5))
     assert not hand.press(of_mouse(QEvent.Type.MouseButtonPress)), "only what is sticky ends by a press"
     hand.move(QPointF(5 + far, 5))
@@ -49,7 +49,7 @@ def test_what_is_let_go_before_it_has_begun_is_a_click(far: int, told: list[str]
 
 @pytest.mark.parametrize(("button", "told"), [(LEFT, ["finish"]), (RIGHT, ["replaced"])])
 def test_a_sticky_gesture_goes_on_until_a_button_is_pressed(button: Qt.MouseButton, told: list[str]) -> None:
-    hand, gesture = Hand(), Noted(sticky=True)
+    hand, gesture = PointerHand(), Noted(sticky=True)
     hand.take(gesture, QPointF(5, 5))
     assert not hand.release(of_mouse(QEvent.Type.MouseButtonRelease)) and hand.gesture is gesture
     assert hand.press(of_mouse(QEvent.Type.MouseButtonPress, button))
@@ -57,7 +57,7 @@ def test_a_sticky_gesture_goes_on_until_a_button_is_pressed(button: Qt.MouseButt
 
 
 def test_an_empty_hand_takes_no_press_and_finishes_nothing() -> None:
-    hand = Hand()
+    hand = PointerHand()
     assert not hand.press(of_mouse(QEvent.Type.MouseButtonPress))
     assert not hand.release(of_mouse(QEvent.Type.MouseButtonRelease))
     assert hand.cursor is None

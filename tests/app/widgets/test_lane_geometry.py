@@ -12,43 +12,43 @@ from hypothesis import strategies as st
 from PySide6.QtCore import QPointF
 from PySide6.QtGui import QFont
 
-from app.stage.playback_source import Shown
+from app.stage.playback_source import ShownPlayback
 from app.widgets.lane_geometry import (
     LEFT,
     RULER,
-    Scale,
-    advance,
+    LaneScale,
     cue_at,
+    describe_mark,
     lane_at,
-    lanes,
     mark_at,
-    marks,
-    rows,
-    told,
+    place_lanes,
+    place_marks,
+    split_lane,
+    text_width,
 )
 from app.widgets.request_menu import STAGE
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS
 from metagraph.playback.planner import make_plan
-from metagraph.playback.planning.extend_performance import answer
-from metagraph.playback.planning.running_plan import perform
+from metagraph.playback.planning.extend_performance import answer_ask
+from metagraph.playback.planning.running_plan import plan_performance
 
 
 @given(first=st.floats(0, 1e4), each=st.floats(2, 400), seconds=st.floats(0, 1e4))
 def test_pixels_and_seconds_are_inverse(first, each, seconds):
-    scale = Scale(first, each)
+    scale = LaneScale(first, each)
     assert scale.seconds(scale.x(seconds)) == pytest.approx(seconds, abs=1e-6)
     assert scale.x(first) == LEFT
 
 
 @given(each=st.floats(2, 400))
 def test_marks_of_the_ruler_have_room_for_their_words(each):
-    assert Scale(0, each).step() * each >= 64
+    assert LaneScale(0, each).step() * each >= 64
 
 
 @pytest.mark.parametrize("height", [10, 120, 200, 226, 900])
 def test_lanes_follow_each_other_from_the_ruler_down(height):
-    found = lanes(height)
+    found = place_lanes(height)
     assert list(found) == [STAGE, *LAYERS]
     bottoms = [RULER, *(lane.bottom() for lane in found.values())]
     assert [lane.top() for lane in found.values()] == pytest.approx(bottoms[:-1])
@@ -58,11 +58,11 @@ def test_lanes_follow_each_other_from_the_ruler_down(height):
 
 def test_the_cue_under_a_point_is_the_one_that_plays_then(toy):
     project = toy.project()
-    shown = Shown(project, make_plan(project, 60.0), 60.0)
-    scale, height = Scale(5.0, 30.0), 200
+    shown = ShownPlayback(project, make_plan(project, 60.0), 60.0)
+    scale, height = LaneScale(5.0, 30.0), 200
     cues = [c for c in shown.plan.layers["arms"].cues if c.start > 6]
     assert cues
-    lane = rows(lanes(height)["arms"])[1]
+    lane = split_lane(place_lanes(height)["arms"])[1]
     for cue in cues:
         middle = QPointF(scale.x((cue.start + cue.end) / 2), lane.center().y())
         assert cue_at(shown, scale, height, middle) == ("arms", cue)
@@ -72,7 +72,7 @@ def test_the_cue_under_a_point_is_the_one_that_plays_then(toy):
             shown,
             scale,
             height,
-            QPointF(scale.x(cue.start + 0.1), rows(lanes(height)["body"])[1].center().y()),
+            QPointF(scale.x(cue.start + 0.1), split_lane(place_lanes(height)["body"])[1].center().y()),
         )
         is None
     )
@@ -84,8 +84,8 @@ def test_the_cue_under_a_point_is_the_one_that_plays_then(toy):
 
 @pytest.mark.parametrize("height", [160, 232, 900])
 def test_a_lane_has_what_was_asked_above_what_plays(height):
-    for lane in lanes(height).values():
-        upper, lower = rows(lane)
+    for lane in place_lanes(height).values():
+        upper, lower = split_lane(lane)
         assert lane.top() <= upper.top() < upper.bottom() <= lower.top() < lower.bottom() <= lane.bottom()
         assert upper.height() > 8 and lower.height() > 12
 
@@ -94,9 +94,9 @@ def test_a_lane_has_what_was_asked_above_what_plays(height):
 
 
 def shown_asks(project, *asks, shift=None, each=40.0):
-    plan = perform(project, asks, 60.0)
-    answers = {ask.id: answer(plan, ask.id) for ask in asks}
-    return marks(asks, answers, project, Scale(0.0, each), 232.0, QFont(), shift)
+    plan = plan_performance(project, asks, 60.0)
+    answers = {ask.id: answer_ask(plan, ask.id) for ask in asks}
+    return place_marks(asks, answers, project, LaneScale(0.0, each), 232.0, QFont(), shift)
 
 
 def test_requests_stand_in_their_lane_at_their_time(qapp, toy):
@@ -137,20 +137,20 @@ def test_requests_close_together_stay_apart_and_the_one_under_the_mouse_is_found
 def test_where_there_is_height_requests_close_together_stand_below_each_other_with_their_words(qapp, toy):
     project, words = toy.project(), ("a very long tag",)
     asks = [a.Gesture(id=f"g{n}", at=2.0 + n, tags=words) for n in range(3)]
-    plan = perform(project, asks, 60.0)
-    answers = {ask.id: answer(plan, ask.id) for ask in asks}
-    tall = marks(asks, answers, project, Scale(0.0, 40.0), 460.0, QFont())
+    plan = plan_performance(project, asks, 60.0)
+    answers = {ask.id: answer_ask(plan, ask.id) for ask in asks}
+    tall = place_marks(asks, answers, project, LaneScale(0.0, 40.0), 460.0, QFont())
     assert len({m.rect.top() for m in tall}) == 3
     assert len({round(m.rect.width(), 3) for m in tall}) == 1
-    lane = lanes(460.0)["arms"]
-    assert all(rows(lane)[0].contains(m.rect) for m in tall)
+    lane = place_lanes(460.0)["arms"]
+    assert all(split_lane(lane)[0].contains(m.rect) for m in tall)
     flat = shown_asks(project, *asks)
     assert len({m.rect.top() for m in flat}) == 1 and flat[0].rect.width() < tall[0].rect.width()
 
 
 @pytest.mark.parametrize(("height", "used"), [(180, 0.95), (250, 0.95), (430, 0.95)])
 def test_lanes_use_the_height_there_is(height, used):
-    assert list(lanes(height).values())[-1].bottom() >= used * height
+    assert list(place_lanes(height).values())[-1].bottom() >= used * height
 
 
 def test_a_dragged_request_is_drawn_where_it_is_held(qapp, toy):
@@ -163,15 +163,15 @@ def test_what_does_not_play_says_why(qapp, toy):
     project = toy.project()
     lost = shown_asks(project, a.Gesture(id="g", at=2.0, tags=("nonsense",), priority=3))[0]
     assert lost.lost
-    assert lost.rect.width() >= advance(f"⚠ {lost.words}", QFont().toString()) + 10, (
+    assert lost.rect.width() >= text_width(f"⚠ {lost.words}", QFont().toString()) + 10, (
         "its sign and its words have room"
     )
-    words = told(lost)
+    words = describe_mark(lost)
     assert "Does not play" in words and "nonsense" in words and "priority 3" in words
     late = {
         m.ask.id: m
         for m in shown_asks(project, a.Play(id="a", action="rest long", at=1.0), a.Gesture(id="b", at=2.8))
     }["b"]
-    assert late.late == pytest.approx(0.6) and "from 3.40 to 4.30 s" in told(late)
+    assert late.late == pytest.approx(0.6) and "from 3.40 to 4.30 s" in describe_mark(late)
     there = shown_asks(project, a.Go(id="s", stance="rest", at=1.0))[0]
-    assert not there.lost and "already" in told(there)
+    assert not there.lost and "already" in describe_mark(there)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.widgets.lane_paint import cue_words
+from app.widgets.lane_paint import describe_cue
 from metagraph.graph import edits
 
 
@@ -22,4 +22,4 @@ def test_a_bar_says_what_tells_an_action_from_the_others_of_its_stance(toy, name
     project = toy.project()
     action = next(a for a in project.actions() if a.kind == "gesture" and a.stance == toy.id(project, "rest"))
     project = edits.update_actions(project, [action.id], name=name)
-    assert cue_words(project, project.action(action.id)) == words
+    assert describe_cue(project, project.action(action.id)) == words

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PySide6.QtGui import QColor
 
-from app.widgets.waveforms import RATE, Envelope, joined, painted
+from app.widgets.waveforms import RATE, Envelope, join_columns, paint_columns
 
 
 def made(seconds: float, seed: int = 3) -> tuple[Envelope, np.ndarray]:
@@ -76,9 +76,9 @@ def test_the_shortest_sounds_do_no_harm(samples: int) -> None:
 
 
 def test_columns_touch_and_are_painted_where_they_are() -> None:
-    top, bottom = joined(np.array([2.0, 8.0, np.inf]), np.array([3.0, 9.0, -np.inf]), 1.0)
+    top, bottom = join_columns(np.array([2.0, 8.0, np.inf]), np.array([3.0, 9.0, -np.inf]), 1.0)
     assert top[1] <= 3.0 < 9.0 <= bottom[1]
-    image = painted(top, bottom, 12, QColor("#ff0000"))
+    image = paint_columns(top, bottom, 12, QColor("#ff0000"))
     assert (image.width(), image.height()) == (3, 12)
     assert QColor(image.pixelColor(0, 2)).red() == 255
     assert image.pixelColor(0, 6).alpha() == 0

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from metagraph.engines.export import write
+from metagraph.engines.export import write_project_files
 from metagraph.engines.reading import read_export
 from metagraph.engines.script import cases
 from metagraph.engines.vectors import write_vectors
@@ -146,7 +146,7 @@ def test_the_pages_words_pose_clips_nobody_here_made(shared_data: Path, tmp_path
 
 
 def poses_as_exported(project: Project, folder: Path) -> None:
-    made = write(many_ways(project), folder)
+    made = write_project_files(many_ways(project), folder)
     write_vectors(made.json, list(cases(read_export(made.json, resolved=True)))[::6])
     character, vectors = read_vectors(folder)
     seen: set[str] = set()

@@ -14,8 +14,8 @@ from metagraph.engines.translation.gesture_word_lists import gesture_word_lists
 from metagraph.engines.translation.listing import LISTING, NATIVE, RUNTIMES, Translated
 from metagraph.engines.translation.lowering import module_of
 from metagraph.engines.translation.printing import TranslationError
-from metagraph.engines.translation.source import Source, SubsetError
-from metagraph.engines.translation.translating import printed, read, understood
+from metagraph.engines.translation.source import SourceModule, SubsetError
+from metagraph.engines.translation.translating import print_modules, read_modules, type_modules
 from tests.engines import cpp_program
 from tests.engines.translation import every_means
 
@@ -29,27 +29,27 @@ EVERY = Translated("tests.engines.translation.every_means", "every_means")
 
 
 @pytest.fixture(scope="module")
-def sources() -> dict[Translated, Source]:
+def sources() -> dict[Translated, SourceModule]:
     """What is translated and the module of all means, read at once: to read takes most of the time."""
-    return understood([*LISTING, EVERY], ROOT)
+    return type_modules([*LISTING, EVERY], ROOT)
 
 
-def test_the_runtimes_hold_what_is_translated_today(sources: dict[Translated, Source]) -> None:
+def test_the_runtimes_hold_what_is_translated_today(sources: dict[Translated, SourceModule]) -> None:
     """Else: `.venv/bin/python -m metagraph.engines.translation`."""
-    made = printed({one: module_of(sources[one]) for one in LISTING}, NATIVE)
+    made = print_modules({one: module_of(sources[one]) for one in LISTING}, NATIVE)
     assert not [path for path, text in made.items() if (RUNTIMES / path).read_text(encoding="utf-8") != text]
     every = [*(RUNTIMES / path for path in made), *gesture_word_lists()]
     assert ATTRIBUTES.read_text() == mark_generated(every), "who reads a change need not read these"
 
 
 @pytest.fixture(scope="module")
-def means(sources: dict[Translated, Source]) -> dict[str, str]:
+def means(sources: dict[Translated, SourceModule]) -> dict[str, str]:
     """The module of all means, in each language."""
     wanted = ("MEANS",)
     one, source = EVERY, sources[EVERY]
     names = {n for d in source.tree.defs for n in [getattr(d, "name", "")] if n} | {"STEP", "WORDS"}
     source.only = tuple(names - set(wanted))
-    return {Path(path).suffix: text for path, text in printed({one: module_of(source)}, {}).items()}
+    return {Path(path).suffix: text for path, text in print_modules({one: module_of(source)}, {}).items()}
 
 
 def test_javascript_says_the_same(means: dict[str, str], tmp_path: Path) -> None:
@@ -155,7 +155,7 @@ def test_what_is_outside_the_subset_is_refused_with_its_place_and_a_remedy(tmp_p
         one = Translated(name, name)
         if name in quiet:
             (tmp_path / f"{name}.py").write_text("# mypy: ignore-errors\n" + modules[name] + "\n")
-    sources = understood([Translated(n, n) for n in modules], tmp_path)
+    sources = type_modules([Translated(n, n) for n in modules], tmp_path)
     for one, source in sources.items():
         with pytest.raises(SubsetError) as told:
             module_of(source)
@@ -177,12 +177,12 @@ def test_what_no_language_knows_is_told(tmp_path: Path) -> None:
         "own": "a method calls 'f' of its own module",
         "same": "whether two lists are equal",
     }
-    for one, module in read([Translated(name, name) for name in wrong], tmp_path).items():
+    for one, module in read_modules([Translated(name, name) for name in wrong], tmp_path).items():
         with pytest.raises(TranslationError, match=wrong[one.module]):
-            printed({one: module}, {})
+            print_modules({one: module}, {})
 
 
 def test_what_mypy_finds_wrong_is_told(tmp_path: Path) -> None:
     (tmp_path / "wrong.py").write_text("def f() -> int:\n    return 'x'\n")
     with pytest.raises(SubsetError, match=r"wrong.py:2: error"):
-        read([Translated("wrong", "wrong")], tmp_path)
+        read_modules([Translated("wrong", "wrong")], tmp_path)

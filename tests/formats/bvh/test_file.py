@@ -281,11 +281,11 @@ def person(tmp_path: Path, metres: float, spin: np.ndarray | None = None) -> Pat
     scaled = Skeleton(
         skeleton.names, skeleton.parents, skeleton.rest_rotations, skeleton.rest_translations / (metres * 100)
     )
-    rotations = rotation.identity((3, len(skeleton))).astype(np.float32)
+    rotations = rotation.identity_rotations((3, len(skeleton))).astype(np.float32)
     root = np.tile(scaled.rest_translations[0], (3, 1))
     if spin is not None:
         rotations[:, 0] = spin
-        root = rotation.rotate(spin, root)
+        root = rotation.rotate_vectors(spin, root)
     path = tmp_path / "person.bvh"
     write_bvh(Clip("person", scaled, 30, rotations, root[:, None]), path)
     return path
@@ -330,7 +330,7 @@ def test_a_person_lying_down_is_left_lying(tmp_path: Path) -> None:
 
 def test_a_bind_pose_left_on_the_first_frame_is_dropped_with_a_note(tmp_path: Path) -> None:
     skeleton = mannequin_skeleton()
-    rotations = rotation.identity((30, len(skeleton))).astype(np.float32)
+    rotations = rotation.identity_rotations((30, len(skeleton))).astype(np.float32)
     arm = skeleton.index("LeftUpperArm")
     rotations[1:, arm] = rotation.from_axis_angle(np.tile([0, 0, 1.0], (29, 1)), -0.7 + 0.01 * np.arange(29))
     path = tmp_path / "walk.bvh"
@@ -363,10 +363,10 @@ def test_written_and_read_back_the_motion_is_the_same(path: Path) -> None:
 
 def test_writing_into_a_folder_that_cannot_be_made_is_refused(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    skeleton = Skeleton(("a",), np.array([-1]), rotation.identity((1,)), np.zeros((1, 3)))
+    skeleton = Skeleton(("a",), np.array([-1]), rotation.identity_rotations((1,)), np.zeros((1, 3)))
     with pytest.raises(FileError, match="cannot be written"):
         write_bvh(
-            Clip("c", skeleton, 30, rotation.identity((1, 1)), np.zeros((1, 1, 3))),
+            Clip("c", skeleton, 30, rotation.identity_rotations((1, 1)), np.zeros((1, 1, 3))),
             tmp_path / "file" / "clip.bvh",
         )
 

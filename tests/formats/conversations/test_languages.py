@@ -7,28 +7,32 @@ from dataclasses import replace
 import pytest
 
 from metagraph.formats.conversations.languages import Speaking, languages_of
-from metagraph.formats.conversations.words import Told
+from metagraph.formats.conversations.words import TranscribedSide
 from metagraph.graph.conversation.model import Segment, Word
 from tests.speech.dialogues import OTHERS, TALKS, written
 
 
-def told(text: str) -> Told:
-    return Told(words=tuple(Word(text=w, start=n, end=n + 0.5) for n, w in enumerate(text.split())))
+def told(text: str) -> TranscribedSide:
+    return TranscribedSide(
+        words=tuple(Word(text=w, start=n, end=n + 0.5) for n, w in enumerate(text.split()))
+    )
 
 
-def side(code: str, n: int = 0) -> Told:
-    return Told(words=tuple(written({**TALKS, **OTHERS}[code]).words[n]))
+def side(code: str, n: int = 0) -> TranscribedSide:
+    return TranscribedSide(words=tuple(written({**TALKS, **OTHERS}[code]).words[n]))
 
 
-def read(a: Told, b: Told, speaking: Speaking | None = None) -> tuple[list[str | None], list[str]]:
+def read(
+    a: TranscribedSide, b: TranscribedSide, speaking: Speaking | None = None
+) -> tuple[list[str | None], list[str]]:
     notes: list[str] = []
     found = languages_of(notes, ["Ann", "Ben"], [a, b], speaking or Speaking())
     return [one.code if one is not None else None for one in found], notes
 
 
 def test_nobody_says_a_word_and_nothing_is_told() -> None:
-    assert read(Told(), Told()) == (["en", "en"], [])
-    assert read(Told(), Told(), Speaking(otherwise="fr")) == (["fr", "fr"], [])
+    assert read(TranscribedSide(), TranscribedSide()) == (["en", "en"], [])
+    assert read(TranscribedSide(), TranscribedSide(), Speaking(otherwise="fr")) == (["fr", "fr"], [])
 
 
 def test_english_is_read_without_a_word_about_it() -> None:
@@ -52,7 +56,7 @@ def test_too_few_words_are_undecided_and_read_as_the_others_are() -> None:
     codes, notes = read(side("fr"), told("ok mh"))
     assert codes == ["fr", "fr"]
     assert "Ben: 2 words" in notes[1] and "undecided" in notes[1] and "as the other's" in notes[1]
-    assert read(side("fr"), Told())[0] == ["fr", "fr"]  # the lists are one
+    assert read(side("fr"), TranscribedSide())[0] == ["fr", "fr"]  # the lists are one
 
 
 def test_too_few_words_of_both_are_read_as_the_project_is_set_to() -> None:

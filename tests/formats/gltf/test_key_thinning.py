@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from metagraph.formats.gltf import key_thinning
-from metagraph.formats.gltf.key_thinning import kept_frames
+from metagraph.formats.gltf.key_thinning import find_kept_frames
 from metagraph.motion import rotation
 
 Array = NDArray[Any]
@@ -22,7 +22,7 @@ def forget() -> None:
     """Let nothing of before be remembered."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(key_thinning, "MOST", 0)
-        kept_frames([np.zeros((1, 1, 3))], 0.0, False)
+        find_kept_frames([np.zeros((1, 1, 3))], 0.0, False)
 
 
 @pytest.fixture(autouse=True)
@@ -76,7 +76,7 @@ def test_frames_are_those_of_each_track_by_itself(
 ) -> None:
     forget()
     many = [wandering(f, c, turning, seed + n) for n, (f, c) in enumerate(sizes)]
-    for values, found in zip(many, kept_frames(many, tolerance, turning), strict=True):
+    for values, found in zip(many, find_kept_frames(many, tolerance, turning), strict=True):
         assert [list(k) for k in found] == [
             one_by_one(values[:, c], tolerance, turning) for c in range(values.shape[1])
         ]
@@ -84,21 +84,23 @@ def test_frames_are_those_of_each_track_by_itself(
 
 def test_it_does_not_matter_what_is_looked_at_together_or_was_before(monkeypatch: pytest.MonkeyPatch) -> None:
     many = [wandering(20, 3, True, n % 7) for n in range(12)]
-    whole = kept_frames(many, 0.05, True)
-    again = kept_frames(many[::-1], 0.05, True)[::-1]
+    whole = find_kept_frames(many, 0.05, True)
+    again = find_kept_frames(many[::-1], 0.05, True)[::-1]
     forget()
     monkeypatch.setattr(key_thinning, "AT_ONCE", 500)
-    for other in (again, kept_frames(many, 0.05, True)):
+    for other in (again, find_kept_frames(many, 0.05, True)):
         assert [[list(k) for k in one] for one in other] == [[list(k) for k in one] for one in whole]
-    assert kept_frames([], 0.05, True) == []
+    assert find_kept_frames([], 0.05, True) == []
 
 
 def test_no_more_is_remembered_than_it_says_and_the_last_longest(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(key_thinning, "MOST", 4)
     many = [wandering(20, 2, False, n) for n in range(10)]
-    first = kept_frames(many, 0.05, False)
-    again = [kept_frames([values], 0.05, False)[0] for values in many[6:]]
+    first = find_kept_frames(many, 0.05, False)
+    again = [find_kept_frames([values], 0.05, False)[0] for values in many[6:]]
     assert all(a is b for a, b in zip(again, first[6:], strict=True)), "what is remembered is the very same"
-    assert kept_frames([many[5]], 0.05, False)[0] is not first[5]
-    assert kept_frames([many[6]], 0.05, False)[0] is not first[6], "the one that was used longest ago went"
-    assert kept_frames([many[9]], 0.05, False)[0] is first[9]
+    assert find_kept_frames([many[5]], 0.05, False)[0] is not first[5]
+    assert find_kept_frames([many[6]], 0.05, False)[0] is not first[6], (
+        "the one that was used longest ago went"
+    )
+    assert find_kept_frames([many[9]], 0.05, False)[0] is first[9]

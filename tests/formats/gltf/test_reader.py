@@ -20,7 +20,7 @@ from metagraph.formats.gltf.reader import read_character, read_gltf_clips, vrm_r
 from metagraph.formats.gltf.skeleton import compose
 from metagraph.formats.gltf.writer import Keys
 from metagraph.motion import rotation
-from metagraph.motion.character_mesh import Character, Material, Surface
+from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, Surface
 from metagraph.motion.clip import Clip
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 from tests import zoo
@@ -568,7 +568,7 @@ def test_the_wrong_number_of_values_is_refused(tmp_path: Path) -> None:
 def moving(frames: int = 40, fps: float = 24.0) -> list[Clip]:
     skeleton = mannequin_skeleton()
     t = np.arange(frames) / fps
-    wave = rotation.identity((frames, len(skeleton)))
+    wave = rotation.identity_rotations((frames, len(skeleton)))
     arm = skeleton.index("RightUpperArm")
     wave[:, arm] = rotation.from_axis_angle(np.tile([0, 0, 1.0], (frames, 1)), np.sin(5 * t))
     wave[:, 5] = rotation.from_axis_angle(np.array([0, 1.0, 0]), np.array(0.3))
@@ -577,16 +577,16 @@ def moving(frames: int = 40, fps: float = 24.0) -> list[Clip]:
     still = np.tile(skeleton.rest_translations[:1], (frames, 1, 1))
     return [
         Clip("wave", skeleton, fps, wave, np.stack([root, jaw], 1), (0, 6)),
-        Clip("still", skeleton, fps, rotation.identity((frames, len(skeleton))), still),
+        Clip("still", skeleton, fps, rotation.identity_rotations((frames, len(skeleton))), still),
         Clip("pose", skeleton, fps, wave[:1], still[:1]),
     ]
 
 
-def figure() -> Character:
+def figure() -> CharacterMesh:
     skeleton = mannequin_skeleton()
     positions = np.array([[0, 1, 0], [0.1, 1, 0], [0, 1.1, 0], [0, 1.7, 0]], np.float32)
     png = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1" + b"\0" * 20
-    return Character(
+    return CharacterMesh(
         "figure",
         skeleton,
         positions,
@@ -595,7 +595,7 @@ def figure() -> Character:
         np.array([[0, 1, 0, 0], [0, 0, 0, 0], [3, 0, 0, 0], [5, 0, 0, 0]]),
         np.array([[0.5, 0.5, 0, 0]] + [[1, 0, 0, 0]] * 3, np.float32),
         np.array([[0, 1, 2], [0, 2, 3]]),
-        (Material("skin", (1, 0.5, 0.25, 1), png), Material("cloth", double_sided=True)),
+        (MeshMaterial("skin", (1, 0.5, 0.25, 1), png), MeshMaterial("cloth", double_sided=True)),
         (Surface(0, 1, 0), Surface(1, 1, 1)),
         ("smile",),
         np.full((1, 4, 3), 0.01, np.float32),
@@ -632,7 +632,7 @@ def test_a_written_character_reads_back_with_its_skin_morphs_and_materials(tmp_p
         "smile",
         skeleton,
         30,
-        rotation.identity((9, len(skeleton))),
+        rotation.identity_rotations((9, len(skeleton))),
         still,
         morphs=("smile",),
         weights=weights,
@@ -685,12 +685,12 @@ def test_written_files_pass_the_khronos_validator(tmp_path: Path, quantize: bool
     image = base64.b64decode(
         "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=="
     )
-    materials = (Material("skin", (1, 0.5, 0.25, 1), image), character.materials[1])
+    materials = (MeshMaterial("skin", (1, 0.5, 0.25, 1), image), character.materials[1])
     fields = {f: getattr(character, f) for f in character.__dataclass_fields__}
     write_glb(
         tmp_path / "figure.glb",
         moving(),
-        Character(**{**fields, "materials": materials}),
+        CharacterMesh(**{**fields, "materials": materials}),
         keys=Keys(quantize),
     )
     program = (

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.formats.gltf.reader import read_gltf_clips
-from metagraph.formats.gltf.sampling import Grid, KeyTable, sample, sample_turns
+from metagraph.formats.gltf.sampling import FrameGrid, KeyTable, sample_channels, sample_turns
 from metagraph.motion import rotation
 
 Array = Any
@@ -26,7 +26,7 @@ def table_of(numbers: Array, width: int, groups: list[tuple[int, Array, list[int
     return KeyTable(numbers, width, times, *whole)
 
 
-def key_times(chance: np.random.Generator, grid: Grid, kind: str) -> Array:
+def key_times(chance: np.random.Generator, grid: FrameGrid, kind: str) -> Array:
     """Key times as they come: those of the frames, some of them, any, one alone, some twice."""
     if kind == "frames":
         return grid.times
@@ -44,7 +44,7 @@ def key_times(chance: np.random.Generator, grid: Grid, kind: str) -> Array:
 @settings(max_examples=60, deadline=None)
 def test_turns_of_several_takes_at_once_are_those_of_each_group(seed: int, takes: list[list[str]]) -> None:
     chance = np.random.default_rng(seed)
-    grids = [Grid(1.5 + np.arange(frames) / 30, 30.0) for frames in chance.integers(1, 25, len(takes))]
+    grids = [FrameGrid(1.5 + np.arange(frames) / 30, 30.0) for frames in chance.integers(1, 25, len(takes))]
     begins = np.cumsum([0, *(len(grid.times) for grid in grids)])
     expected = np.zeros((begins[-1], JOINTS, 4), np.float32)
     numbers, groups, at = [np.zeros(3, np.float32)], [], 3
@@ -60,7 +60,7 @@ def test_turns_of_several_takes_at_once_are_those_of_each_group(seed: int, takes
             groups.append((take, times, joints.tolist(), [at, at + 4 * len(times)]))
             at += keys.size
             own = expected[begins[take] : begins[take + 1]]
-            own[:, joints] = sample(times, keys, grids[take], "LINEAR", True).transpose(1, 0, 2)
+            own[:, joints] = sample_channels(times, keys, grids[take], "LINEAR", True).transpose(1, 0, 2)
     out = np.zeros_like(expected)
     if groups:
         sample_turns(table_of(np.concatenate(numbers), 4, groups), grids, begins[:-1], out)

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from metagraph.errors import FileError
 from metagraph.formats.keypoints.reader import read_keypoints
-from metagraph.mimicry.keypoint_layouts import LAYOUTS, PLACE, Keypoints
+from metagraph.mimicry.keypoint_layouts import LAYOUTS, PLACE, KeypointTrack
 from tests.mimicry.test_pose_measures import FIGURE
 
 SAMPLES = Path(__file__).resolve().parents[3] / "sample_clips" / "keypoints"
@@ -53,7 +53,7 @@ def marks(names: str = "xyz") -> list[dict[str, float]]:
 
 @pytest.fixture
 def read(tmp_path: Path):
-    def inner(data: Any, name: str = "talk.json", **options: Any) -> Keypoints:
+    def inner(data: Any, name: str = "talk.json", **options: Any) -> KeypointTrack:
         path = tmp_path / name
         path.write_bytes(
             data
@@ -67,7 +67,7 @@ def read(tmp_path: Path):
     return inner
 
 
-def upright(found: Keypoints) -> None:
+def upright(found: KeypointTrack) -> None:
     points, sure = found.canonical
     assert (sure > 0).any()
     frames = sure[:, [PLACE[n] for n in ("nose", "left_hip", "left_shoulder", "right_shoulder")]].min(1) > 0

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.formats.project.canonical_text import canonical
-from metagraph.formats.project.text import TextError, parse, read, to_text
+from metagraph.formats.project.text import TextError, parse_yaml, read_text_data, to_text
 from tests.formats.project.test_text import values
 from tests.projects import words
 
@@ -96,7 +96,7 @@ def test_whatever_is_changed_by_hand_is_read_as_yaml_reads_it_or_left_to_it(seed
         text = altered(TEXT, r)
         found = canonical(text)
         if found is not None:
-            assert repr(found) == repr(parse(text)[0]), text
+            assert repr(found) == repr(parse_yaml(text)[0]), text
 
 
 @pytest.mark.parametrize(
@@ -105,7 +105,7 @@ def test_whatever_is_changed_by_hand_is_read_as_yaml_reads_it_or_left_to_it(seed
 def test_projects_are_canonical(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     found = canonical(text)
-    assert found is not None and found == parse(text)[0]
+    assert found is not None and found == parse_yaml(text)[0]
 
 
 @pytest.mark.parametrize(
@@ -138,10 +138,10 @@ def test_what_is_said_otherwise_is_left_to_yaml(text: str) -> None:
 
 
 def test_the_line_of_a_field_is_known_where_it_is_asked_for() -> None:
-    data, lines = read(TEXT)
+    data, lines = read_text_data(TEXT)
     assert data == canonical(TEXT) and lines()["layers.arms.deep"] == 16
 
 
 def test_a_text_that_is_neither_is_told_of() -> None:
     with pytest.raises(TextError, match="twice"):
-        read("a: 1\na: 2\n")
+        read_text_data("a: 1\na: 2\n")

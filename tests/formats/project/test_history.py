@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from metagraph.formats.project.data import from_data, to_data
 from metagraph.formats.project.history import history, with_motion
 from metagraph.formats.project.journal import Journal
-from metagraph.formats.project.journal_records import framed
+from metagraph.formats.project.journal_records import frame_record
 from metagraph.formats.recovery import Left, read_journal
 from metagraph.graph import edits
 from metagraph.graph.model import Project
@@ -150,7 +150,7 @@ def test_words_that_are_none_do_no_harm(tmp_path: Path, garbage: dict[str, objec
     journal.edit(a, b, "rename")
     journal.close()
     with (tmp_path / "j").open("ab") as file:
-        file.write(framed({"name": "other", **garbage}, 3))
+        file.write(frame_record({"name": "other", **garbage}, 3))
     found = read_journal(tmp_path / "j", None)
     assert found is not None and found.project.name == "other"
     assert history(found)[-1].after == found.project

@@ -23,10 +23,10 @@ from hypothesis import strategies as st
 from metagraph.errors import FileError
 from metagraph.formats.locking import new_owner
 from metagraph.formats.project.data import from_data, to_data
-from metagraph.formats.project.journal import Journal, changes, journal_path
-from metagraph.formats.project.replay import apply
-from metagraph.formats.recovery import left_journals, read_journal, recover
-from metagraph.formats.store import SUFFIX, content_digest, encoded, file_digest, save_project
+from metagraph.formats.project.journal import Journal, find_changes, journal_path
+from metagraph.formats.project.replay import apply_change
+from metagraph.formats.recovery import find_left_journals, read_journal, recover
+from metagraph.formats.store import SUFFIX, content_digest, encode_project, file_digest, save_project
 from metagraph.graph import edits
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.conversation.model import Conversation, Rates, Segment, Side, Word
@@ -62,8 +62,8 @@ def large(count: int) -> Project:
 def test_changes_worked_into_the_old_data_give_the_new(states: list[Project]) -> None:
     data = to_data(states[0])
     for before, after in pairwise(states):
-        change = json.loads(json.dumps(changes(before, after)))
-        data = apply(data, change)
+        change = json.loads(json.dumps(find_changes(before, after)))
+        data = apply_change(data, change)
         assert data == to_data(after)
         for layer in ("body", "arms", "head"):  # order counts where it is order
             assert [a["id"] for a in data["layers"][layer]["actions"]] == list(after.graphs[layer].actions)
@@ -73,22 +73,22 @@ def test_changes_worked_into_the_old_data_give_the_new(states: list[Project]) ->
 @given(histories(6), st.data())
 def test_changes_lead_from_any_state_to_any_other(states: list[Project], data: Any) -> None:
     a, b = data.draw(st.sampled_from(states)), data.draw(st.sampled_from(states))
-    assert from_data(apply(to_data(a), changes(a, b))) == from_data(to_data(b))
+    assert from_data(apply_change(to_data(a), find_changes(a, b))) == from_data(to_data(b))
 
 
 def test_the_same_project_has_no_changes() -> None:
     project = large(3)
-    assert changes(project, project) == {}
-    assert changes(project, replace(project, clips=dict(project.clips))) == {}
+    assert find_changes(project, project) == {}
+    assert find_changes(project, replace(project, clips=dict(project.clips))) == {}
 
 
 def test_what_differs_is_the_same_however_often_and_between_whatever_it_is_asked() -> None:
     first = large(3)
     second = edits.add_stance(first, "body", "standing")
-    assert changes(first, second) == changes(first, second) != {}
-    back = changes(second, first)
+    assert find_changes(first, second) == find_changes(first, second) != {}
+    back = find_changes(second, first)
     assert back["layers"]["body"]["stances"] == {next(iter(second.graphs["body"].stances)): None}
-    assert changes(first, first) == {}
+    assert find_changes(first, first) == {}
 
 
 @pytest.mark.parametrize(
@@ -96,7 +96,7 @@ def test_what_differs_is_the_same_however_often_and_between_whatever_it_is_asked
     [
         lambda p: edits.update_actions(p, ["a50"], likelihood=2.0),
         lambda p: edits.remove_actions(p, ["a50", "a7000"]),
-        lambda p: edits.place(p, ["c1"], "arms", "fidget", "s21"),
+        lambda p: edits.place_clips(p, ["c1"], "arms", "fidget", "s21"),
         lambda p: edits.rename_stance(p, "s21", "at ease"),
         lambda p: edits.set_weight(p, "arms", "head", 0.5),
         lambda p: edits.rename_clip(p, "c7", "other"),
@@ -105,16 +105,16 @@ def test_what_differs_is_the_same_however_often_and_between_whatever_it_is_asked
 def test_a_record_is_small_in_a_large_project_also_when_the_edit_is_undone(edit: Any) -> None:
     before = large(10_000)
     after = edit(before)
-    assert len(json.dumps(changes(before, after))) < 400
-    assert len(json.dumps(changes(after, before))) < 800
+    assert len(json.dumps(find_changes(before, after))) < 400
+    assert len(json.dumps(find_changes(after, before))) < 800
 
 
 def test_what_was_removed_comes_back_to_its_place() -> None:
     before = large(6)
     after = edits.remove_actions(before, [a.id for a in list(before.graphs["arms"].actions.values())[:4]])
-    change = changes(after, before)
+    change = find_changes(after, before)
     assert "actions_order" not in change["layers"]["arms"]
-    assert [a["id"] for a in apply(to_data(after), change)["layers"]["arms"]["actions"]] == list(
+    assert [a["id"] for a in apply_change(to_data(after), change)["layers"]["arms"]["actions"]] == list(
         before.graphs["arms"].actions
     )
 
@@ -313,7 +313,7 @@ def test_edits_made_while_saving_are_known_whichever_file_a_crash_leaves(
     mark = journal.mark()
     assert mark is not None
     journal.edit(states[2], states[3])  # while the thread puts the file into words
-    journal.settle(mark, content_digest(encoded(states[2], saved)))
+    journal.settle(mark, content_digest(encode_project(states[2], saved)))
     journal.edit(states[3], states[4])  # while it writes
     if written:
         save_project(states[2], saved)
@@ -329,7 +329,7 @@ def test_a_journal_of_which_all_was_saved_offers_nothing(saved: Path, kept: Call
     journal.edit(large(5), after)
     mark = journal.mark()
     assert mark is not None
-    journal.settle(mark, content_digest(encoded(after, saved)))
+    journal.settle(mark, content_digest(encode_project(after, saved)))
     save_project(after, saved)
     assert recover(journal.path, saved) is None
 
@@ -348,7 +348,7 @@ def test_the_last_of_several_savings_counts(saved: Path, kept: Callable[..., Jou
         if n in (1, 3):
             mark = journal.mark()
             assert mark is not None
-            journal.settle(mark, content_digest(encoded(states[-1], saved)))
+            journal.settle(mark, content_digest(encode_project(states[-1], saved)))
             save_project(states[-1], saved)
     found = recover(journal.path, saved)
     assert found is not None
@@ -404,9 +404,11 @@ def test_the_journal_of_a_sitting_that_goes_on_is_not_offered_and_those_of_dead_
         journal.edit(large(5), after)
         journal.close()
         paths.append(journal.path)
-    assert left_journals(saved) == [paths[2]], "one that does not say whose it is was written before they did"
+    assert find_left_journals(saved) == [paths[2]], (
+        "one that does not say whose it is was written before they did"
+    )
     kill_sittings(saved.parent)
-    assert sorted(left_journals(saved)) == sorted(paths)
+    assert sorted(find_left_journals(saved)) == sorted(paths)
 
 
 def test_the_journals_of_other_projects_beside_it_are_not_its_own(
@@ -416,8 +418,8 @@ def test_the_journals_of_other_projects_beside_it_are_not_its_own(
         journal = kept(journal_path(saved.with_name(name), "ab"), None)
         journal.begin(large(1), 1)
         journal.close()
-    assert left_journals(saved) == []
-    assert left_journals(saved.parent / "no such folder" / "x") == []
+    assert find_left_journals(saved) == []
+    assert find_left_journals(saved.parent / "no such folder" / "x") == []
 
 
 def test_beginning_anew_never_leaves_less_than_before(
@@ -550,5 +552,5 @@ def test_edits_of_a_conversation_are_recovered_and_do_not_touch_its_words_again(
 def test_a_skeleton_that_was_read_twice_is_no_change_and_another_is(tmp_path: Path) -> None:
     project = large(2)
     again = from_data(to_data(project))
-    assert project.skeleton is not again.skeleton and "skeleton" not in changes(project, again)
-    assert changes(project, replace(again, skeleton=None))["skeleton"] == []
+    assert project.skeleton is not again.skeleton and "skeleton" not in find_changes(project, again)
+    assert find_changes(project, replace(again, skeleton=None))["skeleton"] == []

@@ -12,7 +12,7 @@ from metagraph.errors import FileError
 from metagraph.formats.locking import new_owner
 from metagraph.formats.project.data import to_data
 from metagraph.formats.project.journal import Journal, journal_path
-from metagraph.formats.recovery import left_journals, read_journal
+from metagraph.formats.recovery import find_left_journals, read_journal
 from metagraph.formats.store import SUFFIX, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
@@ -124,7 +124,7 @@ def test_what_somebody_put_in_its_place_is_kept(sitting: Sitting) -> None:
     sitting.edit("second")
     assert sitting.kept() == "second"
     kill_sittings(path.parent)
-    names = {read_journal(one, sitting.saved).project.name for one in left_journals(sitting.saved)}  # type: ignore[union-attr]
+    names = {read_journal(one, sitting.saved).project.name for one in find_left_journals(sitting.saved)}  # type: ignore[union-attr]
     assert names == {"second", "another's"}
 
 

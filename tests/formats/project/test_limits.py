@@ -12,8 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.errors import FileError
-from metagraph.formats.project.limits import refusal
-from metagraph.formats.store import SUFFIX, encoded, from_text, save_project
+from metagraph.formats.project.limits import find_unwritable
+from metagraph.formats.store import SUFFIX, encode_project, parse_project, save_project
 from metagraph.graph import edits, requests
 from metagraph.graph.model import Project
 from tests.projects import clip, histories
@@ -45,7 +45,7 @@ def small() -> Project:
 
 @pytest.mark.parametrize("what", BEYOND)
 def test_what_could_not_be_opened_again_is_refused_and_named(what: str) -> None:
-    why = refusal(small(), BEYOND[what](small()))
+    why = find_unwritable(small(), BEYOND[what](small()))
     assert why is not None and what.strip() in why
 
 
@@ -65,9 +65,9 @@ def test_the_limits_themselves_are_taken() -> None:
         points={"far": (1e6, -1e6, 0.0)},
         lines={"l1": requests.Line(text="a" * 20_000)},
     )
-    assert refusal(small(), project) is None
-    assert from_text(encoded(project, Path("x")).decode(), Path("x")) == from_text(
-        encoded(project, Path("x")).decode(), Path("x")
+    assert find_unwritable(small(), project) is None
+    assert parse_project(encode_project(project, Path("x")).decode(), Path("x")) == parse_project(
+        encode_project(project, Path("x")).decode(), Path("x")
     )
 
 
@@ -75,4 +75,4 @@ def test_the_limits_themselves_are_taken() -> None:
 @given(histories(8), st.data())
 def test_no_edit_that_is_good_is_refused(states: list[Project], data: st.DataObject) -> None:
     a, b = data.draw(st.sampled_from(states)), data.draw(st.sampled_from(states))
-    assert refusal(a, b) is None
+    assert find_unwritable(a, b) is None

@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.formats.project.data import from_data, to_data
-from metagraph.formats.project.merging import merge
+from metagraph.formats.project.merging import merge_projects
 from metagraph.graph import edits
-from metagraph.graph.check import check
+from metagraph.graph.check import check_project
 from metagraph.graph.model import Project
 from tests.projects import clip, histories
 
@@ -22,7 +22,7 @@ pytestmark = pytest.mark.usefixtures("numbered_ids")
 def first() -> Project:
     rows = [(f"{n}.glb", 0, "ab" * 32, clip(f"clip {n}")) for n in range(6)]
     project = edits.add_stance(edits.add_clips(Project("show"), rows), "arms", "rest", ["c1"])
-    return edits.place(project, ["c2", "c3"], "arms", "gesture", "s7")
+    return edits.place_clips(project, ["c2", "c3"], "arms", "gesture", "s7")
 
 
 def names(project: Project) -> list[str]:
@@ -30,7 +30,7 @@ def names(project: Project) -> list[str]:
 
 
 def test_a_project_merged_with_itself_is_itself() -> None:
-    found = merge(first(), first(), first())
+    found = merge_projects(first(), first(), first())
     assert to_data(found.project) == to_data(first()) and not found.kept
 
 
@@ -41,7 +41,7 @@ def test_where_one_side_did_nothing_the_other_is_the_whole(
 ) -> None:
     a, b = data.draw(st.sampled_from(states)), data.draw(st.sampled_from(states))
     for mine, theirs in ((b, a), (a, b)):
-        found = merge(a, mine, theirs)
+        found = merge_projects(a, mine, theirs)
         wanted, got = to_data(b), to_data(found.project)
         assert got == wanted and not found.kept
 
@@ -53,9 +53,9 @@ def test_two_histories_give_a_project_that_can_be_read_and_checked(
 ) -> None:
     base = one[0]
     mine, theirs = data.draw(st.sampled_from(one)), data.draw(st.sampled_from(two))
-    found = merge(base, mine, theirs)
+    found = merge_projects(base, mine, theirs)
     assert to_data(from_data(to_data(found.project))) == to_data(found.project)
-    check(found.project)
+    check_project(found.project)
 
 
 def flat(data: Any, where: str = "") -> dict[str, Any]:
@@ -72,7 +72,7 @@ def flat(data: Any, where: str = "") -> dict[str, Any]:
 def test_no_edit_of_two_people_is_lost_without_a_report(data: st.DataObject) -> None:
     base = data.draw(histories(8))[-1]
     mine, theirs = (data.draw(histories(5, base))[-1] for _ in range(2))
-    found = merge(base, mine, theirs)
+    found = merge_projects(base, mine, theirs)
     before, ours, others, after = (flat(to_data(p)) for p in (base, mine, theirs, found.project))
     both = 0
     old, here, there = ({v for k, v in side.items() if k.endswith("/id")} for side in (before, ours, others))
@@ -90,14 +90,16 @@ def test_no_edit_of_two_people_is_lost_without_a_report(data: st.DataObject) -> 
             both += 1
         if now not in wanted:
             assert found.kept or (both and now == old), (where, old, here, there, now)
-    assert to_data(merge(base, mine, theirs).project) == to_data(found.project), "it comes out the same"
+    assert to_data(merge_projects(base, mine, theirs).project) == to_data(found.project), (
+        "it comes out the same"
+    )
 
 
 def test_different_things_changed_are_both_there() -> None:
     base = first()
     mine = edits.rename_clip(base, "c1", "mine")
     theirs = edits.rename_clip(edits.set_settings(base, seed=9), "c4", "theirs")
-    found = merge(base, mine, theirs)
+    found = merge_projects(base, mine, theirs)
     assert found.project.clips["c1"].name == "mine" and found.project.clips["c4"].name == "theirs"
     assert found.project.settings.seed == 9 and not found.kept
 
@@ -107,21 +109,23 @@ def test_different_fields_of_one_thing_are_both_there() -> None:
     (one, _) = (a.id for a in base.actions() if a.kind == "gesture")
     mine = edits.update_actions(base, (one,), likelihood=3.0)
     theirs = edits.update_actions(base, (one,), name="theirs")
-    found = merge(base, mine, theirs)
+    found = merge_projects(base, mine, theirs)
     action = found.project.action(one)
     assert action is not None and (action.likelihood, action.name) == (3.0, "theirs") and not found.kept
 
 
 def test_the_same_field_changed_on_both_sides_is_mine_and_told() -> None:
     base = first()
-    found = merge(base, edits.rename_clip(base, "c1", "mine"), edits.rename_clip(base, "c1", "theirs"))
+    found = merge_projects(
+        base, edits.rename_clip(base, "c1", "mine"), edits.rename_clip(base, "c1", "theirs")
+    )
     assert found.project.clips["c1"].name == "mine"
     assert len(found.kept) == 1 and "name" in found.kept[0]
 
 
 def test_a_field_set_back_to_its_default_is_mine_too() -> None:
     base = edits.set_settings(first(), seed=9)
-    found = merge(base, edits.set_settings(base, seed=1), edits.set_settings(base, seed=5))
+    found = merge_projects(base, edits.set_settings(base, seed=1), edits.set_settings(base, seed=5))
     assert found.project.settings.seed == 1 and len(found.kept) == 1
 
 
@@ -131,7 +135,7 @@ def test_what_one_removed_and_the_other_changed_stays_and_is_told(here: bool) ->
     (one, _) = (a.id for a in base.actions() if a.kind == "gesture")
     gone = edits.remove_actions(base, [one])
     changed = edits.update_actions(base, (one,), likelihood=3.0)
-    found = merge(base, *((gone, changed) if here else (changed, gone)))
+    found = merge_projects(base, *((gone, changed) if here else (changed, gone)))
     action = found.project.action(one)
     assert action is not None and action.likelihood == 3.0 and "removed" in found.kept[0]
 
@@ -144,16 +148,16 @@ def test_what_both_made_under_one_id_is_two_things_and_what_names_them_follows()
     )
     new = [i for i in one.graphs["arms"].stances if i not in base.graphs["arms"].stances]
     assert new == [i for i in two.graphs["arms"].stances if i not in base.graphs["arms"].stances]
-    mine = edits.place(one, ["c5"], "arms", "gesture", new[0])
-    theirs = edits.place(two, ["c6"], "arms", "gesture", new[0])
-    found = merge(base, mine, theirs).project
+    mine = edits.place_clips(one, ["c5"], "arms", "gesture", new[0])
+    theirs = edits.place_clips(two, ["c6"], "arms", "gesture", new[0])
+    found = merge_projects(base, mine, theirs).project
     stances = {s.name: s.id for s in found.graphs["arms"].stances.values()}
     assert set(stances) == {"rest", "mine", "theirs"}
     clips = {(a.stance, a.clip) for a in found.actions() if a.kind == "gesture"}
     assert {(stances["mine"], "c5"), (stances["theirs"], "c6")} <= clips
-    more = edits.place(found, ["c1"], "arms", "gesture", stances["mine"])
+    more = edits.place_clips(found, ["c1"], "arms", "gesture", stances["mine"])
     assert len(list(more.actions())) == len(list(found.actions())) + 1, "no id is made twice after it"
-    assert not [p for p in check(found) if "not in the project" in p.message]
+    assert not [p for p in check_project(found) if "not in the project" in p.message]
 
 
 def test_two_timings_of_one_action_are_not_mixed() -> None:
@@ -163,7 +167,7 @@ def test_two_timings_of_one_action_are_not_mixed() -> None:
     assert action is not None
     mine = edits.update_actions(base, (one,), timing=replace(action.timing, start=0.1))
     theirs = edits.update_actions(base, (one,), timing=replace(action.timing, end=0.9))
-    found = merge(base, mine, theirs)
+    found = merge_projects(base, mine, theirs)
     merged, ours = found.project.action(one), mine.action(one)
     assert merged is not None and ours is not None
     assert merged.timing == ours.timing and "timing" in found.kept[0]
@@ -173,4 +177,4 @@ def test_notes_and_lines_are_things_of_their_own() -> None:
     base = replace(first(), notes={"c1": "old"})
     mine = replace(base, notes={"c1": "old", "c2": "mine"})
     theirs = replace(base, notes={"c1": "new", "c3": "theirs"})
-    assert merge(base, mine, theirs).project.notes == {"c1": "new", "c2": "mine", "c3": "theirs"}
+    assert merge_projects(base, mine, theirs).project.notes == {"c1": "new", "c2": "mine", "c3": "theirs"}

@@ -29,7 +29,7 @@ def project_in(folder: Path, name: str, clips: tuple[str, ...]) -> Path:
     first, *rest = project.clips
     project = edits.add_stance(project, "arms", "rest", [first])
     (stance,) = project.graphs["arms"].stances
-    save_project(edits.place(project, rest, "arms", "gesture", stance), folder / f"{name}{SUFFIX}")
+    save_project(edits.place_clips(project, rest, "arms", "gesture", stance), folder / f"{name}{SUFFIX}")
     return folder / f"{name}{SUFFIX}"
 
 

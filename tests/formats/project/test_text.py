@@ -10,7 +10,7 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.formats.project.text import HEADER, TextError, parse, to_text
+from metagraph.formats.project.text import HEADER, TextError, parse_yaml, to_text
 from tests.projects import NASTY, words
 
 numbers = st.integers(-(10**15) + 1, 10**15 - 1) | st.floats(-1e15, 1e15, allow_nan=False)
@@ -24,7 +24,7 @@ values = st.recursive(
 @settings(max_examples=200, deadline=None)
 @given(st.dictionaries(words, values, min_size=1, max_size=4))
 def test_data_comes_back_from_its_text(data: dict[str, Any]) -> None:
-    assert parse(to_text(data))[0] == data
+    assert parse_yaml(to_text(data))[0] == data
 
 
 @settings(max_examples=150, deadline=None)
@@ -36,7 +36,7 @@ def test_other_yaml_readers_read_the_same(data: dict[str, Any]) -> None:
 @pytest.mark.parametrize("word", NASTY, ids=ascii)
 def test_every_nasty_word_survives_as_key_and_value(word: str) -> None:
     whole = word.encode(errors="replace").decode() if word == "\ud83d" else word
-    data = parse(to_text({"name": word, "words": [word], "deep": {"x": {word: word}}}))[0]
+    data = parse_yaml(to_text({"name": word, "words": [word], "deep": {"x": {word: word}}}))[0]
     if word == "\ud83d":
         whole = "\ufffd"  # half a character is none
     assert data == {"name": whole, "words": [whole], "deep": {"x": {whole: whole}}}
@@ -58,15 +58,15 @@ def test_the_text_begins_by_saying_what_it_is() -> None:
     ],
 )  # fmt: skip
 def test_what_people_write_by_hand_means_what_it_looks_like(text: str, value: Any) -> None:
-    assert parse(f"a: {text}")[0] == {"a": value}
+    assert parse_yaml(f"a: {text}")[0] == {"a": value}
 
 
 def test_not_a_number_is_understood_so_that_it_can_be_refused_by_name() -> None:
-    assert math.isnan(parse("a: .nan")[0]["a"])
+    assert math.isnan(parse_yaml("a: .nan")[0]["a"])
 
 
 def test_every_field_has_its_line() -> None:
-    lines = parse("a: 1\nb:\n- {c: 2,\n   d: 3}\n- [4]\n\ne: {'x.y': {z: 5}}\n")[1]
+    lines = parse_yaml("a: 1\nb:\n- {c: 2,\n   d: 3}\n- [4]\n\ne: {'x.y': {z: 5}}\n")[1]
     assert lines == {
         "": 1,
         "a": 1,
@@ -83,8 +83,12 @@ def test_every_field_has_its_line() -> None:
 
 
 def test_windows_line_ends_and_block_style_are_read_alike() -> None:
-    flow = parse("a:\r\n- {b: 1, c: [x, y]}\r\n")[0]
-    assert flow == parse("a:\n  - b: 1\n    c:\n    - x\n    - y\n")[0] == {"a": [{"b": 1, "c": ["x", "y"]}]}
+    flow = parse_yaml("a:\r\n- {b: 1, c: [x, y]}\r\n")[0]
+    assert (
+        flow
+        == parse_yaml("a:\n  - b: 1\n    c:\n    - x\n    - y\n")[0]
+        == {"a": [{"b": 1, "c": ["x", "y"]}]}
+    )
 
 
 LAUGHS = "a: &a [x, x]\n" + "".join(
@@ -120,19 +124,19 @@ HOSTILE = {
 def test_hostile_text_is_refused_at_its_line(name: str) -> None:
     text, line, words = HOSTILE[name]
     with pytest.raises(TextError, match=words or None) as caught:
-        parse(text)
+        parse_yaml(text)
     assert caught.value.line == line
 
 
 def test_an_empty_text_holds_nothing() -> None:
-    assert parse("")[0] is None
-    assert parse("# only words\n")[0] is None
+    assert parse_yaml("")[0] is None
+    assert parse_yaml("# only words\n")[0] is None
 
 
 @settings(max_examples=300, deadline=None)
 @given(st.text(max_size=60))
 def test_any_text_at_all_is_read_or_refused(text: str) -> None:
     try:
-        parse(text)
+        parse_yaml(text)
     except TextError as error:
         assert error.line >= 0

@@ -254,9 +254,9 @@ def test_a_journal_that_cannot_be_read_and_one_kept_as_damaged_are_told(home: Pa
 
 
 def test_half_written_files_of_the_dead_are_told_and_those_of_the_living_are_not(home: Path) -> None:
-    from metagraph.formats.replacing import unfinished
+    from metagraph.formats.replacing import unfinished_name
 
-    (home.parent / unfinished()).write_bytes(b"half")
+    (home.parent / unfinished_name()).write_bytes(b"half")
     assert not verify_project(home).faults
     left = home.with_name(f".saving-{OTHERS_MARK}-{'a' * 12}")
     left.write_bytes(b"half")

@@ -11,7 +11,7 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.formats.transcripts.reader import read_transcript
-from metagraph.formats.transcripts.words import Transcript, settled
+from metagraph.formats.transcripts.words import Transcript, settle_words
 from metagraph.graph.conversation.model import Segment, Word
 
 Reader = Callable[[str], Transcript]
@@ -98,7 +98,7 @@ def test_words_out_of_order_and_overlapping_are_settled_and_told() -> None:
     words = [
         Word(text=t, start=a, end=b) for t, a, b in (("b", 2, 3), ("a", 1, 2.5), ("c", 2.2, 2.9), ("d", 5, 5))
     ]
-    found, notes = settled(words)
+    found, notes = settle_words(words)
     assert [(w.text, w.start, w.end) for w in found] == [
         ("a", 1, 2),
         ("b", 2, 2.2),
@@ -109,7 +109,7 @@ def test_words_out_of_order_and_overlapping_are_settled_and_told() -> None:
 
 
 def test_a_word_within_another_is_left_out_and_told() -> None:
-    found, notes = settled([Word(text="a", start=1, end=2), Word(text="b", start=1, end=1.01)])
+    found, notes = settle_words([Word(text="a", start=1, end=2), Word(text="b", start=1, end=1.01)])
     assert len(found) == 2 or any("left out" in n for n in notes)
     assert all(b.start >= a.end - 1e-9 for a, b in pairwise(found))
 

@@ -10,8 +10,8 @@ import torch
 
 from metagraph.generation.features import RATE
 from metagraph.generation.networks import Control, FlowSizes, Kind, MatchingSizes, Sizes
-from metagraph.generation.takes import Marks, Source, Take, TakeSound, take_of
-from metagraph.generation.train_plan import Settings, TrainingPlan, folder_of, plan_of, write_training
+from metagraph.generation.takes import Take, TakeMarks, TakeSound, TakeSource, make_take
+from metagraph.generation.train_plan import TrainingPlan, TrainingSettings, folder_of, plan_of, write_training
 from metagraph.generation.training.run import Run
 from metagraph.motion.clip import Clip
 from tests.generation.makers import babble, conversation, moving, rig, tiny
@@ -21,10 +21,10 @@ torch.set_num_threads(1)  # tests run beside each other
 
 def take(seconds: float, seed: int, clip: Clip | None = None, tracks: int = 1) -> Take:
     sound = np.stack([babble(seconds, seed), babble(seconds, seed + 50)])
-    source = Source(f"take {seed}", (f"motion {seed}", f"sound {seed}"), "made for a test")
+    source = TakeSource(f"take {seed}", (f"motion {seed}", f"sound {seed}"), "made for a test")
     said = conversation(seconds, seed)
     heard = TakeSound(sound, RATE)
-    return take_of(rig(), clip or moving(seconds, seed), heard, source, said, tracks=tracks)
+    return make_take(rig(), clip or moving(seconds, seed), heard, source, said, tracks=tracks)
 
 
 def plan(
@@ -48,7 +48,7 @@ def cut_short(models: Path, name: str, steps: int = 0) -> Path:
         both[1:],
         out="elsewhere/x.mgmodel",
         steps=40,
-        settings=Settings(batch=4, frames=40, warm=20),
+        settings=TrainingSettings(batch=4, frames=40, warm=20),
     )
     folder_of(out).mkdir(parents=True)
     write_training(folder_of(out), own, both[:1], both[1:])
@@ -78,7 +78,7 @@ def toy(frames: int, seed: int) -> Take:
         told[at - 1 : at + 2, :27] += 4
         peaks.append(at / 25)
         at += int(chance.integers(35, 60))
-    return Take(Source(f"toy {seed}"), poses.astype(np.float32), told, Marks(tuple(peaks)))
+    return Take(TakeSource(f"toy {seed}"), poses.astype(np.float32), told, TakeMarks(tuple(peaks)))
 
 
 def toy_sizes(kind: Kind) -> Sizes:

@@ -13,7 +13,7 @@ pytest.importorskip("torch", reason="training needs torch, which is not installe
 
 from metagraph.generation.training.checkpoint import (
     Checkpoint,
-    Told,
+    CheckpointNote,
     read_checkpoint,
     write_checkpoint,
 )
@@ -21,7 +21,7 @@ from metagraph.generation.training.checkpoint import (
 
 def point(step: int, plan: str = "p") -> Checkpoint:
     return Checkpoint(
-        Told(plan=plan, step=step, seconds=1.5, minutes=0.1), {"net.a": np.full(3000, step, "f4")}
+        CheckpointNote(plan=plan, step=step, seconds=1.5, minutes=0.1), {"net.a": np.full(3000, step, "f4")}
     )
 
 

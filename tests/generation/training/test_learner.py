@@ -15,7 +15,7 @@ from metagraph.generation.features import with_edges  # noqa: E402
 from metagraph.generation.landmarks import landmarks_of  # noqa: E402
 from metagraph.generation.networks import FlowSizes, Kind, sizes_of  # noqa: E402
 from metagraph.generation.stored import skeleton_card  # noqa: E402
-from metagraph.generation.train_plan import Settings, TrainingPlan  # noqa: E402
+from metagraph.generation.train_plan import TrainingPlan, TrainingSettings  # noqa: E402
 from metagraph.generation.training.learner import FUTILE, Learner, TrainingError  # noqa: E402
 from metagraph.graph.model import Project  # noqa: E402
 from metagraph.playback.bake import bake  # noqa: E402
@@ -24,7 +24,7 @@ from metagraph.speech.drive import drive  # noqa: E402
 from tests.generation.makers import conversation, rig  # noqa: E402
 from tests.generation.training.planting import plan, stroke, take, toy, toy_sizes  # noqa: E402
 
-SMALL = Settings(batch=4, frames=40, warm=20)
+SMALL = TrainingSettings(batch=4, frames=40, warm=20)
 KINDS: tuple[Kind, ...] = ("flow-vae", "moglow", "cvae", "matching")
 
 
@@ -81,7 +81,7 @@ def test_steps_without_a_number_change_nothing_and_end_after_a_while(takes: Any)
 
 
 def test_the_rate_rises_falls_and_calms_down(takes: Any) -> None:
-    own = Learner(plan((takes[0],), (takes[1],), "cvae", settings=Settings(warm=100)), [takes[0]])
+    own = Learner(plan((takes[0],), (takes[1],), "cvae", settings=TrainingSettings(warm=100)), [takes[0]])
     rates = []
     for own.step in (0, 49, 99, 399, 99_999):
         rates.append(own.rate(0.0))
@@ -91,7 +91,9 @@ def test_the_rate_rises_falls_and_calms_down(takes: Any) -> None:
 
 def test_takes_shorter_than_a_crop_are_learned_from(takes: Any) -> None:
     short = takes[0].part(0, 101)
-    own = Learner(plan((short,), (takes[1],), "flow-vae", settings=Settings(batch=3, frames=500)), [short])
+    own = Learner(
+        plan((short,), (takes[1],), "flow-vae", settings=TrainingSettings(batch=3, frames=500)), [short]
+    )
     assert np.isfinite(own.advance()["loss"]) and own.objective.length == 101
 
 
@@ -100,12 +102,12 @@ def test_a_clip_of_ten_seconds_is_learned_by_heart(sample: Project) -> None:
     one, other = take(10.0, 1, bake(Evaluator(performed, sample), sample, 10.0, 25.0)), take(10.0, 2)
     sizes = msgspec.structs.replace(sizes_of("flow-vae"), code="autoencoder", dims=24, span=1)
     assert isinstance(sizes, FlowSizes)
-    settings = Settings(loss="whitened", batch=8, frames=64, warm=30, rate=4e-3, kept=0.9, head=0.0)
+    settings = TrainingSettings(loss="whitened", batch=8, frames=64, warm=30, rate=4e-3, kept=0.9, head=0.0)
     own = Learner(plan((one,), (other,), sizes=sizes, settings=settings, kind="flow-vae"), [one])
     for n in range(250):
         own.advance(n / 250)
     weights, standard = own.weights(), own.poses.apply(one.poses)
-    again = vae.decode(weights, sizes, vae.encode(weights, sizes, standard))
+    again = vae.decode_spans(weights, sizes, vae.encode_spans(weights, sizes, standard))
     apart = landmarks_of(rig(), own.poses.undo(again)) - landmarks_of(rig(), one.poses)
     assert 100 * np.linalg.norm(apart, axis=-1).mean() < 0.5
 
@@ -114,7 +116,7 @@ def test_a_clip_of_ten_seconds_is_learned_by_heart(sample: Project) -> None:
 def test_what_is_planted_is_found_with_what_is_heard_and_not_without(kind: Kind, steps: int) -> None:
     learned, held, other = [toy(1500, n) for n in range(4)], toy(1500, 99), toy(1500, 7)
     sizes = toy_sizes(kind)
-    settings = Settings(batch=32, frames=96, warm=100, rate=3e-3, known=1.0, kept=0.99)
+    settings = TrainingSettings(batch=32, frames=96, warm=100, rate=3e-3, known=1.0, kept=0.99)
     own = Learner(
         TrainingPlan(
             kind=kind,

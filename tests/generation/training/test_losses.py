@@ -11,8 +11,8 @@ torch = pytest.importorskip("torch", reason="training needs torch, which is not 
 
 from metagraph.generation.networks import Control, FlowSizes, MatchingSizes  # noqa: E402
 from metagraph.generation.takes import scales_of  # noqa: E402
-from metagraph.generation.train_plan import Settings  # noqa: E402
-from metagraph.generation.training.data import Corpus, edges_of  # noqa: E402
+from metagraph.generation.train_plan import TrainingSettings  # noqa: E402
+from metagraph.generation.training.data import TrainingCorpus, edges_of  # noqa: E402
 from metagraph.generation.training.learner import Learner  # noqa: E402
 from metagraph.generation.training.losses import ALPHA, objective_of  # noqa: E402
 from metagraph.generation.training.nets import net_of  # noqa: E402
@@ -29,7 +29,9 @@ def takes() -> Any:
 
 def deviation(takes: Any, **changes: Any) -> float:
     """Of the code that the flow sees, after some hundred steps."""
-    settings = Settings(batch=8, frames=40, warm=20, rate=5e-3, least=5e-3, head=0.0, known=1.0, **changes)
+    settings = TrainingSettings(
+        batch=8, frames=40, warm=20, rate=5e-3, least=5e-3, head=0.0, known=1.0, **changes
+    )
     own = Learner(plan(takes[:1], takes[1:], "flow-vae", sizes=FLOW, settings=settings), [takes[0]])
     for _ in range(200):
         own.advance()
@@ -64,19 +66,19 @@ def test_the_draw_of_the_third_term_begins_without_memory(takes: Any) -> None:
 
 @pytest.mark.parametrize("loss", ["paper", "whitened", None])
 def test_the_third_term_is_the_papers_alone(takes: Any, loss: Any) -> None:
-    objective = objective_of(net_of(FLOW), Settings(loss=loss))
+    objective = objective_of(net_of(FLOW), TrainingSettings(loss=loss))
     assert objective.third == (1.0 if loss == "paper" else 0.0)
 
 
 def test_losses_of_other_models_are_refused() -> None:
     with pytest.raises(ValueError, match="flow on code"):
-        objective_of(net_of(tiny("moglow")), Settings(loss="paper"))
+        objective_of(net_of(tiny("moglow")), TrainingSettings(loss="paper"))
     with pytest.raises(ValueError, match="is for a flow"):
-        objective_of(net_of(tiny("matching")), Settings(loss="whitened"))
+        objective_of(net_of(tiny("matching")), TrainingSettings(loss="whitened"))
 
 
-def corpus(takes: Any, sizes: Any) -> Corpus:
-    return Corpus(takes, *scales_of(takes), *edges_of(sizes))
+def corpus(takes: Any, sizes: Any) -> TrainingCorpus:
+    return TrainingCorpus(takes, *scales_of(takes), *edges_of(sizes))
 
 
 def test_crops_lie_within_takes_and_reach_both_ends(takes: Any) -> None:

@@ -80,7 +80,7 @@ def _chunks(net: MatchingNet, model: Model, told: Any, seed: int, lookahead: int
     s = net.sizes
     before = s.past * s.frames
     heard = torch.from_numpy(model.heard(with_edges(told, before, (s.new + s.ahead) * s.frames)))
-    past = torch.from_numpy(chunks.still_tokens(model.weights, s, np.zeros(s.pose, np.float32)))
+    past = torch.from_numpy(chunks.tokens_of_still_pose(model.weights, s, np.zeros(s.pose, np.float32)))
     known = s.most if lookahead is None else lookahead
     ahead, kept_tokens = torch.tensor([known]), min(s.new, max(1, (known + 1) // s.frames))
     out = []

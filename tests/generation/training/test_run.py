@@ -18,23 +18,23 @@ pytest.importorskip("torch", reason="training needs torch, which is not installe
 
 from metagraph.errors import FileError
 from metagraph.generation.sampler import poses_to
-from metagraph.generation.standing import busy, hold, standing_of
+from metagraph.generation.standing import hold, is_busy, standing_of
 from metagraph.generation.stored import read_model
 from metagraph.generation.train_plan import (
-    Settings,
     TrainingPlan,
+    TrainingSettings,
     folder_of,
     write_plan,
     write_training,
 )
-from metagraph.generation.train_process import Event, TrainingFailedError, TrainingProcess
+from metagraph.generation.train_process import TrainingEvent, TrainingFailedError, TrainingProcess
 from metagraph.generation.training.__main__ import main
 from metagraph.generation.training.checkpoint import read_checkpoint
 from metagraph.generation.training.run import Run
 from tests.generation.training.planting import plan, take
 from tests.processes import started
 
-SMALL = Settings(batch=4, frames=40, warm=20)
+SMALL = TrainingSettings(batch=4, frames=40, warm=20)
 
 
 @pytest.fixture(scope="module")
@@ -121,7 +121,7 @@ def test_on_a_full_disk_it_goes_on_learning_and_says_so(
     assert read_model(Run(folder, events.append).go()).card.steps == 12
 
 
-def heard_until(process: TrainingProcess, events: list[Event], what: str) -> None:
+def heard_until(process: TrainingProcess, events: list[TrainingEvent], what: str) -> None:
     for _ in range(15000):
         if any(e.event == what for e in events) or not process.running:
             return
@@ -130,7 +130,7 @@ def heard_until(process: TrainingProcess, events: list[Event], what: str) -> Non
 
 def test_killed_at_any_moment_its_last_checkpoint_can_be_used(takes: Any, tmp_path: Path) -> None:
     own = begun(takes, tmp_path, steps=10**6, checkpoint=0.05)
-    out, events = tmp_path / "m.mgmodel", list[Event]()
+    out, events = tmp_path / "m.mgmodel", list[TrainingEvent]()
     process = TrainingProcess(out, events.append)
     heard_until(process, events, "checkpoint")
     process.kill()
@@ -163,14 +163,14 @@ def test_it_does_not_outlive_who_began_it_and_keeps_what_it_has(takes: Any, tmp_
     )
     with started(sys.executable, "-c", code, out, stdout=subprocess.PIPE) as parent:
         assert parent.stdout is not None and parent.stdout.readline()
-        assert busy(folder)
+        assert is_busy(folder)
         parent.kill()
         parent.wait(10)
         parent.stdout.close()
     late = time.monotonic() + 60
-    while busy(folder) and time.monotonic() < late:
+    while is_busy(folder) and time.monotonic() < late:
         time.sleep(0.05)
-    assert not busy(folder)
+    assert not is_busy(folder)
     standing = standing_of(folder)
     assert standing is not None and standing.step > 5 and not standing.kept
 
@@ -184,7 +184,7 @@ def test_a_second_process_does_not_learn_in_the_same_folder(
     assert held is not None
     with held:
         assert main([str(folder)]) == 2
-    event = msgspec.json.decode(capsys.readouterr().out.splitlines()[-1], type=Event)
+    event = msgspec.json.decode(capsys.readouterr().out.splitlines()[-1], type=TrainingEvent)
     assert "another process" in event.text and standing_of(folder).step == 0
     assert main([str(folder)]) == 0
     assert standing_of(folder).step == 12
@@ -192,5 +192,5 @@ def test_a_second_process_does_not_learn_in_the_same_folder(
 
 def test_what_goes_wrong_is_told_in_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main([str(tmp_path / "none.training")]) == 2
-    event = msgspec.json.decode(capsys.readouterr().out.splitlines()[-1], type=Event)
+    event = msgspec.json.decode(capsys.readouterr().out.splitlines()[-1], type=TrainingEvent)
     assert event.event == "error" and "no training to go on with" in event.text

@@ -10,7 +10,7 @@ torch = pytest.importorskip("torch", reason="training needs torch, which is not 
 
 from metagraph.generation.features import FLOOR, MELS  # noqa: E402
 from metagraph.generation.training import voices  # noqa: E402
-from metagraph.generation.training.voices import sound_otherwise  # noqa: E402
+from metagraph.generation.training.voices import vary_voices  # noqa: E402
 
 
 def mels(count: int = 300, frames: int = 30) -> torch.Tensor:
@@ -26,14 +26,14 @@ def chance(seed: int = 1) -> torch.Generator:
 
 
 def test_all_stay_numbers_no_fainter_than_silence_and_each_is_another() -> None:
-    heard = sound_otherwise(mels(), chance())
+    heard = vary_voices(mels(), chance())
     assert torch.isfinite(heard).all() and float(heard.min()) >= log(FLOOR) - 1e-5
     assert torch.unique(heard[:, 0, 12]).numel() > 250
-    assert torch.equal(heard, sound_otherwise(mels(), chance()))
+    assert torch.equal(heard, vary_voices(mels(), chance()))
 
 
 def test_a_syllable_stays_where_it_was() -> None:
-    loud = sound_otherwise(mels(), chance()).exp().sum(2)
+    loud = vary_voices(mels(), chance()).exp().sum(2)
     assert (loud[:, [0, 1, 10, 11]].amin(1) >= loud[:, [6, 7, 8, 9]].amax(1) * 0.8).float().mean() > 0.95
 
 
@@ -48,12 +48,12 @@ def test_each_that_can_happen_to_a_sound_does_in_its_share_of_crops(name: str, m
     monkeypatch.setattr(voices, "UNEVEN", 0.0)
     before, share = mels(), getattr(voices, name)
     before[:, 5:9] += 3.0  # something soft that is not silence, of another spectrum
-    changed = (sound_otherwise(before, chance()) - before).abs().amax((1, 2)) > 1e-4
+    changed = (vary_voices(before, chance()) - before).abs().amax((1, 2)) > 1e-4
     assert abs(float(changed.float().mean()) - share) < 0.12
 
 
 def test_of_a_single_frame_no_room_is_left() -> None:
-    assert sound_otherwise(mels(9, 1), chance()).shape == (9, 1, MELS)
+    assert vary_voices(mels(9, 1), chance()).shape == (9, 1, MELS)
 
 
 def test_sounds_that_differ_in_loudness_alone_are_as_loud_as_before() -> None:

@@ -33,17 +33,17 @@ def test_a_project_without_clips_has_no_distances(toy: Any) -> None:
     project = toy.project()
     action = project.action(toy.id(project, "rest beat lf"))
     bare = edits.remove_clips(project, [*project.clips])
-    assert end_gaps.gaps(bare, bare.graphs["arms"], action) == []
-    assert end_gaps.seam(bare, bare.graphs["arms"], action) is None
-    assert np.isinf(end_gaps.distances(bare, action, np.zeros(2))).all()
-    assert end_gaps.gaps(Project(), Project().graphs["arms"], action) == []
+    assert end_gaps.find_end_gaps(bare, bare.graphs["arms"], action) == []
+    assert end_gaps.measure_seam(bare, bare.graphs["arms"], action) is None
+    assert np.isinf(end_gaps.distances_to_stance(bare, action, np.zeros(2))).all()
+    assert end_gaps.find_end_gaps(Project(), Project().graphs["arms"], action) == []
 
 
 def test_distances_over_time_are_the_gaps_at_its_ends(toy: Any) -> None:
     project = toy.project()
     action = project.action(toy.id(project, "up to far"))
-    found = end_gaps.gaps(project, project.graphs["arms"], action)
+    found = end_gaps.find_end_gaps(project, project.graphs["arms"], action)
     times = np.array(project.span(action))
-    leaves, enters = end_gaps.distances(project, action, times)
+    leaves, enters = end_gaps.distances_to_stance(project, action, times)
     assert [g.edge for g in found] == ["begins", "ends"] and leaves[1] > 0.2 < enters[0]
     assert [leaves[0], enters[1]] == pytest.approx([g.metres for g in found])

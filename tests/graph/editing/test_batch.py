@@ -11,7 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from metagraph.graph import edits
-from metagraph.graph.check import check
+from metagraph.graph.check import check_project
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing import batch
 from metagraph.graph.model import Project
@@ -34,9 +34,9 @@ def test_a_pattern_names_and_numbers_in_the_order_given(project: Project) -> Non
     ids = gestures(project)[:2]
     names = batch.names_by_pattern(project, ids[::-1], "{stance} {kind} {n:02}")
     assert [names[i].rpartition(" ")[2] for i in ids[::-1]] == ["01", "02"]
-    after = batch.rename(project, names)
+    after = batch.rename_actions(project, names)
     assert {i: after.action(i).name for i in ids} == names  # type: ignore[union-attr]
-    assert batch.rename(after, names) is after
+    assert batch.rename_actions(after, names) is after
 
 
 @pytest.mark.parametrize("pattern", ["{colour}", "{n", "{n:x!}", "{0}", "{name[0][0][0]}x{", "{n:s}"])
@@ -57,7 +57,7 @@ def test_a_name_is_never_left_empty(project: Project) -> None:
 
 def test_a_text_is_replaced_only_where_it_stands(project: Project) -> None:
     first = gestures(project)[0]
-    named = batch.rename(project, {first: "Wave_Lf 01"})
+    named = batch.rename_actions(project, {first: "Wave_Lf 01"})
     assert batch.names_replaced(named, gestures(named), "_Lf", r"\1 left") == {first: r"Wave\1 left 01"}
     assert batch.names_replaced(named, gestures(named), r"(\w+)_Lf (\d+)", r"\2 \1", regex=True) == {
         first: "01 Wave"
@@ -82,7 +82,7 @@ def test_pasting_gives_the_chosen_groups_and_nothing_else(project: Project) -> N
         limb="left",
         timing={"blend_in": 0.07, "blend_out": 0.11},
     )
-    after = batch.paste(project, source, others, ["tags", "blends"])
+    after = batch.paste_properties(project, source, others, ["tags", "blends"])
     for ident in others:
         before, now = project.action(ident), after.action(ident)
         assert before is not None and now is not None
@@ -100,7 +100,7 @@ def test_pasted_times_stay_within_the_clip(project: Project) -> None:
     project = edits.update_actions(
         project, [source], timing={"start": length + 1.0, "end": length + 2.0, "stroke": length + 1.5}
     )
-    after = batch.paste(project, source, [other], ["part", "phases"]).action(other)
+    after = batch.paste_properties(project, source, [other], ["part", "phases"]).action(other)
     assert after is not None
     assert (after.timing.start, after.timing.end) == (action.timing.start, action.timing.end)
     assert after.timing.stroke == length
@@ -108,9 +108,9 @@ def test_pasted_times_stay_within_the_clip(project: Project) -> None:
 
 def test_a_group_that_is_none_and_a_source_that_is_gone_are_told(project: Project) -> None:
     with pytest.raises(EditError, match="blends"):
-        batch.paste(project, gestures(project)[0], gestures(project), ["colour"])
+        batch.paste_properties(project, gestures(project)[0], gestures(project), ["colour"])
     with pytest.raises(EditError, match="no longer"):
-        batch.paste(project, "nobody", gestures(project), ["tags"])
+        batch.paste_properties(project, "nobody", gestures(project), ["tags"])
 
 
 # --- clips
@@ -135,10 +135,10 @@ def test_replacing_clips_in_any_project_makes_no_new_errors(project: Project) ->
     if not project.clips:
         return
     clip = next(iter(project.clips))
-    errors = {p.message for p in check(project) if p.severity == "error"}
+    errors = {p.message for p in check_project(project) if p.severity == "error"}
     after = batch.replace_clip(project, [a.id for a in project.actions()], clip)
     for action in after.actions():
         assert action.clip == clip
         start, end = after.span(action)
         assert 0 <= start <= end <= after.clips[clip].duration
-    assert len({p.message for p in check(after) if p.severity == "error"}) <= len(errors) + 1
+    assert len({p.message for p in check_project(after) if p.severity == "error"}) <= len(errors) + 1

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 
 from metagraph.graph import edits
-from metagraph.graph.editing.differences import differences
+from metagraph.graph.editing.differences import describe_differences
 from metagraph.graph.manual.machine import Manual
 from metagraph.graph.model import Project
 from tests.projects import histories
@@ -16,8 +16,8 @@ from tests.projects import histories
 
 def test_a_project_does_not_differ_from_itself(toy) -> None:
     project = toy.project()
-    assert differences(project, project) == []
-    assert differences(project, replace(project, clips=dict(project.clips))) == []
+    assert describe_differences(project, project) == []
+    assert describe_differences(project, replace(project, clips=dict(project.clips))) == []
 
 
 BEAT = "Gesture 'rest beat lf' (arms) changed:"
@@ -50,22 +50,22 @@ def beat(toy, project: Project) -> str:
 )  # fmt: skip
 def test_an_edit_is_one_line_that_says_what_it_did(toy, edit, line) -> None:
     before = toy.project()
-    assert differences(before, edit(before, lambda name: toy.id(before, name))) == [line]
+    assert describe_differences(before, edit(before, lambda name: toy.id(before, name))) == [line]
 
 
 def test_timing_is_told_by_its_own_fields(toy) -> None:
     before = toy.project()
     action = before.action(beat(toy, before))
     after = edits.update_actions(before, [action.id], timing=replace(action.timing, start=0.1, end=0.5))
-    (line,) = differences(before, after)
+    (line,) = describe_differences(before, after)
     assert all(piece in line for piece in ("'rest beat lf' (arms)", "start 0 → 0.1, end none → 0.5"))
 
 
 def test_clips_that_came_and_went_are_named(toy) -> None:
     before = toy.project()
     after = edits.add_clips(before, [("new.glb", 0, "", toy.clip("new"))])
-    assert differences(before, after) == ["Clip 'new' added"]
-    assert differences(after, before) == ["Clip 'new' removed"]
+    assert describe_differences(before, after) == ["Clip 'new' added"]
+    assert describe_differences(after, before) == ["Clip 'new' removed"]
 
 
 @settings(max_examples=60, deadline=None)
@@ -73,6 +73,6 @@ def test_clips_that_came_and_went_are_named(toy) -> None:
 def test_any_two_states_that_are_not_equal_differ_in_words(states: list[Project]) -> None:
     for before in states:
         for after in states:
-            lines = differences(before, after)
+            lines = describe_differences(before, after)
             assert all(isinstance(line, str) and "\n" not in line for line in lines)
             assert (before == after) == (not lines)

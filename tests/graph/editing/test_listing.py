@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from metagraph.formats.project.journal import changes
+from metagraph.formats.project.journal import find_changes
 from metagraph.formats.store import open_project, save_project
 from metagraph.graph import edits
-from metagraph.graph.editing.listing import duplicate_clips, reordered, shifted
+from metagraph.graph.editing.listing import duplicate_clips, reorder_actions, shift_actions
 from metagraph.graph.editing.marks import mark
 from metagraph.playback.planner import make_plan
 
@@ -21,9 +21,9 @@ def project(toy):
     known = {e.name: e.id for e in out.clips.values()}
     stance = out.action(toy.id(out, "rest cough")).stance
     for n in range(5):
-        out = edits.place(out, [known[f"g{n}"]], "arms", "gesture", stance)
+        out = edits.place_clips(out, [known[f"g{n}"]], "arms", "gesture", stance)
         if n == 2:
-            out = edits.place(out, [known["g2"]], "arms", "fidget", stance)
+            out = edits.place_clips(out, [known["g2"]], "arms", "fidget", stance)
     return out
 
 
@@ -51,7 +51,7 @@ def ids(project, digits):
 )
 def test_actions_are_listed_in_front_of_another(project, moving, before, after):
     target = next(iter(ids(project, before))) if before else None
-    assert names(reordered(project, ids(project, moving), target)) == after
+    assert names(reorder_actions(project, ids(project, moving), target)) == after
 
 
 @pytest.mark.parametrize(
@@ -60,34 +60,34 @@ def test_actions_are_listed_in_front_of_another(project, moving, before, after):
      ("34", 1, "01234"), ("24", 1, "01324"), ("13", 1, "02143"), ("", 1, "01234")],
 )  # fmt: skip
 def test_actions_go_a_place_earlier_or_later_and_keep_together(project, moving, steps, after):
-    assert names(shifted(project, ids(project, moving), steps)) == after
+    assert names(shift_actions(project, ids(project, moving), steps)) == after
 
 
 def test_other_nodes_keep_their_order_and_nothing_else_changes(project):
-    after = reordered(project, ids(project, "3"), next(iter(ids(project, "0"))))
+    after = reorder_actions(project, ids(project, "3"), next(iter(ids(project, "0"))))
     assert after.graphs["arms"].actions == project.graphs["arms"].actions
     others = [[a for a in p.graphs["arms"].actions if p.action(a).kind == "fidget"] for p in (project, after)]
     assert others[0] == others[1]
-    assert set(changes(project, after)["layers"]["arms"]) == {"actions_order"}
+    assert set(find_changes(project, after)["layers"]["arms"]) == {"actions_order"}
 
 
 def test_another_order_survives_saving(project, tmp_path):
-    after = reordered(project, ids(project, "4"), next(iter(ids(project, "1"))))
+    after = reorder_actions(project, ids(project, "4"), next(iter(ids(project, "1"))))
     save_project(after, tmp_path / "p.metagraph.yaml")
     assert names(open_project(tmp_path / "p.metagraph.yaml").project) == "04123"
 
 
 def test_what_plays_does_not_depend_on_the_order_of_lists(project):
-    after = shifted(project, ids(project, "13"), -1)
+    after = shift_actions(project, ids(project, "13"), -1)
     plans = [make_plan(p, 40.0) for p in (project, after)]
     heard = [[(c.action.id, c.start) for c in p.layers["arms"].cues] for p in plans]
     assert heard[0] == heard[1] and len(heard[0]) > 3
 
 
 def test_what_is_the_same_is_the_same_project(project):
-    assert reordered(project, [], None) is project
-    assert reordered(project, ids(project, "4"), None) is project
-    assert shifted(project, ids(project, "4"), 1) is project
+    assert reorder_actions(project, [], None) is project
+    assert reorder_actions(project, ids(project, "4"), None) is project
+    assert shift_actions(project, ids(project, "4"), 1) is project
 
 
 def test_duplicates_have_names_of_their_own_and_what_is_on_the_first(toy):

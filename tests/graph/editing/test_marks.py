@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from metagraph.formats.project.journal import changes
-from metagraph.formats.project.limits import refusal
-from metagraph.formats.project.merging import merge
+from metagraph.formats.project.journal import find_changes
+from metagraph.formats.project.limits import find_unwritable
+from metagraph.formats.project.merging import merge_projects
 from metagraph.formats.store import open_project, save_project
 from metagraph.graph import edits
 from metagraph.graph.clip_mark import BARE, ClipMark
@@ -47,12 +47,12 @@ def test_marks_are_saved_journalled_and_merged(project, tmp_path):
     save_project(marked, path)
     assert open_project(path).project.marks == marked.marks
     assert "marks" not in path.with_suffix("").name and "rating: 4" in path.read_text()
-    assert changes(project, marked) == {"marks": {one: {"color": "red", "rating": 4, "note": "a1"}}}
-    both = merge(project, marked, mark(project, [two], favourite=True)).project
+    assert find_changes(project, marked) == {"marks": {one: {"color": "red", "rating": 4, "note": "a1"}}}
+    both = merge_projects(project, marked, mark(project, [two], favourite=True)).project
     assert both.marks == {one: marked.marks[one], two: ClipMark(favourite=True)}
 
 
 @pytest.mark.parametrize("wrong", [{"rating": 6}, {"rating": -1}, {"color": "pink"}])
 def test_what_no_file_could_hold_is_refused(project, wrong):
     one = next(iter(project.clips))
-    assert "marks" in refusal(project, mark(project, [one], **wrong))
+    assert "marks" in find_unwritable(project, mark(project, [one], **wrong))

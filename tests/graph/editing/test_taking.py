@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from metagraph.graph import edits
-from metagraph.graph.check import check
+from metagraph.graph.check import check_project
 from metagraph.graph.editing.taking import piece_of, take, words_of_taking
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
@@ -54,7 +54,7 @@ def test_an_empty_project_becomes_what_the_other_is(other: Project) -> None:
     assert taking.project.skeleton == other.skeleton
     base = taking.project.base.clip
     assert base is not None and taking.project.clips[base].name == other.clips[other.base.clip].name
-    assert not [p for p in check(taking.project) if p.severity == "error"]
+    assert not [p for p in check_project(taking.project) if p.severity == "error"]
     assert [words.split()[0] for words in words_of_taking(taking).split(", ")] == ["3", "16", "16"]
 
 
@@ -97,7 +97,7 @@ def test_a_chosen_transition_brings_both_stances(other: Project, toy: Any) -> No
     way = toy.id(other, "up to far")
     taking = take(Project(), piece_of(other, actions=[way]), actions=[way])
     assert {a.name for a in taking.project.actions()} == {"up loop", "far loop", "up to far"}
-    assert not [p for p in check(taking.project) if p.severity == "error"]
+    assert not [p for p in check_project(taking.project) if p.severity == "error"]
 
 
 def test_a_chosen_stance_brings_all_that_is_placed_on_it(other: Project, toy: Any) -> None:
@@ -134,7 +134,7 @@ def strange() -> Project:
     )
     pose, touch = theirs.clips
     theirs = edits.add_stance(theirs, "arms", "other rest", [pose])
-    theirs = edits.place(theirs, [touch], "arms", "gesture", next(iter(theirs.graphs["arms"].stances)))
+    theirs = edits.place_clips(theirs, [touch], "arms", "gesture", next(iter(theirs.graphs["arms"].stances)))
     key = ContactKey(0.5, (0.0, 0.1, 0.1), (0.0, 0.0, 0.0, 1.0))
     return edits.update_actions(
         theirs,
@@ -172,7 +172,7 @@ def test_clips_of_another_skeleton_are_retargeted_with_the_joints_that_actions_n
     assert touch.contacts == (), "they are places on another body"
     (words,) = (x.words for x in taking.things if x.kind == "action" and x.name == "their touch")
     assert "contacts" in words and "left out" in words
-    assert not [p for p in check(taking.project) if p.code == "mask"]
+    assert not [p for p in check_project(taking.project) if p.code == "mask"]
 
 
 def test_an_action_that_moves_no_joint_of_this_project_is_left_out(other: Project) -> None:
@@ -200,7 +200,7 @@ def test_a_stance_that_has_nothing_in_the_other_project_comes_as_it_is(other: Pr
 
 
 def test_an_empty_project_begins_where_the_other_does_with_its_weights(other: Project, toy: Any) -> None:
-    far = edits.set_weight(edits.set_start(other, toy.id(other, "far")), "arms", "legs", 0.5)
+    far = edits.set_weight(edits.set_start_stance(other, toy.id(other, "far")), "arms", "legs", 0.5)
     after = take(Project(), far).project
     graph = after.graphs["arms"]
     assert graph.stances[graph.start or ""].name == "far" and graph.weights == {"legs": 0.5}

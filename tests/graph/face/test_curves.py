@@ -16,12 +16,12 @@ from metagraph.formats.gltf.reader import morph_targets, write_glb
 from metagraph.formats.imports import import_files
 from metagraph.graph import edits
 from metagraph.graph.face.arkit import ARKIT
-from metagraph.graph.face.blendshape_names import meanings, shape_of
-from metagraph.graph.face.curves import curves_told, worn
+from metagraph.graph.face.blendshape_names import match_arkit_shape, meanings
+from metagraph.graph.face.curves import describe_unused_curves, fit_curves_to_face
 from metagraph.graph.face.rig import UPPER_LID_SHUT, with_morphs
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
-from metagraph.motion.character_mesh import Character, Material, Surface
+from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, Surface
 from metagraph.motion.clip import Clip
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 
@@ -45,7 +45,7 @@ def project(targets: Any, made: Clip, names: dict[str, str] | None = None) -> Pr
 
 def on(targets: Any, curves: dict[str, Any], names: dict[str, str] | None = None) -> Clip:
     made = clip(curves)
-    return worn(project(targets, made, names), made)
+    return fit_curves_to_face(project(targets, made, names), made)
 
 
 ADA = morph_targets(SAMPLES / "ada.glb")
@@ -73,7 +73,7 @@ def styled(name: str, style: str) -> str:
 def test_every_shape_is_known_in_any_case_with_any_prefix_and_short_sides(
     shape: str, style: str, prefix: str
 ) -> None:
-    assert shape_of(prefix + styled(shape, style)) == shape
+    assert match_arkit_shape(prefix + styled(shape, style)) == shape
 
 
 @given(st.lists(st.text(max_size=20), max_size=8))
@@ -94,8 +94,8 @@ def test_weights_stay_within_0_to_1_and_on_the_characters_own_targets(curves: di
 
 def test_curves_of_the_faces_own_are_left_to_the_bit() -> None:
     made = clip({"jawOpen": [0.0, 1.5], "mouthSmileLeft": [0.3, 0.2]})
-    assert worn(project(ADA, made), made) is made
-    assert worn(Project(), made) is made
+    assert fit_curves_to_face(project(ADA, made), made) is made
+    assert fit_curves_to_face(Project(), made) is made
 
 
 @pytest.mark.parametrize(
@@ -146,7 +146,7 @@ def test_lids_and_eyes_that_are_joints_turn(targets: Any) -> None:
     assert "eyeBlinkLeft" not in made.morphs
     if not targets:
         assert angle(made, "RightEye") == pytest.approx(30, abs=0.1)
-        up = rotation.rotate(made.rotations[0, SKELETON.index("RightEye")], np.array([0, 0, 1.0]))
+        up = rotation.rotate_vectors(made.rotations[0, SKELETON.index("RightEye")], np.array([0, 0, 1.0]))
         assert up[1] > 0.4
 
 
@@ -163,18 +163,18 @@ def test_the_users_own_words_go_first() -> None:
 
 def test_what_nobody_knows_is_told_and_what_the_face_has_not() -> None:
     made = clip({"muscle_07": [1.0], "cheekPuff": [1.0], "jawOpen": [1.0]})
-    told = curves_told(project((), made), [made])
+    told = describe_unused_curves(project((), made), [made])
     assert "muscle_07" in told[0] and "face, names" in told[0]
     assert "cheekPuff" in told[1] and "jawOpen" not in told[1]
-    assert curves_told(project(ADA, made, {"muscle_07": ""}), [made]) == ()
+    assert describe_unused_curves(project(ADA, made, {"muscle_07": ""}), [made]) == ()
 
 
 def test_a_glb_with_other_names_comes_in_and_says_what_it_left(tmp_path: Path) -> None:
     curves = {"Head_Mouth_Smile_L": [0.0, 1.0], "muscle_07": [0.0, 1.0]}
     corner = np.eye(3, dtype=np.float32)
-    body = Character(
+    body = CharacterMesh(
         "b", SKELETON, corner, corner, np.zeros((3, 2), np.float32), np.zeros((3, 4), np.uint16),
-        np.tile(np.float32([1, 0, 0, 0]), (3, 1)), np.array([[0, 1, 2]], np.uint32), (Material("m"),),
+        np.tile(np.float32([1, 0, 0, 0]), (3, 1)), np.array([[0, 1, 2]], np.uint32), (MeshMaterial("m"),),
         (Surface(0, 1, 0),), tuple(curves), np.full((2, 3, 3), 0.01, np.float32),
     )  # fmt: skip
     write_glb(tmp_path / "smile.glb", [clip(curves)], body)
@@ -183,4 +183,4 @@ def test_a_glb_with_other_names_comes_in_and_says_what_it_left(tmp_path: Path) -
     assert [n for n in result.notes if "muscle_07" in n]
     after = result.into(empty)
     entry = list(after.clips.values())[-1]
-    assert entry.motion is not None and worn(after, entry.motion).morphs == ("mouthSmileLeft",)
+    assert entry.motion is not None and fit_curves_to_face(after, entry.motion).morphs == ("mouthSmileLeft",)

@@ -22,7 +22,7 @@ from metagraph.graph.face.rig import (
     FaceRig,
     axes_of,
     find_face,
-    morph_names,
+    list_morph_names,
     with_morphs,
 )
 from metagraph.graph.life import Face, FacePose
@@ -153,7 +153,7 @@ def test_lids_hung_elsewhere_go_round_the_eye() -> None:
         skeleton, {"left_eye": skeleton.index("LeftEye"), "right_eye": skeleton.index("RightEye")}, at_rest
     )
     turn = rotation.from_axis_angle(axes[0], np.radians(40.0))
-    assert np.allclose(moved[joint], eye + rotation.rotate(turn, at_rest[joint] - eye), atol=1e-9)
+    assert np.allclose(moved[joint], eye + rotation.rotate_vectors(turn, at_rest[joint] - eye), atol=1e-9)
     assert rotation.angle_between(after[joint], rotation.multiply(turn, before[joint])) < 1e-7
 
 
@@ -162,8 +162,8 @@ def test_a_character_that_faces_elsewhere_has_its_own_left_and_ahead(toy: Any, t
     roles = {"left_upper_leg": 10, "right_upper_leg": 13}
     _, at = toy.skeleton.globals(toy.skeleton.rest)
     spin = rotation.from_axis_angle([0, 1.0, 0], turn)
-    axes = axes_of(toy.skeleton, roles, rotation.rotate(spin, at))
-    assert np.allclose(axes, rotation.rotate(spin, np.eye(3)), atol=1e-9)
+    axes = axes_of(toy.skeleton, roles, rotation.rotate_vectors(spin, at))
+    assert np.allclose(axes, rotation.rotate_vectors(spin, np.eye(3)), atol=1e-9)
 
 
 def test_a_character_without_sides_looks_along_z(toy: Any) -> None:
@@ -242,7 +242,7 @@ def test_morph_targets_are_known_from_clips_memory_and_the_caller(toy: Any) -> N
     clip = toy.clip("smile")
     clip = replace(clip, morphs=("jawOpen",), weights=np.zeros((clip.frames, 1)))
     project = with_morphs(edits.add_clips(Project(), [("smile.glb", 0, "", clip)]), ["A"])
-    assert morph_names(project, ["blink"]) == ("A", "blink", "jawOpen")
+    assert list_morph_names(project, ["blink"]) == ("A", "blink", "jawOpen")
     assert "blink" in find_face(project, ["blink"]).morphs and "blink" not in find_face(project).morphs
     assert with_morphs(project, ["A"]) is project
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from metagraph.graph import edits
-from metagraph.graph.check import check
+from metagraph.graph.check import check_project
 from metagraph.graph.manual import edits as m
 from metagraph.graph.manual.machine import ANY, Link
 from metagraph.graph.model import Project
@@ -28,16 +28,18 @@ def sound() -> Project:
 
 
 def found(project: Project) -> list[str]:
-    return [p.code for p in check(project) if p.state or p.link or p.code in ("no-start", "file-missing")]
+    return [
+        p.code for p in check_project(project) if p.state or p.link or p.code in ("no-start", "file-missing")
+    ]
 
 
 def test_a_sound_machine_has_no_problems() -> None:
     assert found(sound()) == []
-    assert "no-stance" not in [p.code for p in check(sound())]
+    assert "no-stance" not in [p.code for p in check_project(sound())]
 
 
 def test_one_state_alone_is_no_dead_end() -> None:
-    assert found(m.remove(sound(), ["m5"])) == []
+    assert found(m.remove_states(sound(), ["m5"])) == []
 
 
 def with_link(project: Project, **fields: object) -> Project:
@@ -50,8 +52,8 @@ def with_link(project: Project, **fields: object) -> Project:
 WRONG: list[tuple[str, Callable[[Project], Project]]] = [
     ("no-start", lambda p: p.with_manual(replace(p.manual["arms"], start=None))),
     ("unreachable", lambda p: m.add_link(m.add_states(p, ["c3"], "arms"), "arms", "m8", "m4")),
-    ("dead-end", lambda p: m.remove(p, (), ["l7"])),
-    ("no-exit", lambda p: m.update_states(m.remove(p, (), ["l7"]), ["m5"], loop=True)),
+    ("dead-end", lambda p: m.remove_states(p, (), ["l7"])),
+    ("no-exit", lambda p: m.update_states(m.remove_states(p, (), ["l7"]), ["m5"], loop=True)),
     ("waits", lambda p: m.update_links(p, ["l7"], condition={"when": "request"})),
     ("twice", lambda p: m.add_link(p, "arms", "m5", "m4")),
     ("trim", lambda p: m.update_states(p, ["m5"], end=5.0)),
@@ -74,7 +76,7 @@ WRONG: list[tuple[str, Callable[[Project], Project]]] = [
 def test_each_problem_is_found_says_what_to_do_and_where(
     code: str, spoil: Callable[[Project], Project]
 ) -> None:
-    problems = {p.code: p for p in check(spoil(sound()))}
+    problems = {p.code: p for p in check_project(spoil(sound()))}
     assert code in problems
     assert problems[code].message
     assert problems[code].remedy.endswith(".")

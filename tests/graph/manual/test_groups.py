@@ -10,7 +10,7 @@ from metagraph.graph.edit_error import EditError
 from metagraph.graph.manual import edits as m
 from metagraph.graph.manual import groups as g
 from metagraph.graph.manual.check import check_manual
-from metagraph.graph.manual.machine import ANY, Condition, Link, links_expanded, without
+from metagraph.graph.manual.machine import ANY, Condition, Link, links_expanded, remove_from_machine
 from metagraph.graph.manual.timing import exit_moment
 from metagraph.graph.model import Project
 from metagraph.playback.manual_playback import Fire, link_alone, make_manual_plan
@@ -95,22 +95,22 @@ def test_links_that_are_taken_otherwise_stand_beside_each_other() -> None:
 def test_states_that_go_are_no_longer_stood_for_and_a_group_loses_its_entry() -> None:
     p, ids, alias = grouped("idle", "wave")
     p = g.update_aliases(p, [alias], entry=ids["idle"])
-    left = without(p.manual["arms"], [ids["idle"]])
+    left = remove_from_machine(p.manual["arms"], [ids["idle"]])
     assert left.aliases[alias].states == (ids["wave"],) and left.aliases[alias].entry is None
     p = m.add_link(p, "arms", alias, ids["nod"])
-    gone = m.remove(p, [alias]).manual["arms"]
+    gone = m.remove_states(p, [alias]).manual["arms"]
     assert not gone.aliases and not gone.links
 
 
 def test_states_join_and_leave_an_alias() -> None:
     p, ids, alias = grouped("idle")
-    p = g.choose(p, alias, [ids["sit"], ids["wave"]])
+    p = g.set_alias_states(p, alias, [ids["sit"], ids["wave"]])
     assert p.alias(alias).states == (ids["idle"], ids["wave"], ids["sit"])
     p = g.update_aliases(p, [alias], entry=ids["sit"])
-    p = g.choose(p, alias, [ids["sit"]], on=False)
+    p = g.set_alias_states(p, alias, [ids["sit"]], on=False)
     assert p.alias(alias).states == (ids["idle"], ids["wave"]) and p.alias(alias).entry is None
     with pytest.raises(EditError, match="no longer"):
-        g.choose(p, "g99", [])
+        g.set_alias_states(p, "g99", [])
     assert g.update_aliases(p, [alias], again=False) is p
 
 
@@ -126,12 +126,12 @@ def test_many_links_are_drawn_at_once_none_twice_and_none_to_itself() -> None:
 
 
 def test_what_names_share_is_what_an_alias_is_called() -> None:
-    assert g.shared_words(["hips__wave", "hips__nod", "sit__to__hips"]) == "hips"
-    assert g.shared_words(["sit__nod", "sit__wave"]) == "sit"
-    assert g.shared_words(["sitting", "sit"]) == "" and g.shared_words(["sit", "sit_2"]) == "sit"
+    assert g.find_shared_words(["hips__wave", "hips__nod", "sit__to__hips"]) == "hips"
+    assert g.find_shared_words(["sit__nod", "sit__wave"]) == "sit"
+    assert g.find_shared_words(["sitting", "sit"]) == "" and g.find_shared_words(["sit", "sit_2"]) == "sit"
     assert (
-        g.shared_words(["a", "b"]) == ""
-        and g.shared_words(["hands on hips 1", "hands on knee"]) == "hands on"
+        g.find_shared_words(["a", "b"]) == ""
+        and g.find_shared_words(["hands on hips 1", "hands on knee"]) == "hands on"
     )
     p, _, alias = grouped("idle", "wave")
     assert p.alias(alias).name == "alias"
@@ -144,30 +144,30 @@ def test_copied_links_are_drawn_for_other_states_with_their_settings() -> None:
     links = list(p.manual["arms"].links.values())
     p = m.update_links(p, [links[0].id], blend=0.5, exit_part=0.5)
     copies = list(p.manual["arms"].links.values())
-    p = g.paste_links(p, "arms", copies, [ids["sit"], ids["nod"]])
+    p = g.paste_copied_links(p, "arms", copies, [ids["sit"], ids["nod"]])
     assert pairs(p, ids) == {"idle>wave", "idle>nod", "sit>wave", "sit>nod", "nod>wave"}
     assert [x.blend for x in p.manual["arms"].links.values() if x.target == ids["wave"]] == [0.5] * 3
     with pytest.raises(EditError, match="drawn already"):
-        g.paste_links(p, "arms", copies, [ids["sit"]])
+        g.paste_copied_links(p, "arms", copies, [ids["sit"]])
 
 
 def test_copied_links_that_lead_to_one_state_lead_to_others_named_after_them() -> None:
     p, ids = linked(("idle", "wave"), ("sit", "wave"))
     p = m.update_links(p, [*p.manual["arms"].links], condition={"when": "request"})
     copies = list(p.manual["arms"].links.values())
-    p = g.paste_links(p, "arms", copies, [ids["nod"]])
+    p = g.paste_copied_links(p, "arms", copies, [ids["nod"]])
     assert pairs(p, ids) == {"idle>wave", "sit>wave", "idle>nod", "sit>nod"}
     assert [x.condition.trigger for x in p.manual["arms"].links.values()] == ["wave", "wave", "nod", "nod"]
     loose = [Link("l1", "a", "b"), Link("l2", "c", "d")]
     with pytest.raises(EditError, match="leave one state"):
-        g.paste_links(p, "arms", loose, [ids["nod"]])
+        g.paste_copied_links(p, "arms", loose, [ids["nod"]])
 
 
 def test_a_copied_group_stands_for_the_copies() -> None:
     p, ids, alias = grouped("idle", "wave")
     p = g.update_aliases(p, [alias], entry=ids["idle"])
     p = m.add_link(p, "arms", alias, ids["wave"])
-    p, made = m.paste(p, "arms", m.copied(p, [ids["idle"], ids["wave"], alias]), 400, 400)
+    p, made = m.paste_states(p, "arms", m.copy_states(p, [ids["idle"], ids["wave"], alias]), 400, 400)
     copy = p.alias(made[2])
     assert copy.states == tuple(made[:2]) and copy.entry == made[0] and copy.name == "alias 2"
     link = list(p.manual["arms"].links.values())[-1]

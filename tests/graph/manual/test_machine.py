@@ -108,14 +108,14 @@ def test_what_is_reached_only_from_any_state_is_reached() -> None:
 
 def test_a_state_goes_with_its_links_and_the_start_moves_on() -> None:
     out, ids = linked(("idle", "wave"), ("wave", "idle"), ("wave", "nod"))
-    left = m.remove(out, [ids["idle"]]).manual["arms"]
+    left = m.remove_states(out, [ids["idle"]]).manual["arms"]
     assert left.start == ids["wave"]
     assert [(x.source, x.target) for x in left.links.values()] == [(ids["wave"], ids["nod"])]
 
 
 def test_removing_what_is_not_there_changes_nothing() -> None:
     out, _ = linked(("idle", "wave"))
-    assert m.remove(out, ["m99"], ["l99"]) is out
+    assert m.remove_states(out, ["m99"], ["l99"]) is out
 
 
 def test_a_clip_goes_with_its_states_and_their_links() -> None:
@@ -123,12 +123,12 @@ def test_a_clip_goes_with_its_states_and_their_links() -> None:
     left = edits.remove_clips(out, ["c2"]).manual["arms"]
     assert ids["wave"] not in left.states
     assert len(left.links) == 1
-    assert edits.remove_clips(m.remove(out, [ids["sit"]]), ["c4"]).manual is not None
+    assert edits.remove_clips(m.remove_states(out, [ids["sit"]]), ["c4"]).manual is not None
 
 
 def test_a_copy_keeps_the_links_among_its_states_only() -> None:
     out, ids = linked(("idle", "wave"), ("wave", "idle"), ("wave", "nod"), (ANY, "wave"))
-    out, made = m.paste(out, "arms", m.copied(out, [ids["idle"], ids["wave"]]), 500, 600)
+    out, made = m.paste_states(out, "arms", m.copy_states(out, [ids["idle"], ids["wave"]]), 500, 600)
     found = out.manual["arms"]
     new = [x for x in found.links.values() if x.source in made or x.target in made]
     assert [(x.source, x.target) for x in new] == [made, made[::-1]]
@@ -139,23 +139,23 @@ def test_a_copy_keeps_the_links_among_its_states_only() -> None:
 def test_a_copied_request_is_named_after_the_copy() -> None:
     out, ids = linked(("idle", "wave"))
     out = m.update_links(out, [*out.manual["arms"].links], condition={"when": "request"})
-    out, _ = m.paste(out, "arms", m.copied(out, [ids["idle"], ids["wave"]]), 0, 0)
+    out, _ = m.paste_states(out, "arms", m.copy_states(out, [ids["idle"], ids["wave"]]), 0, 0)
     assert [x.condition.trigger for x in out.manual["arms"].links.values()] == ["wave", "wave 2"]
 
 
 def test_states_can_be_pasted_into_another_layer() -> None:
     out, ids = linked(("idle", "wave"))
-    out, made = m.paste(out, "head", m.copied(out, ids.values()), 0, 0)
+    out, made = m.paste_states(out, "head", m.copy_states(out, ids.values()), 0, 0)
     assert {s.layer for s in out.manual["head"].states.values()} == {"head"}
     assert out.manual["head"].start == made[0]
 
 
 def test_what_was_copied_can_be_pasted_after_it_was_removed_but_not_without_its_clip() -> None:
     out, ids = linked(("idle", "wave"))
-    piece = m.copied(out, [ids["wave"]])
-    assert m.paste(m.remove(out, [ids["wave"]]), "arms", piece, 0, 0)[1]
+    piece = m.copy_states(out, [ids["wave"]])
+    assert m.paste_states(m.remove_states(out, [ids["wave"]]), "arms", piece, 0, 0)[1]
     with pytest.raises(EditError, match="not in this project"):
-        m.paste(edits.remove_clips(out, ["c2"]), "arms", piece, 0, 0)
+        m.paste_states(edits.remove_clips(out, ["c2"]), "arms", piece, 0, 0)
 
 
 def test_a_links_settings_are_pasted_and_each_waits_for_its_own_target() -> None:
@@ -199,9 +199,9 @@ def test_nodes_move_the_one_for_any_state_too() -> None:
 
 def test_the_start_is_one_of_the_states() -> None:
     out, ids = linked()
-    assert m.set_start(out, ids["sit"]).manual["arms"].start == ids["sit"]
+    assert m.set_start_state(out, ids["sit"]).manual["arms"].start == ids["sit"]
     with pytest.raises(EditError, match="no longer"):
-        m.set_start(out, "m99")
+        m.set_start_state(out, "m99")
 
 
 def test_states_and_links_are_found_by_id_whatever_their_layer() -> None:

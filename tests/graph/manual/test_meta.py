@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from metagraph.graph import edits
-from metagraph.graph.expand import connections
+from metagraph.graph.expand import list_connections
 from metagraph.graph.manual import edits as m
 from metagraph.graph.manual.machine import ANY
-from metagraph.graph.manual.meta import as_meta, differences, only_manual
+from metagraph.graph.manual.meta import as_meta, describe_meta_differences, is_only_manual
 from metagraph.graph.model import Project
 from tests.projects import clip
 
@@ -50,8 +50,8 @@ def named(pairs: frozenset[tuple[str, str]], states: dict[str, str]) -> set[str]
 
 def test_an_empty_project_amounts_to_itself() -> None:
     assert as_meta(Project()) == (Project(), frozenset(), frozenset())
-    assert differences(Project()) == []
-    assert not only_manual(Project())
+    assert describe_meta_differences(Project()) == []
+    assert not is_only_manual(Project())
 
 
 def test_loops_gestures_fidgets_and_transitions_are_told_apart_by_their_links() -> None:
@@ -83,7 +83,7 @@ def test_loops_gestures_fidgets_and_transitions_are_told_apart_by_their_links() 
         s.id for s in made.graphs["arms"].stances.values() if s.name == "stand"
     )
     assert made.manual == {}
-    assert only_manual(project)
+    assert is_only_manual(project)
 
 
 def test_a_machine_drawn_as_the_meta_graph_expands_differs_in_nothing() -> None:
@@ -96,12 +96,12 @@ def test_a_machine_drawn_as_the_meta_graph_expands_differs_in_nothing() -> None:
     ids = {s.name: s.id for s in again.manual["arms"].states.values()}
     again = m.update_states(again, [ids["stand"], ids["sit"]], loop=True)
     of = {a: ids[n] for n, a in states.items()}
-    for c in connections(made, made.graphs["arms"]):
+    for c in list_connections(made, made.graphs["arms"]):
         again = m.add_link(again, "arms", of[c.source], of[c.target])
     back, missing, extra = as_meta(again)
     assert (missing, extra) == (frozenset(), frozenset())
     assert {n: k[1:] for n, k in kinds(back).items()} == {n: k[1:] for n, k in kinds(made).items()}
-    assert differences(again) == []
+    assert describe_meta_differences(again) == []
 
 
 def test_loops_that_lead_to_each_other_and_to_the_same_things_are_of_one_stance() -> None:
@@ -120,7 +120,7 @@ def test_loops_that_lead_elsewhere_are_stances_of_their_own_and_the_link_between
     made, _, extra = as_meta(project)
     assert len(made.graphs["arms"].stances) == 2
     assert named(extra, states) == {"stand>sit", "sit>stand"}
-    assert any("drawn but lost" in words for words in differences(project))
+    assert any("drawn but lost" in words for words in describe_meta_differences(project))
 
 
 def test_a_state_without_a_way_back_is_a_gesture_whose_way_back_is_missing() -> None:
@@ -138,7 +138,7 @@ def test_a_state_behind_another_belongs_to_the_same_stance() -> None:
 def test_what_nothing_joins_to_a_loop_is_left_out_and_that_is_said() -> None:
     project, _ = drawn(("stand",), "stand>wave", "wave>stand!", "nod>look!")
     assert set(kinds(as_meta(project)[0])) == {"stand", "wave"}
-    assert any(words.startswith("2 states ") for words in differences(project))
+    assert any(words.startswith("2 states ") for words in describe_meta_differences(project))
 
 
 def test_without_any_loop_the_start_is_the_stance() -> None:
@@ -177,4 +177,4 @@ def test_layers_without_a_machine_stay_as_they_are() -> None:
     project, _ = drawn(("stand",), "stand>wave", "wave>stand!")
     project = edits.add_stance(project, "head", "ahead", ["c1"])
     assert as_meta(project)[0].graphs["head"] is project.graphs["head"]
-    assert not only_manual(project)
+    assert not is_only_manual(project)

@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 from metagraph.graph import requests as a
 from metagraph.graph.model import Project
 from metagraph.graph.words import LAYERS, LIMBS, MODES
-from metagraph.playback.bml.reader import Block, read_block, read_bml, write_bml
+from metagraph.playback.bml.reader import BmlBlock, read_block, read_bml, write_bml
 from metagraph.playback.bml.words import GUESSED, SPOKEN
 
 
-def block(inner: str, at: float = 0.0, project: Project | None = None, head: str = "<bml>") -> Block:
+def block(inner: str, at: float = 0.0, project: Project | None = None, head: str = "<bml>") -> BmlBlock:
     return read_block(f"{head}\n{inner}\n</bml>", at, 1, project)
 
 

@@ -13,17 +13,17 @@ from metagraph.playback.learning.annotation import (
     MEANINGS,
     ROLES,
     Annotation,
-    Interval,
+    AnnotationInterval,
+    AnnotationTier,
     Label,
-    Tier,
-    covers,
     guess_meaning,
     guess_role,
     guess_roles,
+    is_covering,
     is_meaning,
+    label_notes,
     labels,
-    parted,
-    told,
+    split_meaning,
 )
 
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "annotation" / "conversation.eaf"
@@ -91,16 +91,20 @@ NAMES = {
 }
 
 
-def of(name: str, *texts: str, length: float = 0.5, step: float = 1.0, participant: str = "") -> Tier:
+def of(
+    name: str, *texts: str, length: float = 0.5, step: float = 1.0, participant: str = ""
+) -> AnnotationTier:
     """A tier of intervals `step` seconds apart."""
-    return Tier(
-        name, tuple(Interval(n * step, n * step + length, t) for n, t in enumerate(texts)), participant
+    return AnnotationTier(
+        name,
+        tuple(AnnotationInterval(n * step, n * step + length, t) for n, t in enumerate(texts)),
+        participant,
     )
 
 
 @pytest.mark.parametrize(("role", "name"), [(role, name) for role, names in NAMES.items() for name in names])
 def test_a_role_is_guessed_from_a_tiers_name(role: str, name: str) -> None:
-    assert guess_role(Tier(name)) == role
+    assert guess_role(AnnotationTier(name)) == role
 
 
 def test_a_name_that_says_nothing_leaves_it_to_the_labels() -> None:
@@ -207,10 +211,10 @@ def test_a_meaning_is_guessed_from_a_label(role: str, label: str) -> None:
 
 def test_a_tier_that_is_mostly_covered_by_different_labels_names_the_stances_themselves() -> None:
     stances = of("Head stance", "left", "neutral", "left", "right", length=0.9)
-    assert covers(stances)
-    assert not covers(of("Head stance", "left", "left", length=0.9)), "one and the same is no change"
-    assert not covers(of("Head stance", "left", "right", length=0.3))
-    assert not covers(Tier("Head stance"))
+    assert is_covering(stances)
+    assert not is_covering(of("Head stance", "left", "left", length=0.9)), "one and the same is no change"
+    assert not is_covering(of("Head stance", "left", "right", length=0.3))
+    assert not is_covering(AnnotationTier("Head stance"))
     found = labels(Annotation((stances,)), {"Head stance": "head stance"})
     assert {x.text: x.meaning for x in found} == {"left": "stance", "neutral": "stance", "right": "stance"}
 
@@ -246,12 +250,12 @@ def test_labels_are_remembered_for_their_layer_or_for_all() -> None:
         "arms: y": "hold",
         "head: x": "fidget calm",
     }
-    assert labels(Annotation(tiers), roles, told(found)) == found, "what is told comes back"
+    assert labels(Annotation(tiers), roles, label_notes(found)) == found, "what is told comes back"
 
 
 def test_meanings_are_a_word_and_tags() -> None:
-    assert parted("gesture positive strong") == ("gesture", ("positive", "strong"))
-    assert parted("ignore") == ("ignore", ())
+    assert split_meaning("gesture positive strong") == ("gesture", ("positive", "strong"))
+    assert split_meaning("ignore") == ("ignore", ())
     assert all(is_meaning(m) for m in MEANINGS) and not is_meaning("") and not is_meaning("dance")
 
 

@@ -14,14 +14,14 @@ from hypothesis import strategies as st
 from metagraph.graph.model import LAYERS, Layer, Markov
 from metagraph.playback.learning.compare import (
     SURE,
-    compare,
+    compare_model,
     deviation,
     generate,
     quantiles,
     stationary,
     tally,
 )
-from metagraph.playback.learning.learn import Act, learn, states_of
+from metagraph.playback.learning.learn import Act, learn_model, model_states
 from metagraph.playback.planning.markov import DEFAULTS, write
 
 HOUR = 3600.0
@@ -101,7 +101,7 @@ def test_a_chain_that_lingers_is_further_off_and_one_that_alternates_never() -> 
 
 
 def test_the_deviation_is_that_of_many_performances() -> None:
-    off = np.array([compare(DEFAULTS["arms"], None, HOUR, seed).surprises() for seed in range(60)])
+    off = np.array([compare_model(DEFAULTS["arms"], None, HOUR, seed).surprises() for seed in range(60)])
     assert np.abs(off.mean(axis=0)).max() < 0.7  # 60 draws of mean 0: more than 5 deviations off
     assert (off.std(axis=0) > 0.7).all() and (off.std(axis=0) < 1.4).all()
 
@@ -111,7 +111,7 @@ def test_the_deviation_is_that_of_many_performances() -> None:
 
 @pytest.mark.parametrize("layer", LAYERS)
 def test_an_hour_of_a_model_agrees_with_its_matrix_within_sampling_error(layer: Layer) -> None:
-    found = compare(DEFAULTS[layer], None, HOUR, seed=5)
+    found = compare_model(DEFAULTS[layer], None, HOUR, seed=5)
     assert found.observed is None
     assert found.generated.count > 300
     assert np.abs(found.surprises()).max() < 4
@@ -122,7 +122,7 @@ def test_an_hour_of_a_model_agrees_with_its_matrix_within_sampling_error(layer: 
 def test_an_hour_learned_anew_is_the_model_it_came_from() -> None:
     model = replace(DEFAULTS["head"], lengths=((1.2, 0.4), (2.0, 1.0), (0.9, 0.2)))
     acts = generate(model, 10 * HOUR, seed=3)
-    again = learn("head", [acts])
+    again = learn_model("head", [acts])
     assert again.states == model.states
     assert np.allclose(again.matrix, model.matrix, atol=0.03)
     assert np.allclose(again.lengths, model.lengths, rtol=0.1)
@@ -130,7 +130,7 @@ def test_an_hour_learned_anew_is_the_model_it_came_from() -> None:
     assert again.positive == pytest.approx(model.positive, abs=0.02) and again.negative == pytest.approx(
         model.negative, abs=0.02
     )
-    found = compare(again, [acts], HOUR)
+    found = compare_model(again, [acts], HOUR)
     assert found.observed is not None
     assert np.abs(found.generated.shares() - found.observed.shares()).max() < 4 * found.deviation.max()
     for seen, made in zip(found.observed.lengths, found.generated.lengths, strict=True):
@@ -140,18 +140,18 @@ def test_an_hour_learned_anew_is_the_model_it_came_from() -> None:
 def test_what_another_model_made_is_found_out() -> None:
     model = DEFAULTS["head"]
     other = replace(model, matrix=((0.2, 0.4, 0.4),) * 3)
-    found = compare(model, None, HOUR)
-    swapped = replace(found, generated=tally([generate(other, HOUR)], states_of(model), False))
+    found = compare_model(model, None, HOUR)
+    swapped = replace(found, generated=tally([generate(other, HOUR)], model_states(model), False))
     assert np.abs(swapped.surprises()).max() > 2 * SURE
     assert np.abs(swapped.move_surprises()).max() > 2 * SURE
 
 
 def test_a_move_that_cannot_be_is_as_surprising_as_can_be() -> None:
     model = Markov("head", (("both", "gesture"), ("both", "fidget")), ((0.0, 1.0), (1.0, 0.0)))
-    found = compare(model, None, 60)
+    found = compare_model(model, None, 60)
     assert not found.move_surprises().any() and not found.surprises().any()
     wrong = replace(
-        found, generated=tally([[act(0, 1), act(2, 3), act(4, 5, "fidget")]], states_of(model), False)
+        found, generated=tally([[act(0, 1), act(2, 3), act(4, 5, "fidget")]], model_states(model), False)
     )
     assert np.isinf(wrong.move_surprises()[0, 0])
 

@@ -14,21 +14,28 @@ from metagraph.formats.elan import read_elan
 from metagraph.formats.project.data import markov_data, markov_from
 from metagraph.graph.model import Layer, Markov
 from metagraph.graph.requests import Change, Fidget, Gesture, Nod
-from metagraph.playback.learning.annotation import Annotation, Interval, Label, Tier, guess_roles, labels
+from metagraph.playback.learning.annotation import (
+    Annotation,
+    AnnotationInterval,
+    AnnotationTier,
+    Label,
+    guess_roles,
+    labels,
+)
 from metagraph.playback.learning.learn import (
     Act,
+    act_sequences,
     acts_of_asks,
-    asks_of,
-    learn,
-    merged,
-    performance,
+    as_performance,
+    asks_from_acts,
+    describe_state,
+    learn_model,
+    merge_acts,
+    model_states,
+    remove_state,
     rests,
-    sequences,
-    state_words,
-    states_of,
     with_cell,
     with_state,
-    without_state,
 )
 from metagraph.playback.planning.markov import ARMS
 
@@ -38,10 +45,13 @@ SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "annotation" / "
 def annotated(**tiers: list[tuple[float, float, str]]) -> dict[Layer, tuple[Act, ...]]:
     """Sequences of tiers whose roles and labels are as guessed."""
     annotation = Annotation(
-        tuple(Tier(name.replace("_", " "), tuple(Interval(*i) for i in some)) for name, some in tiers.items())
+        tuple(
+            AnnotationTier(name.replace("_", " "), tuple(AnnotationInterval(*i) for i in some))
+            for name, some in tiers.items()
+        )
     )
     roles = guess_roles(annotation)
-    return sequences(annotation, roles, labels(annotation, roles))
+    return act_sequences(annotation, roles, labels(annotation, roles))
 
 
 def act(start: float, end: float, what: str = "both gesture", *tags: str) -> Act:
@@ -104,10 +114,10 @@ def test_of_two_kinds_the_more_important_stays(left: str, right: str, both: str)
 
 
 def test_tags_of_the_less_important_kind_are_dropped_and_others_joined() -> None:
-    assert merged([act(0, 1, "left gesture", "positive"), act(0, 1, "right fidget", "calm")]) == (
+    assert merge_acts([act(0, 1, "left gesture", "positive"), act(0, 1, "right fidget", "calm")]) == (
         act(0, 1, "both gesture", "positive"),
     )
-    assert merged([act(0, 1, "left gesture", "b", "a"), act(0, 1, "right gesture", "a", "c")]) == (
+    assert merge_acts([act(0, 1, "left gesture", "b", "a"), act(0, 1, "right gesture", "a", "c")]) == (
         act(0, 1, "both gesture", "b", "a", "c"),
     )
 
@@ -119,7 +129,7 @@ def test_a_long_act_takes_in_the_short_ones_within_it_and_neighbours_stay_apart(
         act(5, 6, "right fidget"),
         act(10, 11, "right gesture"),
     ]
-    assert merged(acts) == (act(0, 10), act(10, 11, "right gesture"))
+    assert merge_acts(acts) == (act(0, 10), act(10, 11, "right gesture"))
 
 
 spans = st.tuples(
@@ -135,8 +145,8 @@ def test_merged_acts_ascend_cover_the_same_time_and_no_two_are_mostly_the_same(
     some: list[tuple[float, float, str, str]],
 ) -> None:
     acts = [act(start, start + length, f"{limb} {kind}") for start, length, limb, kind in some]
-    found = merged(acts)
-    assert merged(found) == found
+    found = merge_acts(acts)
+    assert merge_acts(found) == found
     assert list(found) == sorted(found, key=lambda a: (a.start, a.end))
     for n, a in enumerate(found):
         for b in found[n + 1 :]:
@@ -186,13 +196,15 @@ def test_where_stances_are_annotated_the_changes_between_them_are_found() -> Non
 
 
 def test_labels_that_were_said_otherwise_count() -> None:
-    annotation = Annotation((Tier("LH", (Interval(0, 1, "Cup"), Interval(1, 2, "gesture"))),))
+    annotation = Annotation(
+        (AnnotationTier("LH", (AnnotationInterval(0, 1, "Cup"), AnnotationInterval(1, 2, "gesture"))),)
+    )
     said = [
         Label("arms", "cup", 1, "fidget calm idle"),
         Label("arms", "gesture", 1, "ignore"),
         Label("head", "cup", 1, "gesture"),
     ]
-    assert sequences(annotation, {"LH": "arms"}, said) == {
+    assert act_sequences(annotation, {"LH": "arms"}, said) == {
         "arms": (act(0, 1, "both fidget", "calm", "idle"),)
     }
 
@@ -201,7 +213,7 @@ def test_labels_that_were_said_otherwise_count() -> None:
 
 
 def test_transitions_are_counted_and_rows_sum_to_1() -> None:
-    model = learn(
+    model = learn_model(
         "arms",
         [
             kinds(
@@ -214,7 +226,11 @@ def test_transitions_are_counted_and_rows_sum_to_1() -> None:
             )
         ],
     )
-    assert states_of(model) == (("left", "gesture", ""), ("right", "fidget", ""), ("both", "transition", ""))
+    assert model_states(model) == (
+        ("left", "gesture", ""),
+        ("right", "fidget", ""),
+        ("both", "transition", ""),
+    )
     assert np.allclose(model.matrix, [[1 / 3, 2 / 3, 0], [1 / 2, 0, 1 / 2], [1 / 2, 1 / 3, 1 / 6]])
     assert model.gap == 0.5
 
@@ -223,25 +239,25 @@ def test_states_come_in_the_order_of_the_papers_figure() -> None:
     words = [
         f"{limb} {kind}" for limb in ("both", "right", "left") for kind in ("transition", "fidget", "gesture")
     ]
-    assert learn("arms", [kinds(*words)]).states == ARMS.states
+    assert learn_model("arms", [kinds(*words)]).states == ARMS.states
 
 
 def test_a_state_that_was_never_left_goes_on_as_often_as_each_was_seen() -> None:
-    model = learn("head", [kinds("both gesture", "both gesture", "both gesture", "both transition")])
+    model = learn_model("head", [kinds("both gesture", "both gesture", "both gesture", "both transition")])
     assert np.allclose(model.matrix, [[2 / 3, 1 / 3], [3 / 4, 1 / 4]])
-    assert learn("head", [kinds("both gesture")]).matrix == ((1.0,),)
+    assert learn_model("head", [kinds("both gesture")]).matrix == ((1.0,),)
 
 
 def test_smoothing_makes_everything_possible_and_none_is_as_in_the_paper() -> None:
     acts = [kinds("both gesture", "both gesture", "both fidget", "both gesture")]
-    assert np.allclose(learn("head", acts, smoothing=1.0).matrix, [[2 / 4, 2 / 4], [2 / 3, 1 / 3]])
-    assert np.allclose(learn("head", acts).matrix, [[1 / 2, 1 / 2], [1, 0]])
+    assert np.allclose(learn_model("head", acts, smoothing=1.0).matrix, [[2 / 4, 2 / 4], [2 / 3, 1 / 3]])
+    assert np.allclose(learn_model("head", acts).matrix, [[1 / 2, 1 / 2], [1, 0]])
     with pytest.raises(ValueError, match="0 or more"):
-        learn("head", acts, smoothing=-1)
+        learn_model("head", acts, smoothing=-1)
 
 
 def test_what_follows_from_one_recording_to_the_next_does_not_count() -> None:
-    model = learn("head", [kinds("both gesture", "both gesture"), kinds("both fidget", "both gesture")])
+    model = learn_model("head", [kinds("both gesture", "both gesture"), kinds("both fidget", "both gesture")])
     assert np.allclose(model.matrix, [[1, 0], [1, 0]])
 
 
@@ -255,11 +271,11 @@ def test_meaning_is_a_share_of_gestures_or_part_of_the_states() -> None:
             "both fidget,positive",
         )
     ]
-    shares = learn("head", acts)
+    shares = learn_model("head", acts)
     assert (shares.positive, shares.negative, shares.tags) == (0.5, 0.25, ())
     assert len(shares.states) == 2
-    states = learn("head", acts, tagged=True)
-    assert [state_words(s, "head") for s in states_of(states)] == [
+    states = learn_model("head", acts, tagged=True)
+    assert [describe_state(s, "head") for s in model_states(states)] == [
         "gesture",
         "gesture, positive",
         "gesture, negative",
@@ -268,27 +284,29 @@ def test_meaning_is_a_share_of_gestures_or_part_of_the_states() -> None:
     assert (states.positive, states.negative) == (0, 0)
     assert states.tags == ("", "positive", "negative", "positive")
     assert np.allclose(states.matrix, [[0, 0, 1, 0], [0.5, 0, 0, 0.5], [0, 1, 0, 0], [0.2, 0.4, 0.2, 0.2]])
-    assert learn("head", [kinds("both gesture")], tagged=True).tags == (), (
+    assert learn_model("head", [kinds("both gesture")], tagged=True).tags == (), (
         "no tags, no need to write them down"
     )
 
 
 def test_lengths_are_means_and_deviations_and_one_alone_varies_as_the_others_do() -> None:
     acts = [act(0, 1), act(2, 5), act(6, 10, "both fidget")]
-    assert learn("head", [acts]).lengths == ((2.0, 1.4142), (4.0, 2.8284))
-    assert learn("head", [[act(0, 1)]]).lengths == ((1.0, 0.0),)
+    assert learn_model("head", [acts]).lengths == ((2.0, 1.4142), (4.0, 2.8284))
+    assert learn_model("head", [[act(0, 1)]]).lengths == ((1.0, 0.0),)
 
 
 def test_rests_are_what_lies_between_and_overlaps_are_none() -> None:
     acts = [act(0, 1), act(3, 4), act(3.8, 5), act(5, 6)]
     assert rests([acts, kinds("both gesture")]) == [2, 0, 0]
-    assert learn("head", [acts]).gap == 0.6667
-    assert learn("head", [[act(0, 1), act(1, 2)]]).gap == 0.05, "a model never asks for two things at once"
+    assert learn_model("head", [acts]).gap == 0.6667
+    assert learn_model("head", [[act(0, 1), act(1, 2)]]).gap == 0.05, (
+        "a model never asks for two things at once"
+    )
 
 
 def test_nothing_annotated_is_told() -> None:
     with pytest.raises(ValueError, match="the body layer"):
-        learn("body", [[], []])
+        learn_model("body", [[], []])
 
 
 states = st.tuples(
@@ -317,11 +335,11 @@ def test_every_model_that_is_learned_is_sound_and_can_be_saved(some, tagged: boo
         observed.append(acts)
     if not any(observed):
         return
-    model = learn("arms", observed, tagged, smoothing)
+    model = learn_model("arms", observed, tagged, smoothing)
     matrix = np.array(model.matrix)
     assert matrix.shape == (len(model.states),) * 2
     assert np.allclose(matrix.sum(axis=1), 1) and matrix.min() >= 0
-    assert len(set(states_of(model))) == len(model.states) == len(model.lengths)
+    assert len(set(model_states(model))) == len(model.states) == len(model.lengths)
     assert markov_from("arms", markov_data(model), "markov") == model
     if smoothing == 0:
         moves = {
@@ -329,7 +347,7 @@ def test_every_model_that_is_learned_is_sound_and_can_be_saved(some, tagged: boo
             for acts in observed
             for pair in pairwise((a.limb, a.kind, " ".join(a.tags) if tagged else "") for a in acts)
         }
-        place = {state: n for n, state in enumerate(states_of(model))}
+        place = {state: n for n, state in enumerate(model_states(model))}
         assert all(matrix[place[a], place[b]] > 0 for a, b in moves)
 
 
@@ -357,9 +375,9 @@ def test_where_nothing_else_could_follow_the_rest_is_shared_evenly() -> None:
 
 
 def test_a_state_can_be_added_and_taken_away_again() -> None:
-    model = learn("arms", [kinds("left gesture", "right fidget", "left gesture")])
+    model = learn_model("arms", [kinds("left gesture", "right fidget", "left gesture")])
     more = with_state(model, ("right", "gesture", "positive"))
-    assert [state_words(s, "arms") for s in states_of(more)] == [
+    assert [describe_state(s, "arms") for s in model_states(more)] == [
         "left gesture",
         "right gesture, positive",
         "right fidget",
@@ -367,9 +385,9 @@ def test_a_state_can_be_added_and_taken_away_again() -> None:
     assert np.allclose(more.matrix, [[0, 0, 1], [1 / 3] * 3, [1, 0, 0]])
     assert more.lengths[1] == (1.0, 0.0)
     assert with_state(more, ("right", "gesture", "positive")) is more
-    assert without_state(more, 1) == model
-    alone = without_state(model, 0)
-    assert alone.matrix == ((1.0,),) and without_state(alone, 0) is alone
+    assert remove_state(more, 1) == model
+    alone = remove_state(model, 0)
+    assert alone.matrix == ((1.0,),) and remove_state(alone, 0) is alone
 
 
 # --- performing
@@ -381,7 +399,7 @@ def test_acts_become_asks_with_their_times_and_back() -> None:
         act(2, 3, "right fidget"),
         act(4, 5, "both transition"),
     )
-    asks = asks_of("arms", acts)
+    asks = asks_from_acts("arms", acts)
     assert asks == (
         Gesture(id="arms1", at=0.5, layer="arms", tags=("positive",), limb="left", duration=1.25, stroke=1.0),
         Fidget(id="arms2", at=2.0, layer="arms", limb="right", duration=1.0),
@@ -395,28 +413,28 @@ def test_acts_become_asks_with_their_times_and_back() -> None:
 
 
 def test_only_arms_are_asked_for_by_limb() -> None:
-    assert [ask.limb for ask in asks_of("head", kinds("both gesture", "both fidget", "both transition"))] == [
-        None
-    ] * 3
+    assert [
+        ask.limb for ask in asks_from_acts("head", kinds("both gesture", "both fidget", "both transition"))
+    ] == [None] * 3
 
 
 def test_a_performance_holds_every_layer_in_order_and_fills_nothing_in() -> None:
-    made = performance(
+    made = as_performance(
         "talk", {"arms": kinds("left gesture", "left fidget"), "head": kinds("both gesture"), "body": []}
     )
     assert [(ask.id, ask.at) for ask in made.asks] == [("arms1", 0.0), ("head1", 0.0), ("arms2", 1.5)]
     assert (made.name, made.length, made.idle, made.seed) == ("talk", 4.0, False, None)
-    assert performance("nothing", {}).asks == ()
-    assert performance("nothing", {}).length == 1.0
-    assert performance("talk", {"head": kinds("both gesture")}, 20.5).length == 21.0
+    assert as_performance("nothing", {}).asks == ()
+    assert as_performance("nothing", {}).length == 1.0
+    assert as_performance("talk", {"head": kinds("both gesture")}, 20.5).length == 21.0
 
 
 def test_the_sample_annotation_becomes_models_of_three_layers() -> None:
     annotation = read_elan(SAMPLE)
     roles = guess_roles(annotation)
-    found = sequences(annotation, roles, labels(annotation, roles))
+    found = act_sequences(annotation, roles, labels(annotation, roles))
     assert {layer: len(acts) for layer, acts in found.items()} == {"arms": 52, "head": 46, "body": 12}
     assert sum(a.limb == "both" for a in found["arms"]) == 20, (
         "both hands seldom begin and end together, yet are one act"
     )
-    assert [len(learn(layer, [acts], tagged=True).states) for layer, acts in found.items()] == [7, 3, 1]
+    assert [len(learn_model(layer, [acts], tagged=True).states) for layer, acts in found.items()] == [7, 3, 1]

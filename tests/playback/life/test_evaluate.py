@@ -84,7 +84,7 @@ def gaze_error(project: Project, pose: Pose, target: Any) -> Array:
     eyes = [joint(project, "LeftEye"), joint(project, "RightEye")]
     wish = np.asarray(target) - at[:, eyes]
     wish /= np.linalg.norm(wish, axis=-1, keepdims=True)
-    looks = rotation.rotate(turned[:, eyes], np.array([0, 0, 1.0]))
+    looks = rotation.rotate_vectors(turned[:, eyes], np.array([0, 0, 1.0]))
     return np.degrees(np.arccos(np.clip((wish * looks).sum(-1), -1, 1)))
 
 
@@ -252,7 +252,7 @@ def test_what_is_behind_is_looked_for_as_far_as_a_neck_goes(sample: Project) -> 
         _, after = alive(sample, alone(QUIET, gaze=1), track_of([LookAt("l", 0.0, 99, target)]), [20.0])
         assert sample.skeleton is not None
         turned, _ = sample.skeleton.globals(after)
-        x, _, z = rotation.rotate(turned[0, joint(sample, "Head")], np.array([0, 0, 1.0]))
+        x, _, z = rotation.rotate_vectors(turned[0, joint(sample, "Head")], np.array([0, 0, 1.0]))
         assert np.sign(x) == np.sign(target[0]) and 55 < abs(np.degrees(np.arctan2(x, z))) < 75
 
 
@@ -456,7 +456,7 @@ def test_a_body_without_a_face_turns_its_head_and_breathes(toy: Any) -> None:
     before, after = alive(project, Life(), track_of([LookAt("l", 2, 99, target)]))
     assert moved(project, before, after) == {"Spine", "Neck", "Head"}
     turned, _ = toy.skeleton.globals(after)
-    x, _, z = rotation.rotate(turned[-1, joint(project, "Head")], np.array([0, 0, 1.0]))
+    x, _, z = rotation.rotate_vectors(turned[-1, joint(project, "Head")], np.array([0, 0, 1.0]))
     assert 15 < np.degrees(np.arctan2(x, z)) < 65
 
 

@@ -11,7 +11,7 @@ import pytest
 from metagraph.graph.life import Life
 from metagraph.graph.model import Project
 from metagraph.playback.life.body import PARTNER_AWAY
-from metagraph.playback.life.gaze import ENDING, Gaze, Moves, ease, eye_time, head_time, settle
+from metagraph.playback.life.gaze import ENDING, BodyGaze, Moves, ease_gaze, eye_time, head_time, settle_gaze
 from metagraph.playback.life.lane import lane
 from metagraph.playback.life.schedule import RECALL, Schedule, schedule
 from metagraph.playback.life.track import LookAt, PlaceFrom, Track, track_of
@@ -22,7 +22,7 @@ STEP = 1 / 240
 CALM = Life(saccades=0, aversion_rate=0)
 
 
-def gaze(project: Project, track: Track, life: Life = CALM, end: float = 20.0, **points: Any) -> Gaze:
+def gaze(project: Project, track: Track, life: Life = CALM, end: float = 20.0, **points: Any) -> BodyGaze:
     return gaze_of(schedule(life, track, {}, 1, end, Schedule(), 0.0), life, body_of(project), points)
 
 
@@ -33,7 +33,7 @@ def seen(moves: Moves, head: bool = False) -> np.ndarray[Any, Any]:
     )
 
 
-@pytest.mark.parametrize("curve", [ease, settle])
+@pytest.mark.parametrize("curve", [ease_gaze, settle_gaze])
 def test_curves_go_from_0_to_1_and_never_back(curve: Any) -> None:
     way = [curve(x) for x in np.linspace(-0.5, 1.5, 401)]
     assert way[0] == 0 and way[-1] == 1 and (np.diff(way) >= 0).all()
@@ -94,7 +94,7 @@ def test_a_named_place_is_where_the_project_says_until_somebody_moves_it(sample:
 # --- nothing jumps
 
 
-def fastest(found: Gaze, start: float, end: float) -> float:
+def fastest(found: BodyGaze, start: float, end: float) -> float:
     """Metres a second at which the head's target moves."""
     at = np.array([seen(found.at(float(t)), True) for t in np.arange(start, end, STEP)])
     return float(np.linalg.norm(np.diff(at, axis=0), axis=1).max()) / STEP
@@ -122,14 +122,14 @@ def test_a_target_that_moves_every_frame_is_followed_smoothly(sample: Project) -
 
 def test_a_moment_needs_only_what_is_near_it(sample: Project) -> None:
     targets = tuple(GazeTarget(0.5 * n, (0.1 * (n % 7), 1.6, 1.2)) for n in range(20000))
-    found = Gaze(replace(Schedule(), targets=targets), CALM, body_of(sample), {})
+    found = BodyGaze(replace(Schedule(), targets=targets), CALM, body_of(sample), {})
     assert len(found.at(9000.0).parts) <= 4 and len(found._aims) <= 5
 
 
 # --- aversions
 
 
-def averting(sample: Project, track: Track) -> tuple[Gaze, Schedule]:
+def averting(sample: Project, track: Track) -> tuple[BodyGaze, Schedule]:
     life = Life(saccades=0, aversion_rate=40, aversion_length=2)
     found = schedule(life, track, {}, 1, 60.0, Schedule(), 0.0)
     return gaze_of(found, life, body_of(sample), {}), found

@@ -9,7 +9,7 @@ from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.graphemes import spelled
 from metagraph.playback.life.lips import CLOSING, mouth
 from metagraph.playback.life.track import Speech, Track, track_of
-from metagraph.playback.life.voice import Voice, voice_from_text, voice_of
+from metagraph.playback.life.voice import Voice, voice_for_speech, voice_from_text
 
 TEXT = "Papa may have many memories."
 
@@ -33,9 +33,9 @@ def test_nobody_who_is_silent_moves_the_mouth() -> None:
 
 def test_a_line_is_said_with_its_own_voice_and_text_with_its_letters() -> None:
     voice = open_mouth(2.0)
-    assert voice_of({"a": voice}, Speech("s", 0, 2, "a", TEXT)) is voice
-    assert voice_of({}, Speech("s", 0, 2, "a", TEXT)) is voice_from_text(TEXT, 2.0)
-    assert voice_of({"a": voice}, Speech("s", 0, 2, None, TEXT)) is voice_from_text(TEXT, 2.0)
+    assert voice_for_speech({"a": voice}, Speech("s", 0, 2, "a", TEXT)) is voice
+    assert voice_for_speech({}, Speech("s", 0, 2, "a", TEXT)) is voice_from_text(TEXT, 2.0)
+    assert voice_for_speech({"a": voice}, Speech("s", 0, 2, None, TEXT)) is voice_from_text(TEXT, 2.0)
 
 
 def test_without_smoothing_the_mouth_shows_the_voice_as_it_is() -> None:

@@ -12,14 +12,14 @@ from hypothesis import strategies as st
 
 from metagraph.graph.face.names import VISEMES
 from metagraph.playback.life.mouth import MouthPiece
-from metagraph.playback.life.voice import Voice, silent, voice_from_text, voiced
+from metagraph.playback.life.voice import Voice, make_voice, silent, voice_from_text
 
 PLACE = {name: n for n, name in enumerate(VISEMES)}
 
 
 def mouth_track(pieces: Sequence[MouthPiece], duration: float) -> tuple[Any, Any]:
     """Return the times and the weights of a voice that says these pieces."""
-    voice = voiced(pieces, duration, np.zeros(0), np.zeros(0))
+    voice = make_voice(pieces, duration, np.zeros(0), np.zeros(0))
     return voice.times, voice.weights
 
 

@@ -25,8 +25,10 @@ quaternions = st.builds(
 
 @given(quaternions, quaternions, st.tuples(*[st.floats(-5, 5)] * 3))
 def test_products_and_turned_vectors_are_those_of_rotation(a: Any, b: Any, v: Any) -> None:
-    assert np.allclose(solve.times(a, b), rotation.multiply(a, b), atol=1e-12)
-    assert np.allclose(solve.rotate(a, v), rotation.rotate(np.array(a), np.array(v)), atol=1e-11)
+    assert np.allclose(solve.multiply_quaternions(a, b), rotation.multiply(a, b), atol=1e-12)
+    assert np.allclose(
+        solve.rotate_tuple(a, v), rotation.rotate_vectors(np.array(a), np.array(v)), atol=1e-11
+    )
 
 
 def test_a_chain_is_where_the_skeleton_has_it(sample: Project) -> None:
@@ -42,14 +44,14 @@ def test_a_chain_is_where_the_skeleton_has_it(sample: Project) -> None:
 
 @given(st.floats(-2, 2), st.floats(-2, 2))
 def test_eyes_never_leave_their_reach_nor_their_direction(left: float, up: float) -> None:
-    x, y = solve.within_reach(left, up)
+    x, y = solve.limit_eye_turn(left, up)
     limit = solve.EYE_UP if up > 0 else solve.EYE_DOWN
     assert (x / solve.EYE_SIDEWAYS) ** 2 + (y / limit) ** 2 <= 1 + 1e-9
     assert x * up == pytest.approx(y * left, abs=1e-9) and x * left >= 0 and y * up >= 0
 
 
 def test_eyes_go_all_the_way_where_it_is_easy() -> None:
-    assert solve.within_reach(radians(15), radians(-10)) == (radians(15), radians(-10))
+    assert solve.limit_eye_turn(radians(15), radians(-10)) == (radians(15), radians(-10))
 
 
 @given(st.floats(-1.5, 1.5), st.floats(0, 1))
@@ -87,7 +89,7 @@ def turned(
     chain[body.trunk], chain[-1] = about[0], about[1]
     vector, size = solve._head(body, chain, radians(left), radians(up), 1.0, share)  # type: ignore[arg-type]
     assert np.linalg.norm(vector) == pytest.approx(size, abs=1e-9)
-    x, y, z = rotation.rotate(rotation.exp(np.array(vector)), np.array([0, 0, 1.0]))
+    x, y, z = rotation.rotate_vectors(rotation.exp(np.array(vector)), np.array([0, 0, 1.0]))
     return degrees(np.arctan2(x, z)), degrees(np.arcsin(np.clip(y, -1, 1)))
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from metagraph.graph import anatomy
 from metagraph.graph.model import Project
-from metagraph.motion.joint_map import known_roles
+from metagraph.motion.joint_map import find_known_roles
 from metagraph.playback.planner import make_plan
 from metagraph.playback.planning.mood import MOODS, Mood, bearing
 from tests.posing import pose_at
@@ -21,7 +21,9 @@ def standing(project: Project, valence: float, arousal: float) -> tuple[dict[str
     project = replace(project, life=life)
     assert project.skeleton is not None
     pose = pose_at(make_plan(project, 4.0, seed=1, idle=False), project, 2.0)
-    return known_roles(project.skeleton, anatomy.roles(project)), project.skeleton.globals(pose)[1]
+    return find_known_roles(project.skeleton, anatomy.project_roles(project)), project.skeleton.globals(pose)[
+        1
+    ]
 
 
 def bend(at: Any, *line: int) -> float:

@@ -53,7 +53,7 @@ def test_the_line_that_names_it_goes_before_those_that_would_take_any(project, a
 def test_a_nod_is_called_or_tagged_so(toy, project):
     project = edits.add_stance(project, "head", "ahead", list(project.clips)[:1])
     stance = list(project.graphs["head"].stances)[-1]
-    project = edits.place(project, list(project.clips)[1:2], "head", "gesture", stance)
+    project = edits.place_clips(project, list(project.clips)[1:2], "head", "gesture", stance)
     head = project.graphs["head"].of(stance, "gesture")[0]
     nodding = edits.update_actions(project, [head.id], name="Agree_NOD_1")
     assert asked_line(lines(nodding, Nod(at=0.5)), nodding.action(head.id)) == AskedLine("l1", -0.5)

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.playback.plan import Cue, Plan
-from metagraph.playback.planning.extend_performance import answer, hear, since
-from metagraph.playback.planning.running_plan import perform
+from metagraph.playback.planning.extend_performance import answer_ask, hear_asks, since
+from metagraph.playback.planning.running_plan import plan_performance
 from tests import thorough
 from tests.posing import pose_at
 
@@ -89,9 +89,9 @@ def in_ticks(
             told, k, ask = waiting.pop(0)
             groups.setdefault(told, []).append(a.msgspec.structs.replace(ask, id=ask.id or f"ask{k}"))
         for told, some in groups.items():
-            plan = hear(project, plan, told, some, max(plan.end, told + ahead))
+            plan = hear_asks(project, plan, told, some, max(plan.end, told + ahead))
         if plan.end < now + ahead:
-            plan = hear(project, plan, now, [], now + ahead)
+            plan = hear_asks(project, plan, now, [], now + ahead)
         if forget is not None:
             plan = since(plan, now - forget)
         out.append(plan)
@@ -102,7 +102,7 @@ def in_ticks(
 @given(some_asks, st.sampled_from([0.016, 0.2, 1.7]))
 def test_live_in_ticks_gives_what_one_plan_gives(asks: list[Any], tick: float) -> None:
     project = _SAMPLE[0]
-    whole = perform(project, asks, END + 8)
+    whole = plan_performance(project, asks, END + 8)
     last = in_ticks(project, asks, END, tick)[-1]
     for layer in LAYERS:
         one, many = whole.layers[layer], last.layers[layer]
@@ -118,7 +118,7 @@ def test_what_was_told_on_the_way_replays_as_it_was_heard(asks: list[Any], told:
     project = _SAMPLE[0]
     heard = [a.msgspec.structs.replace(ask, told=t) for ask, t in zip(asks, told, strict=False)]
     live = in_ticks(project, heard, END, 0.1)[-1]
-    again = perform(project, heard, END + 8)
+    again = plan_performance(project, heard, END + 8)
     for layer in LAYERS:
         assert [c for c in live.layers[layer].cues if c.start < END] == [
             c for c in again.layers[layer].cues if c.start < END
@@ -144,25 +144,27 @@ def test_forgetting_the_past_changes_nothing_to_come(asks: list[Any], memory: fl
 
 def test_what_is_before_now_and_the_lookahead_stays(sample: Project) -> None:
     project = replace(sample, settings=replace(sample.settings, lookahead=2.0))
-    plan = perform(project, [], 20)
-    after = hear(project, plan, 5.0, [a.Gesture(id="x", priority=9)], 20)
+    plan = plan_performance(project, [], 20)
+    after = hear_asks(project, plan, 5.0, [a.Gesture(id="x", priority=9)], 20)
     for layer in LAYERS:
         assert [c for c in plan.layers[layer].cues if c.start < 7] == [
             c for c in after.layers[layer].cues if c.start < 7
         ]
-    assert answer(after, "x").at >= 7.0
+    assert answer_ask(after, "x").at >= 7.0
 
 
 def test_the_past_is_planned_from_nothing_when_nothing_was_shown(sample: Project) -> None:
-    assert shown(hear(sample, Plan(1, 0.0), 0.0, [], 20)) == shown(perform(sample, [], 20, seed=1))
+    assert shown(hear_asks(sample, Plan(1, 0.0), 0.0, [], 20)) == shown(
+        plan_performance(sample, [], 20, seed=1)
+    )
 
 
 # --- answers
 
 
 def test_an_answer_says_when_and_what(sample: Project) -> None:
-    plan = perform(sample, [a.Gesture(id="g", tags=("positive",), at=2.1, priority=3)], 20)
-    said = answer(plan, "g")
+    plan = plan_performance(sample, [a.Gesture(id="g", tags=("positive",), at=2.1, priority=3)], 20)
+    said = answer_ask(plan, "g")
     assert (
         said.state == "planned"
         and said.at == pytest.approx(2.1)
@@ -172,35 +174,37 @@ def test_an_answer_says_when_and_what(sample: Project) -> None:
 
 
 def test_an_answer_says_why_not(sample: Project) -> None:
-    plan = perform(sample, [a.Gesture(id="g", tags=("nonsense",), at=2.0)], 20)
-    said = answer(plan, "g")
+    plan = plan_performance(sample, [a.Gesture(id="g", tags=("nonsense",), at=2.0)], 20)
+    said = answer_ask(plan, "g")
     assert said.state == "refused" and "nonsense" in said.why
 
 
 def test_words_nobody_knows_are_refused_with_a_hint(sample: Project) -> None:
-    plan = perform(
+    plan = plan_performance(
         sample,
         [a.Go(id="g", stance="arms crosed"), a.Play(id="p", action="shrug"), a.Say(id="s", line="279")],
         5,
     )
-    assert "'arms crossed'" in answer(plan, "g").why
-    assert "shrug" in answer(plan, "p").why
-    assert "'279'" in answer(plan, "s").why and "hello, happy, maybe, you_first" in answer(plan, "s").why
+    assert "'arms crossed'" in answer_ask(plan, "g").why
+    assert "shrug" in answer_ask(plan, "p").why
+    assert (
+        "'279'" in answer_ask(plan, "s").why and "hello, happy, maybe, you_first" in answer_ask(plan, "s").why
+    )
 
 
 def test_going_where_one_is_is_done_already(sample: Project) -> None:
-    plan = perform(sample, [a.Go(id="g", stance="hands at sides", at=0.1)], 5)
-    assert answer(plan, "g").state == "done"
+    plan = plan_performance(sample, [a.Go(id="g", stance="hands at sides", at=0.1)], 5)
+    assert answer_ask(plan, "g").state == "done"
 
 
 def test_far_asks_are_planned_but_not_chosen_yet(sample: Project) -> None:
-    said = answer(perform(sample, [a.Gesture(id="g", at=500.0)], 20), "g")
+    said = answer_ask(plan_performance(sample, [a.Gesture(id="g", at=500.0)], 20), "g")
     assert (said.state, said.at) == ("planned", 500.0)
 
 
 def test_far_asks_that_must_wait_for_others_are_late_not_refused(sample: Project) -> None:
-    plan = perform(sample, [a.Gesture(id="g", at=500.5), a.Gesture(id="h", at=500.0)], 20)
-    said = answer(plan, "g")
+    plan = plan_performance(sample, [a.Gesture(id="g", at=500.5), a.Gesture(id="h", at=500.0)], 20)
+    said = answer_ask(plan, "g")
     assert (said.state, said.at) == ("late", 501.0) and "waits" in said.why
 
 
@@ -208,13 +212,15 @@ def test_withdrawing_among_thousands_takes_back_what_belongs_together(sample: Pr
     asks = [a.Nod(id=f"n{n}", at=100.0 + n) for n in range(500)] + [
         a.Nod(id=f"n7.{n}", at=900.0 + n) for n in range(1, 3)
     ]
-    plan = perform(sample, asks, 20, idle=False)
-    gone = hear(sample, plan, 1.0, [a.Withdraw(id=f"w{n}", what=f"n{n}") for n in range(400)], 20, idle=False)
+    plan = plan_performance(sample, asks, 20, idle=False)
+    gone = hear_asks(
+        sample, plan, 1.0, [a.Withdraw(id=f"w{n}", what=f"n{n}") for n in range(400)], 20, idle=False
+    )
     assert {r.id for r in gone.requests} == {f"n{n}" for n in range(400, 500)}
 
 
 def test_layers_that_an_ask_has_nothing_to_do_with_are_left_as_they_are(sample: Project) -> None:
-    plan = perform(
+    plan = plan_performance(
         sample, [a.Gesture(id="g", at=8.0), a.Go(id="s", stance="head tilt left", at=9.0, stay=True)], 20
     )
     for ask, touched in (
@@ -228,9 +234,9 @@ def test_layers_that_an_ask_has_nothing_to_do_with_are_left_as_they_are(sample: 
         (a.Fidget(id="g", layer="body"), {"arms", "body"}),
         (a.Withdraw(id="x"), {"arms", "head"}),
     ):
-        after = hear(sample, plan, 2.0, [ask], 20)
+        after = hear_asks(sample, plan, 2.0, [ask], 20)
         assert {x for x in LAYERS if after.layers[x] is not plan.layers[x]} == touched, ask
-        again = hear(sample, after, 2.0, [], 20)  # everything is planned again, and comes out the same
+        again = hear_asks(sample, after, 2.0, [], 20)  # everything is planned again, and comes out the same
         assert shown(again)[0] == shown(after)[0]
 
 
@@ -240,48 +246,48 @@ def test_a_withdrawn_ask_does_not_play_and_one_that_plays_goes_on(sample: Projec
         a.Gesture(id="late", at=12.0, priority=2),
         a.Look(id="look", to="user", at=15.0),
     ]
-    plan = perform(sample, asks, 20, idle=False)
-    after = hear(sample, plan, 1.5, [a.Withdraw(id="w")], 20, idle=False)
+    plan = plan_performance(sample, asks, 20, idle=False)
+    after = hear_asks(sample, plan, 1.5, [a.Withdraw(id="w")], 20, idle=False)
     assert [c.meta for c in after.layers["arms"].cues] == ["early"]
     assert not after.track.looks
-    one = hear(sample, plan, 1.5, [a.Withdraw(id="w", what="late")], 20, idle=False)
+    one = hear_asks(sample, plan, 1.5, [a.Withdraw(id="w", what="late")], 20, idle=False)
     assert [c.meta for c in one.layers["arms"].cues] == ["early"] and len(one.track.looks) == 1
 
 
 def test_the_same_id_again_replaces_what_was_asked(sample: Project) -> None:
-    plan = perform(sample, [a.Gesture(id="g", at=5.0)], 20, idle=False)
-    after = hear(sample, plan, 1.0, [a.Fidget(id="g", at=8.0)], 20, idle=False)
+    plan = plan_performance(sample, [a.Gesture(id="g", at=5.0)], 20, idle=False)
+    after = hear_asks(sample, plan, 1.0, [a.Fidget(id="g", at=8.0)], 20, idle=False)
     assert [(c.meta, c.action.kind, c.start) for c in after.layers["arms"].cues] == [("g", "fidget", 8.0)]
 
 
 def test_a_line_brings_its_own_asks_and_withdraws_them_with_it(sample: Project) -> None:
     line = a.Line(text="No, no.", duration=3.0, asks=(a.Shake(at=0.2), a.Gesture(at=0.5, tags=("negative",))))
     project = replace(sample, lines={"279": line})
-    plan = perform(project, [a.Say(id="s", line=279, at=4.0)], 20, idle=False)
+    plan = plan_performance(project, [a.Say(id="s", line=279, at=4.0)], 20, idle=False)
     assert [(c.meta, round(c.start, 3)) for c in plan.layers["head"].cues] == [("s.1", 4.2)]
     assert [(c.meta, round(c.start, 3)) for c in plan.layers["arms"].cues] == [("s.2", 4.5)]
     assert [(x.start, x.end, x.line) for x in plan.track.speeches] == [(4.0, 7.0, "279")]
-    said = answer(plan, "s")
+    said = answer_ask(plan, "s")
     assert said.state == "planned" and set(said.what) >= {"speech"} and len(said.what) == 3
-    gone = hear(project, plan, 1.0, [a.Withdraw(id="w", what="s")], 20, idle=False)
+    gone = hear_asks(project, plan, 1.0, [a.Withdraw(id="w", what="s")], 20, idle=False)
     assert not gone.layers["head"].cues and not gone.track.speeches
-    without = perform(project, [a.Say(id="s", line="279", at=4.0, gestures=False)], 20, idle=False)
+    without = plan_performance(project, [a.Say(id="s", line="279", at=4.0, gestures=False)], 20, idle=False)
     assert not without.layers["arms"].cues and without.track.speeches
 
 
 def test_a_nod_is_a_gesture_tagged_or_called_so(sample: Project) -> None:
-    cue = perform(sample, [a.Nod(id="n", at=1.0)], 10, idle=False).layers["head"].cues[0]
+    cue = plan_performance(sample, [a.Nod(id="n", at=1.0)], 10, idle=False).layers["head"].cues[0]
     assert cue.action.name.startswith("nod")
-    with_tags = perform(sample, [a.Nod(id="n", at=1.0, tags=("nonsense",))], 10, idle=False)
-    assert answer(with_tags, "n").state == "refused"
+    with_tags = plan_performance(sample, [a.Nod(id="n", at=1.0, tags=("nonsense",))], 10, idle=False)
+    assert answer_ask(with_tags, "n").state == "refused"
 
 
 def test_speech_interrupts_speech_of_the_same_weight_but_not_more_important_one(sample: Project) -> None:
     first = a.Say(id="1", text="one two three", at=1.0, duration=5.0)
-    plan = perform(sample, [first, a.Say(id="2", text="stop", at=2.0, duration=1.0)], 10)
+    plan = plan_performance(sample, [first, a.Say(id="2", text="stop", at=2.0, duration=1.0)], 10)
     assert [(s.id, s.start, s.end) for s in plan.track.speeches] == [("1", 1.0, 2.0), ("2", 2.0, 3.0)]
     first = a.msgspec.structs.replace(first, priority=3)
-    plan = perform(sample, [first, a.Say(id="2", text="stop", at=2.0, duration=1.0)], 10)
+    plan = plan_performance(sample, [first, a.Say(id="2", text="stop", at=2.0, duration=1.0)], 10)
     assert [s.id for s in plan.track.speeches] == ["1"]
 
 
@@ -293,8 +299,8 @@ def _left(plan: Plan, layer: Layer) -> list[Cue]:
 
 
 def test_the_models_leave_a_stance_that_is_to_be_kept_alone(sample: Project) -> None:
-    free = perform(sample, [a.Go(id="g", stance="arms crossed", at=1.0)], 120)
-    kept = perform(sample, [a.Go(id="g", stance="arms crossed", at=1.0, stay=True)], 120)
+    free = plan_performance(sample, [a.Go(id="g", stance="arms crossed", at=1.0)], 120)
+    kept = plan_performance(sample, [a.Go(id="g", stance="arms crossed", at=1.0, stay=True)], 120)
     assert len(_left(free, "arms")) > 2
     assert [c.then for c in _left(kept, "arms") if c.start >= 1.0] == ["s159"]
     assert len(kept.layers["arms"].cues) > 10  # gestures and fidgets go on
@@ -305,8 +311,8 @@ def test_staying_ends_with_the_next_stance_that_is_asked_for_or_when_it_is_taken
     sample: Project,
 ) -> None:
     go = a.Go(id="g", stance="arms crossed", at=1.0, stay=True)
-    other = perform(sample, [go, a.Go(id="h", stance="on hips", at=20.0, told=20.0)], 160)
-    back = perform(sample, [go, a.Withdraw(id="w", what="g", told=20.0)], 160)
+    other = plan_performance(sample, [go, a.Go(id="h", stance="on hips", at=20.0, told=20.0)], 160)
+    back = plan_performance(sample, [go, a.Withdraw(id="w", what="g", told=20.0)], 160)
     for plan in (other, back):
         assert len([c for c in _left(plan, "arms") if c.start < 19]) == 1
         assert len([c for c in _left(plan, "arms") if c.start > 22]) > 1
@@ -314,19 +320,19 @@ def test_staying_ends_with_the_next_stance_that_is_asked_for_or_when_it_is_taken
 
 
 def test_where_nothing_is_to_be_kept_stances_leave_no_trace_in_the_track(sample: Project) -> None:
-    assert perform(sample, [a.Go(id="g", stance="arms crossed", at=1.0)], 20).track.stays == ()
+    assert plan_performance(sample, [a.Go(id="g", stance="arms crossed", at=1.0)], 20).track.stays == ()
 
 
 def test_being_there_already_is_answered_as_before_when_it_is_to_be_kept(sample: Project) -> None:
-    plan = perform(sample, [a.Go(id="g", stance="hands at sides", at=0.0, stay=True)], 60)
-    assert answer(plan, "g").state == "done"
+    plan = plan_performance(sample, [a.Go(id="g", stance="hands at sides", at=0.0, stay=True)], 60)
+    assert answer_ask(plan, "g").state == "done"
     assert _left(plan, "arms") == []
 
 
 def test_what_is_to_be_kept_is_not_forgotten_with_the_past(sample: Project) -> None:
-    plan = perform(sample, [a.Go(id="g", stance="arms crossed", at=1.0, stay=True)], 60)
-    whole = hear(sample, plan, 40.0, [], 160)
-    cut = hear(sample, since(plan, 40.0), 40.0, [], 160)
+    plan = plan_performance(sample, [a.Go(id="g", stance="arms crossed", at=1.0, stay=True)], 60)
+    whole = hear_asks(sample, plan, 40.0, [], 160)
+    cut = hear_asks(sample, since(plan, 40.0), 40.0, [], 160)
     assert [c.start for c in cut.layers["arms"].cues] == [
         c.start for c in whole.layers["arms"].cues if c.end >= 40
     ]
@@ -352,7 +358,7 @@ def test_poses_are_bit_for_bit_the_same_live_in_ticks_of_16_ms_scrubbed_and_bake
     end, tick = 12.0, 0.016
     plans = in_ticks(project, heard, end, tick, ahead=4.0, forget=3.0)
     live = [pose_at(plan, project, n * tick) for n, plan in enumerate(plans)]
-    whole = perform(
+    whole = plan_performance(
         project, [a.msgspec.structs.replace(x, id=f"ask{n}") for n, x in enumerate(heard)], end + 8
     )
     times = np.arange(len(plans)) * tick

@@ -7,21 +7,21 @@ from pathlib import Path
 
 import pytest
 
-from app.project.annotation_reading import Reading, begin, into
+from app.project.annotation_reading import AnnotationReading, begin_reading, work_into_project
 from metagraph.formats.elan import read_elan
 from metagraph.graph.model import LAYERS, Mode, Project
 from metagraph.graph.requests import Behave
-from metagraph.playback.learning.learn import Act, learn
+from metagraph.playback.learning.learn import Act, learn_model
 from metagraph.playback.planning.markov import ARMS, DEFAULTS
 from metagraph.playback.planning.mode_shares import mode_spans, with_modes
-from metagraph.playback.planning.running_plan import perform
+from metagraph.playback.planning.running_plan import plan_performance
 
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "annotation" / "conversation.eaf"
 
 
 def kinds(project: Project, mode: Mode | None, seconds: float = 1800.0) -> dict[str, int]:
     asks = [] if mode is None else [Behave(id="m", at=0.0, mode=mode)]
-    cues = perform(project, asks, seconds, 3).layers["arms"].cues
+    cues = plan_performance(project, asks, seconds, 3).layers["arms"].cues
     return {
         kind: sum(cue.action.kind == kind for cue in cues) for kind in ("gesture", "fidget", "transition")
     }
@@ -47,7 +47,7 @@ def test_pauses_within_a_turn_belong_to_it_and_after_the_others_one_listens_a_wh
 
 def test_without_speech_or_acts_a_model_stays_as_it_is() -> None:
     acts = [Act(n * 4.0, n * 4.0 + 1, "left", "gesture") for n in range(10)]
-    model = learn("arms", [acts])
+    model = learn_model("arms", [acts])
     assert with_modes(model, acts, [], [], 40.0) is model
     assert with_modes(model, [], [(0.0, 5.0)], [], 40.0) is model
 
@@ -59,7 +59,7 @@ def test_shares_are_those_that_were_seen() -> None:
     acts += [Act(t + 0.1, t + 0.9, "left", "gesture") for t in range(201, 400, 20)]
     acts += [Act(t + 1.1, t + 1.6, "right", "fidget") for t in range(0, 400, 10)]
     acts.sort(key=lambda a: a.start)
-    model = with_modes(learn("arms", [acts]), acts, own, partner, 400.0)
+    model = with_modes(learn_model("arms", [acts]), acts, own, partner, 400.0)
     _, listening, talking = model.modes
     assert listening[0] / talking[0] == pytest.approx(0.1, rel=0.15)
     assert listening[1] == pytest.approx(talking[1], rel=0.1)
@@ -67,10 +67,10 @@ def test_shares_are_those_that_were_seen() -> None:
 
 
 def test_what_is_learned_from_the_sample_gestures_more_talking_than_not(sample: Project) -> None:
-    reading = begin(read_elan(SAMPLE))
-    made = into(sample, reading, LAYERS, False, None).project
+    reading = begin_reading(read_elan(SAMPLE))
+    made = work_into_project(sample, reading, LAYERS, False, None).project
     idle, _, talking = made.markov["arms"].modes
     assert talking[0] > idle[0]
-    silent = Reading(reading.annotation, {**reading.roles, "Speech": "ignore"})
-    made = into(sample, silent, LAYERS, False, None).project
+    silent = AnnotationReading(reading.annotation, {**reading.roles, "Speech": "ignore"})
+    made = work_into_project(sample, silent, LAYERS, False, None).project
     assert made.markov["arms"].modes == DEFAULTS["arms"].modes

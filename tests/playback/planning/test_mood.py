@@ -16,7 +16,7 @@ from metagraph.graph.touch import Touch
 from metagraph.graph.words import FEELINGS
 from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.planning.extend_performance import answer, hear, since
+from metagraph.playback.planning.extend_performance import answer_ask, hear_asks, since
 from metagraph.playback.planning.mood import (
     FADE,
     MOODS,
@@ -36,7 +36,7 @@ from metagraph.playback.planning.mood import (
     tempo,
     turn_extent,
 )
-from metagraph.playback.planning.running_plan import asks_of, perform
+from metagraph.playback.planning.running_plan import list_kept_asks, plan_performance
 from metagraph.playback.planning.vigour import _speed_of, vigour, vigours
 from tests.posing import pose_at
 
@@ -57,7 +57,7 @@ def free(project: Project) -> Project:
 
 
 def performed(project: Project, *asks: dict[str, Any], end: float = 20.0, idle: bool = False) -> Plan:
-    return perform(project, [a.request_from(ask) for ask in asks], end, 1, idle=idle)
+    return plan_performance(project, [a.request_from(ask) for ask in asks], end, 1, idle=idle)
 
 
 def stroke_of(project: Project, cue: Cue) -> float:
@@ -169,9 +169,9 @@ def test_a_line_is_said_in_its_mood_and_what_it_asks_for_with_it(sample: Project
 
 def test_a_performance_has_a_mood_beneath_all_others() -> None:
     kept = a.Performance(name="p", asks=(a.Blink(at=1.0),), mood=(0.2, 0.4), intensity=1.5)
-    first, *rest = asks_of(kept)
+    first, *rest = list_kept_asks(kept)
     assert isinstance(first, a.Feel) and (first.at, first.mood, first.intensity) == (0.0, (0.2, 0.4), 1.5)
-    assert tuple(rest) == kept.asks and asks_of(a.Performance(name="q", asks=kept.asks)) == kept.asks
+    assert tuple(rest) == kept.asks and list_kept_asks(a.Performance(name="q", asks=kept.asks)) == kept.asks
 
 
 def test_body_and_transitions_keep_their_size_and_what_touches_too(sample: Project) -> None:
@@ -196,7 +196,7 @@ def test_smaller_gestures_keep_hands_nearer_their_stance_and_begin_and_end_in_it
     small = replace(plan, layers={**plan.layers, "arms": replace(arms, cues=(replace(cue, extent=0.6),))})
     still = replace(plan, layers={**plan.layers, "arms": replace(arms, cues=())})
     times = np.linspace(cue.start, cue.end - 1e-6, 60)
-    roles = anatomy.roles(sample)
+    roles = anatomy.project_roles(sample)
     hands = [roles["left_hand"], roles["right_hand"]]
     assert sample.skeleton is not None
     places = [
@@ -214,20 +214,20 @@ def test_moods_planned_tick_by_tick_are_those_planned_at_once(sample: Project) -
         a.Feel(id="n", at=9.0, mood="sad", duration=4.0),
         a.Gesture(id="g", at=10.0),
     ]
-    whole = hear(sample, Plan(1, 0.0), 0.0, asks, 30.0)
-    ticked = hear(sample, Plan(1, 0.0), 0.0, asks, 2.0)
+    whole = hear_asks(sample, Plan(1, 0.0), 0.0, asks, 30.0)
+    ticked = hear_asks(sample, Plan(1, 0.0), 0.0, asks, 2.0)
     for now in range(1, 30):
-        ticked = hear(sample, ticked, float(now), [], min(now + 8.0, 30.0))
+        ticked = hear_asks(sample, ticked, float(now), [], min(now + 8.0, 30.0))
     assert [c.extent for c in ticked.layers["arms"].cues] == [c.extent for c in whole.layers["arms"].cues]
     assert ticked.layers["arms"].cues == whole.layers["arms"].cues and ticked.life == whole.life
 
 
 def test_a_mood_taken_back_is_over_and_forgetting_keeps_what_lasts(sample: Project) -> None:
-    plan = hear(sample, Plan(1, 0.0), 0.0, [a.Feel(id="m", at=0.0, mood="tired")], 20.0)
-    assert answer(plan, "m").what == ("mood",)
+    plan = hear_asks(sample, Plan(1, 0.0), 0.0, [a.Feel(id="m", at=0.0, mood="tired")], 20.0)
+    assert answer_ask(plan, "m").what == ("mood",)
     kept = since(plan, 15.0)
     assert [m.id for m in kept.track.moods] == ["m"] and list(kept.life.moods.rows[-1]) == [-0.03, -0.8, 1.0]
-    after = hear(sample, plan, 8.0, [a.Withdraw(id="w", what="m")], 20.0)
+    after = hear_asks(sample, plan, 8.0, [a.Withdraw(id="w", what="m")], 20.0)
     assert [round(m.end, 3) for m in after.track.moods] == [round(8.0 + sample.settings.lookahead, 3)]
     assert list(after.life.moods.rows[-1]) == [0.0, 0.0, 1.0]
 
@@ -255,7 +255,7 @@ def test_how_energetic_all_actions_are_is_what_each_is(sample: Project) -> None:
 
 def test_hands_are_faster_and_farther_out_the_more_aroused(sample: Project) -> None:
     """What `tests/benchmarks/bench_moods.py` measures, of the same gestures in three moods."""
-    roles = anatomy.roles(sample)
+    roles = anatomy.project_roles(sample)
     assert sample.skeleton is not None
     sample = free(sample)
     actions = [x.id for x in sample.graphs["arms"].of(sample.graphs["arms"].start or "", "gesture")][:5]
@@ -277,7 +277,7 @@ def test_hands_are_faster_and_farther_out_the_more_aroused(sample: Project) -> N
 
 
 def test_heads_hang_in_sadness_and_life_slows_with_arousal(sample: Project) -> None:
-    roles = anatomy.roles(sample)
+    roles = anatomy.project_roles(sample)
     assert sample.skeleton is not None
     ahead, breaths = [], []
     for valence, arousal in ((-1.0, -0.6), (0.0, 0.0), (1.0, 0.6)):

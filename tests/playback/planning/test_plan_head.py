@@ -16,7 +16,7 @@ from metagraph.graph.life import Life
 from metagraph.graph.model import Project
 from metagraph.playback import planner
 from metagraph.playback.plan import MetaRequest, Plan
-from metagraph.playback.planner import Revision, extend, make_plan
+from metagraph.playback.planner import Revision, extend_plan, make_plan
 from metagraph.playback.planning import plan_head, strand
 from metagraph.playback.planning.strand import Strand
 from tests.posing import pose_at
@@ -30,20 +30,20 @@ def _project(toy: Any) -> None:
     PROJECT = toy.project()
     for clip in ("rest scratch", "rest cough"):  # a stance with several loops
         of = PROJECT.action(toy.id(PROJECT, clip)).clip
-        PROJECT = edits.place(PROJECT, [of], "arms", "stance", toy.id(PROJECT, "rest"))
+        PROJECT = edits.place_clips(PROJECT, [of], "arms", "stance", toy.id(PROJECT, "rest"))
 
 
 def from_all(*words: Any, **named: Any) -> Plan:
     """Extend a plan looking at all of it."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(planner, "head_of", lambda *_: None)
-        return extend(*words, **named)
+        patch.setattr(planner, "find_plan_head", lambda *_: None)
+        return extend_plan(*words, **named)
 
 
 def grown(project: Project, end: float, seed: int = 3, step: float = 20.0) -> Plan:
     plan = make_plan(project, step, seed=seed)
     while plan.end < end:
-        plan = extend(project, plan, plan.end - 5, (), plan.end + step)
+        plan = extend_plan(project, plan, plan.end - 5, (), plan.end + step)
     return plan
 
 
@@ -93,7 +93,7 @@ def test_whatever_is_asked_meanwhile_and_again(steps: list[Any], seed: int, reme
             for k, (ident, kind, at, length, priority, resume) in enumerate(rows)
         ]  # fmt: skip
         gone = frozenset({"c"} if n % 5 == 4 else ())
-        plan = extend(project, plan, now, wanted, now + 20, revision=Revision(gone))
+        plan = extend_plan(project, plan, now, wanted, now + 20, revision=Revision(gone))
         whole = from_all(project, whole, now, wanted, now + 20, revision=Revision(gone))
         assert plan == whole
 
@@ -108,19 +108,19 @@ def test_what_lies_far_back_is_not_looked_at(monkeypatch: Any) -> None:
 
     plan = grown(PROJECT, 1000.0)
     monkeypatch.setattr(planner, "draft", looked)
-    extend(PROJECT, plan, 995.0, (), 1020.0)
+    extend_plan(PROJECT, plan, 995.0, (), 1020.0)
     early, seen[:] = max(seen), []
-    extend(PROJECT, grown(PROJECT, 200.0), 195.0, (), 220.0)
+    extend_plan(PROJECT, grown(PROJECT, 200.0), 195.0, (), 220.0)
     assert early < 4 * max(seen[-3:]) and early < sum(len(of.cues) for of in plan.layers.values()) / 3
 
 
 def test_a_plan_that_was_made_at_once_has_a_head_too() -> None:
     plan = make_plan(PROJECT, 400, seed=5)
-    head = plan_head.head_of(PROJECT, plan, 395.0, ())
+    head = plan_head.find_plan_head(PROJECT, plan, 395.0, ())
     assert head is not None and head.layers["arms"].cues > 30
-    assert extend(PROJECT, plan, 395.0, (), 420.0) == from_all(PROJECT, plan, 395.0, (), 420.0)
+    assert extend_plan(PROJECT, plan, 395.0, (), 420.0) == from_all(PROJECT, plan, 395.0, (), 420.0)
     assert (
-        extend(PROJECT, plan, 395.0, (), 420.0).layers["arms"].cues
+        extend_plan(PROJECT, plan, 395.0, (), 420.0).layers["arms"].cues
         == make_plan(PROJECT, 420, seed=5).layers["arms"].cues
     )
 
@@ -128,16 +128,16 @@ def test_a_plan_that_was_made_at_once_has_a_head_too() -> None:
 def test_who_plans_from_earlier_on_again_gets_the_same() -> None:
     plan = grown(PROJECT, 300.0)
     for now in (295.0, 100.0, 10.0, 0.0, 290.0):
-        assert extend(PROJECT, plan, now, (), 320.0) == from_all(PROJECT, plan, now, (), 320.0), now
+        assert extend_plan(PROJECT, plan, now, (), 320.0) == from_all(PROJECT, plan, now, (), 320.0), now
 
 
 def test_what_is_asked_anew_or_taken_back_long_after_it_played_is_found() -> None:
     ask = MetaRequest("long ago", "arms", "gesture", 3.0)
-    plan = extend(PROJECT, make_plan(PROJECT, 30.0, seed=3), 1.0, [ask], 30.0)
+    plan = extend_plan(PROJECT, make_plan(PROJECT, 30.0, seed=3), 1.0, [ask], 30.0)
     while plan.end < 200:
-        plan = extend(PROJECT, plan, plan.end - 5, (), plan.end + 20)
+        plan = extend_plan(PROJECT, plan, plan.end - 5, (), plan.end + 20)
     for fresh, gone in (([replace(ask, start=205.0)], frozenset()), ([], frozenset({"long ago"}))):
-        found = extend(PROJECT, plan, 195.0, fresh, 220.0, revision=Revision(gone))
+        found = extend_plan(PROJECT, plan, 195.0, fresh, 220.0, revision=Revision(gone))
         assert found == from_all(PROJECT, plan, 195.0, fresh, 220.0, revision=Revision(gone))
         assert not any(m.request.id == "long ago" and m.start < 100 for m in found.layers["arms"].metas)
 
@@ -148,7 +148,7 @@ def test_a_stance_that_is_gone_is_found(toy: Any) -> None:
     for start in (20.0, 280.0):
         plan = make_plan(project, 300, [MetaRequest("go", "arms", "transition", start, stance=up)], 1)
         without = edits.remove_stance(project, up)
-        assert extend(without, plan, 290.0, (), 320.0) == from_all(without, plan, 290.0, (), 320.0)
+        assert extend_plan(without, plan, 290.0, (), 320.0) == from_all(without, plan, 290.0, (), 320.0)
 
 
 def test_what_a_long_plan_leaves_as_it_was_is_shared_and_the_same(monkeypatch: Any) -> None:
@@ -164,7 +164,7 @@ def test_what_a_long_plan_leaves_as_it_was_is_shared_and_the_same(monkeypatch: A
     poses = pose_at(plain[-1], project, times)
     monkeypatch.setattr(strand, "CHUNK", 8)
     monkeypatch.setattr(strand, "LONG", 16)
-    made = in_three(extend)
+    made = in_three(extend_plan)
     assert made == plain and plain == made
     assert np.array_equal(pose_at(made[-1], project, times).rotations, poses.rotations)
     for one, other in pairwise(made):
@@ -185,8 +185,8 @@ def test_plans_that_are_alike_are_told_apart_without_looking_through_them(monkey
     expected = from_all(PROJECT, plan, 90.0, (), 100.0)
     with monkeypatch.context() as patched:
         patched.setattr(Plan, "__eq__", lambda one, other: pytest.fail("two plans were compared"))
-        found = extend(PROJECT, plan, 90.0, (), 100.0)
-        extend(PROJECT, again, 90.0, (), 100.0)
-        further = extend(PROJECT, found, 95.0, (), 100.0)
+        found = extend_plan(PROJECT, plan, 90.0, (), 100.0)
+        extend_plan(PROJECT, again, 90.0, (), 100.0)
+        further = extend_plan(PROJECT, found, 95.0, (), 100.0)
     assert found == expected
     assert further == from_all(PROJECT, expected, 95.0, (), 100.0)

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Project
 from metagraph.playback.plan import Plan
-from metagraph.playback.planning.extend_performance import answer, hear
-from metagraph.playback.planning.running_plan import AHEAD, RunningPlan, perform
+from metagraph.playback.planning.extend_performance import answer_ask, hear_asks
+from metagraph.playback.planning.running_plan import AHEAD, RunningPlan, plan_performance
 from tests.posing import pose_at
 from tests.thorough import many
 
@@ -28,7 +28,7 @@ def at_once(project: Project, asks: list[a.AnyRequest], end: float, idle: bool =
         groups.setdefault(ask.told or 0.0, []).append(ask)
     plan = Plan(project.settings.seed, 0.0)
     for told in sorted(groups):
-        plan = hear(project, plan, told, groups[told], end, {}, idle)
+        plan = hear_asks(project, plan, told, groups[told], end, {}, idle)
     return plan
 
 
@@ -68,7 +68,7 @@ def test_in_pieces_it_is_what_it_is_at_once(sample):
     @settings(max_examples=many(10, 100))
     @given(asks=session(), idle=st.booleans())
     def same(asks: list[a.AnyRequest], idle: bool) -> None:
-        one, other = at_once(sample, asks, LENGTH, idle), perform(sample, asks, LENGTH, idle=idle)
+        one, other = at_once(sample, asks, LENGTH, idle), plan_performance(sample, asks, LENGTH, idle=idle)
         for layer in LAYERS:
             assert other.layers[layer].cues == one.layers[layer].cues
             assert other.layers[layer].rests == one.layers[layer].rests
@@ -78,20 +78,20 @@ def test_in_pieces_it_is_what_it_is_at_once(sample):
         times = np.linspace(0.0, LENGTH - 0.01, 60)
         assert np.array_equal(pose_at(other, sample, times).rotations, pose_at(one, sample, times).rotations)
         for ask in asks:
-            assert answer(other, ask.id) == answer(one, ask.id), ask
+            assert answer_ask(other, ask.id) == answer_ask(one, ask.id), ask
 
     same()
 
 
 def test_what_is_asked_for_at_the_beginning_alone_is_planned_at_once(sample):
     asks: list[a.AnyRequest] = [a.Nod(id="n", at=2.0), a.Gesture(id="g", at=50.0)]
-    assert perform(sample, asks, 60.0) == at_once(sample, asks, 60.0)
+    assert plan_performance(sample, asks, 60.0) == at_once(sample, asks, 60.0)
 
 
 @pytest.mark.parametrize("end", [0.05, 1.0, AHEAD - 1, AHEAD, AHEAD + 0.1])
 def test_a_performance_shorter_than_the_plan_ahead_ends_where_it_should(sample, end):
     asks: list[a.AnyRequest] = [a.Nod(id="n", at=0.02, told=0.01)]
-    plan = perform(sample, asks, end)
+    plan = plan_performance(sample, asks, end)
     assert plan.end == end and plan.layers["head"].cues == at_once(sample, asks, end).layers["head"].cues
 
 
@@ -100,17 +100,17 @@ def test_the_work_of_an_hour_grows_with_the_hour_and_not_with_its_square(sample,
     import metagraph.playback.planning.running_plan as module
 
     seen = []
-    plain = module.hear
+    plain = module.hear_asks
 
     def counted(project, plan, *arguments):
         seen.append(sum(len(plan.layers[layer].cues) for layer in LAYERS))
         return plain(project, plan, *arguments)
 
-    monkeypatch.setattr(module, "hear", counted)
+    monkeypatch.setattr(module, "hear_asks", counted)
     counts = []
     for seconds in (300, 900):
         seen.clear()
-        perform(
+        plan_performance(
             sample,
             [a.Nod(id=f"n{t}", at=t + 1.0, told=float(t)) for t in range(0, seconds, 4)],
             seconds + 5.0,
@@ -127,7 +127,7 @@ def test_running_on_reaches_ahead_and_hears(sample):
     running.reach(5.0)
     assert running.plan.end == 15.0
     running.hear(5.0, [a.Nod(id="n", at=6.0)])
-    assert answer(running.plan, "n").state in ("planned", "late")
+    assert answer_ask(running.plan, "n").state in ("planned", "late")
     before = running.forget(4.0)
     assert before.end == running.plan.end
     assert all(cue.end >= 4.0 for layer in LAYERS for cue in running.plan.layers[layer].cues)
@@ -136,4 +136,4 @@ def test_running_on_reaches_ahead_and_hears(sample):
 def test_what_came_from_a_file_performs_as_before_it_was_written(sample):
     asks = [a.Nod(id="n", at=40.0, told=3.0), a.Gesture(id="g", at=80.0, told=70.0)]
     again = msgspec.json.decode(msgspec.json.encode(asks), type=list[a.AnyRequest])
-    assert perform(sample, again, 100.0) == perform(sample, asks, 100.0)
+    assert plan_performance(sample, again, 100.0) == plan_performance(sample, asks, 100.0)

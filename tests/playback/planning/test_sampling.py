@@ -235,7 +235,9 @@ def test_a_clip_of_one_frame_neither_hangs_nor_breaks_the_plan(project: Project,
 
 
 def test_an_action_of_another_stance_brings_the_transitions_along(project: Project, toy: Any) -> None:
-    project = edits.place(project, [next(iter(project.clips))], "arms", "gesture", toy.id(project, "far"))
+    project = edits.place_clips(
+        project, [next(iter(project.clips))], "arms", "gesture", toy.id(project, "far")
+    )
     ident = [*project.actions()][-1].id
     plan, whole = arms(project, ask("a", 1, action=ident))
     assert names(plan) == ["rest to up", "up to far", "rest loop"] and whole.reports == ()
@@ -374,7 +376,7 @@ def test_what_the_model_writes_takes_what_there_is(toy: Any) -> None:
 
 
 def test_a_long_rest_changes_between_the_loops_of_its_stance(project: Project, toy: Any) -> None:
-    project = edits.place(
+    project = edits.place_clips(
         project,
         [project.action(toy.id(project, "rest scratch")).clip],
         "arms",

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.playback.planning import strand
-from metagraph.playback.planning.strand import Strand, joined
+from metagraph.playback.planning.strand import Strand, join_sequence
 
 counts = st.integers(0, 60)
 
@@ -74,7 +74,7 @@ def test_it_is_kept_in_files_of_objects_and_read_as_an_array() -> None:
 
 
 def test_what_is_short_stays_a_tuple() -> None:
-    assert joined((1, 2, 3), 2, (9,)) == (1, 2, 9) and type(joined((1, 2, 3), 2, (9,))) is tuple
-    long = joined(range(30), 25, (9,))
+    assert join_sequence((1, 2, 3), 2, (9,)) == (1, 2, 9) and type(join_sequence((1, 2, 3), 2, (9,))) is tuple
+    long = join_sequence(range(30), 25, (9,))
     assert isinstance(long, Strand) and long == (*range(25), 9)
-    assert joined(long, 3, ()) == (0, 1, 2) and type(joined(long, 3, ())) is tuple
+    assert join_sequence(long, 3, ()) == (0, 1, 2) and type(join_sequence(long, 3, ())) is tuple

@@ -19,7 +19,13 @@ from metagraph.motion.contact_solve import ContactPose, apart, capsule_ends, sol
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.posing.contacts import depths, goals_at, inside, nearest, pairs
+from metagraph.playback.posing.contacts import (
+    capsule_pairs,
+    contact_depths,
+    goals_at,
+    inside,
+    nearest_between_lines,
+)
 from tests.posing import contact_rig, pose_at
 
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "sample.metagraph.yaml"
@@ -56,7 +62,7 @@ def test_hands_that_are_held_are_where_contacts_say() -> None:
             if goal.weight < 0.9999:
                 continue
             to, hand = joints[goal.to], joints[rig.arms[goal.arm].hand]
-            wanted = at[n, to] + rotation.rotate(turned[n, to], np.array(goal.at))
+            wanted = at[n, to] + rotation.rotate_vectors(turned[n, to], np.array(goal.at))
             found += 1
             assert np.linalg.norm(at[n, hand] - wanted) < 0.003
     assert found > 30
@@ -65,7 +71,10 @@ def test_hands_that_are_held_are_where_contacts_say() -> None:
 def test_the_guard_brings_hands_out_of_the_body() -> None:
     rig = contact_rig(sample())
     assert rig is not None
-    before, after = depths(rig, plain()).max(-1), depths(rig, pose_at(plan(), sample(), TIMES)).max(-1)
+    before, after = (
+        contact_depths(rig, plain()).max(-1),
+        contact_depths(rig, pose_at(plan(), sample(), TIMES)).max(-1),
+    )
     assert (after > 0.005).mean() < 0.35 * (before > 0.005).mean()
     assert np.percentile(after, 95) < 0.006 < np.percentile(before, 95)
 
@@ -99,13 +108,13 @@ def test_arrays_are_told_to_be_inside_exactly_where_one_pose_after_the_other_wou
     assert rig is not None
     pose = plain()
     told = inside(rig, pose)
-    first, second, _ = pairs(rig)
+    first, second, _ = capsule_pairs(rig)
     for n in range(0, len(TIMES), 7):
         one = _one(rig, pose, n)
-        assert solve_contacts(rig, one, []) == told[n] or depths(rig, pose)[n].max() < 1e-6
+        assert solve_contacts(rig, one, []) == told[n] or contact_depths(rig, pose)[n].max() < 1e-6
         ends = capsule_ends(rig, _one(rig, pose, n))
         a, b, c, d = (np.array([ends[2 * i + k] for i in some]) for some in (first, second) for k in (0, 1))
-        way, share = nearest(a, b, c, d)
+        way, share = nearest_between_lines(a, b, c, d)
         ours = [apart(ends, 2 * i, 2 * k) for i, k in zip(first, second, strict=True)]
         assert_allclose(np.linalg.norm(way, axis=-1), [o[4] for o in ours], atol=1e-6)
         assert_allclose(way, [o[:3] for o in ours], atol=1e-6)

@@ -44,7 +44,7 @@ def joints(plan: Plan, of: Project, times: Array) -> Array:
     """Return hips, knees and ankles `[N, 2, 3, 3]`."""
     assert of.skeleton is not None
     at = of.skeleton.globals(pose_at(plan, of, times))[1].astype(float)
-    roles = anatomy.roles(of)
+    roles = anatomy.project_roles(of)
     return at[:, [[roles[r] for r in leg] for leg in LEGS]]
 
 

@@ -14,7 +14,7 @@ from metagraph.graph.touch import Touch
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.playback.planner import make_plan
-from metagraph.playback.posing.overlay import BLEND, Overlay, clip_overlay, reached
+from metagraph.playback.posing.overlay import BLEND, Overlay, clip_overlay, find_overlaid_joints
 from tests.posing import overlaid, pose_at
 
 TIMES = np.linspace(0.0, 6.0, 181)
@@ -30,7 +30,7 @@ def clip(sample: Project) -> Clip:
     """Four seconds of the base pose with the right arm out."""
     base = anatomy.base_pose(sample)
     rotations = np.repeat(base.rotations[None], 101, 0)
-    arm = anatomy.roles(sample)["right_upper_arm"]
+    arm = anatomy.project_roles(sample)["right_upper_arm"]
     turn = rotation.exp(np.array([0.0, 0.0, 0.8]))
     rotations[:, arm] = rotation.multiply(rotations[:, arm], turn)
     root = np.repeat(base.translations[None, :1] + 0.5, 101, 0)  # half a metre off, which is not to be seen
@@ -38,11 +38,11 @@ def clip(sample: Project) -> Clip:
 
 
 def joints(project: Project, *parts: str) -> list[int]:
-    return [j for j, part in enumerate(anatomy.parts(project)) if part in parts]
+    return [j for j, part in enumerate(anatomy.project_parts(project)) if part in parts]
 
 
 def full(project: Project, **shares: float) -> Overlay:
-    at = reached(project)
+    at = find_overlaid_joints(project)
     turns = np.zeros((1, len(at), 4), np.float32)
     turns[..., 3] = 1
     values = {"weight": 1.0, "arms": 0.0, "head": 0.0, **shares}
@@ -58,7 +58,7 @@ def test_legs_and_root_stay_with_the_plan(sample, plan, clip):
     legs = joints(sample, "legs")
     assert np.abs(plain.rotations[:, legs] - made.rotations[:, legs]).max() < 1e-6
     assert np.abs(plain.translations - made.translations).max() < 1e-6
-    arm = anatomy.roles(sample)["right_upper_arm"]
+    arm = anatomy.project_roles(sample)["right_upper_arm"]
     assert np.abs(plain.rotations[60, arm] - made.rotations[60, arm]).max() > 0.2
 
 

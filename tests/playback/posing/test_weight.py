@@ -28,7 +28,7 @@ from metagraph.playback.posing.follow_through import (
     knot_before,
     knot_time,
 )
-from metagraph.playback.posing.weight import rows_of
+from metagraph.playback.posing.weight import arm_track_rows
 from tests.posing import pose_at, weight_of
 
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "sample.metagraph.yaml"
@@ -66,7 +66,7 @@ def placed(answers: bool) -> tuple[Any, Any]:
 
 
 def test_hips_give_way_under_gestures_and_feet_stay_where_they_are() -> None:
-    roles = anatomy.roles(sample())
+    roles = anatomy.project_roles(sample())
     (turned, at), (before, were) = placed(True), placed(False)
     hips = roles["hips"]
     travel = np.linalg.norm(at[:, hips] - were[:, hips], axis=-1)
@@ -79,11 +79,11 @@ def test_hips_give_way_under_gestures_and_feet_stay_where_they_are() -> None:
 
 def test_the_hips_go_against_the_arms() -> None:
     project, found = sample(), plan()
-    hips = anatomy.roles(project)["hips"]
+    hips = anatomy.project_roles(project)["hips"]
     ahead = placed(True)[1][:, hips, 2] - placed(False)[1][:, hips, 2]
     cue = max(
         (c for c in found.layers["arms"].cues if c.end < 39),
-        key=lambda c: max(r[2] + r[5] for r in rows_of(weight_of(project), project, c.action.clip)),
+        key=lambda c: max(r[2] + r[5] for r in arm_track_rows(weight_of(project), project, c.action.clip)),
     )
     inside = np.flatnonzero((TIMES - cue.start > 0.3) & (TIMES - cue.end < 0))
     assert ahead[inside].min() < -0.005  # arms ahead, hips back
@@ -121,7 +121,7 @@ def test_each_pose_depends_on_plan_and_time_alone() -> None:
 
 
 def test_the_head_keeps_its_direction_and_hands_theirs() -> None:
-    roles, (turned, at), (before, were) = anatomy.roles(sample()), placed(True), placed(False)
+    roles, (turned, at), (before, were) = anatomy.project_roles(sample()), placed(True), placed(False)
     assert np.degrees(rotation.angle_between(turned[:, roles["head"]], before[:, roles["head"]])).max() < 1.5
     for side in ("left", "right"):
         moved = np.linalg.norm(at[:, roles[f"{side}_hand"]] - were[:, roles[f"{side}_hand"]], axis=-1)
@@ -129,7 +129,7 @@ def test_the_head_keeps_its_direction_and_hands_theirs() -> None:
 
 
 def test_knees_do_not_pop() -> None:
-    roles, speeds = anatomy.roles(sample()), []
+    roles, speeds = anatomy.project_roles(sample()), []
     times = np.arange(0.0, 40.0, 1 / 60)
     skeleton = sample().skeleton
     assert skeleton is not None
@@ -147,7 +147,7 @@ def test_a_clip_that_the_body_plays_too_brings_its_own_hips() -> None:
     project = sample()
     arms = project.graphs["arms"]
     gesture = arms.of(arms.start or "", "gesture")[0]
-    both = edits.place(project, [gesture.clip], "body", "gesture", project.graphs["body"].start or "")
+    both = edits.place_clips(project, [gesture.clip], "body", "gesture", project.graphs["body"].start or "")
     other = [*both.graphs["body"].actions][-1]
     asks = [MetaRequest("a", "arms", "gesture", 1.0, action=gesture.id)]
     once, twice = (
@@ -166,7 +166,7 @@ def test_a_clip_that_the_body_plays_too_brings_its_own_hips() -> None:
 
 def test_collar_bones_rise_only_where_the_clip_leaves_them() -> None:
     project = sample()
-    roles = anatomy.roles(project)
+    roles = anatomy.project_roles(project)
     arms = project.graphs["arms"]
     clip = project.clips[arms.of(arms.start or "", "gesture")[0].clip].motion
     assert clip is not None
@@ -180,8 +180,8 @@ def test_collar_bones_rise_only_where_the_clip_leaves_them() -> None:
         project, clips={**project.clips, entry.id: replace(entry, motion=replace(clip, rotations=rotations))}
     )
     assert (
-        np.array(rows_of(weight_of(lifted), lifted, entry.id))[:, 6].max()
-        > np.array(rows_of(weight_of(project), project, entry.id))[:, 6].max()
+        np.array(arm_track_rows(weight_of(lifted), lifted, entry.id))[:, 6].max()
+        > np.array(arm_track_rows(weight_of(project), project, entry.id))[:, 6].max()
     )
     up = rotation.from_axis_angle(np.array([0.0, 0.0, 1.0]), np.radians(25))
     rotations = np.array(rotations)
@@ -190,8 +190,8 @@ def test_collar_bones_rise_only_where_the_clip_leaves_them() -> None:
         lifted, clips={**lifted.clips, entry.id: replace(entry, motion=replace(clip, rotations=rotations))}
     )
     assert (
-        np.array(rows_of(weight_of(own), own, entry.id))[:, 6].max()
-        < np.array(rows_of(weight_of(lifted), lifted, entry.id))[:, 6].max()
+        np.array(arm_track_rows(weight_of(own), own, entry.id))[:, 6].max()
+        < np.array(arm_track_rows(weight_of(lifted), lifted, entry.id))[:, 6].max()
     )
 
 
@@ -206,7 +206,7 @@ def test_a_skeleton_that_lacks_what_it_takes_is_left_alone(role: str) -> None:
 
 def test_who_sits_does_not_sway() -> None:
     project, found = sample(), plan()
-    roles, rotations = anatomy.roles(project), {}
+    roles, rotations = anatomy.project_roles(project), {}
     for entry in project.clips.values():
         clip = entry.motion
         if clip is None or not any(a.clip == entry.id for a in project.graphs["body"].actions.values()):

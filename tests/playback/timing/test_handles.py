@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.graph import edits
-from metagraph.playback.timing.handles import HANDLES, PHASES, moved, retimed, times_of
+from metagraph.playback.timing.handles import HANDLES, PHASES, handle_times, move_handle, set_timing_field
 from metagraph.playback.timing.speed_curves import speed_of
 
 
@@ -30,7 +30,7 @@ def wave(toy, project):
 
 
 def test_handles_stand_where_the_timing_says(project, wave):
-    found = {name: at for name, at in times_of(project, wave).items() if name not in PHASES}
+    found = {name: at for name, at in handle_times(project, wave).items() if name not in PHASES}
     assert found == {
         "start": 0.2,
         "end": 1.0,
@@ -43,7 +43,7 @@ def test_handles_stand_where_the_timing_says(project, wave):
 
 def test_blends_longer_than_the_action_stand_at_its_ends(project, wave):
     long = replace(wave, timing=replace(wave.timing, blend_in=9, blend_out=9))
-    at = times_of(project, long)
+    at = handle_times(project, long)
     assert (at["in"], at["out"]) == (1.0, 0.2)
 
 
@@ -67,14 +67,14 @@ def test_blends_longer_than_the_action_stand_at_its_ends(project, wave):
     ],
 )
 def test_a_handle_stays_in_its_clip_and_in_order(project, wave, handle, seconds, fields):
-    assert moved(project, wave, handle, seconds) == fields
+    assert move_handle(project, wave, handle, seconds) == fields
 
 
 def test_moments_that_would_lie_outside_follow_a_dragged_end(project, wave):
     timing = replace(wave.timing, earliest_exit=0.9, stroke=0.3)
     action = replace(wave, timing=timing)
-    assert moved(project, action, "end", 0.6) == {"end": 0.6, "earliest_exit": 0.6}
-    assert moved(project, action, "start", 0.5) == {"start": 0.5, "stroke": 0.5}
+    assert move_handle(project, action, "end", 0.6) == {"end": 0.6, "earliest_exit": 0.6}
+    assert move_handle(project, action, "start", 0.5) == {"start": 0.5, "stroke": 0.5}
 
 
 @settings(max_examples=150, deadline=None)
@@ -88,7 +88,7 @@ def test_whatever_is_dragged_wherever_the_action_stays_playable(toy, project, ha
     ident = toy.id(project, "rest wave rt")
     for name, to in ((handle, seconds), (then, more)):
         project = edits.update_actions(
-            project, [ident], timing=moved(project, project.action(ident), name, to)
+            project, [ident], timing=move_handle(project, project.action(ident), name, to)
         )
     action = project.action(ident)
     start, end = project.span(action)
@@ -100,13 +100,13 @@ def test_whatever_is_dragged_wherever_the_action_stays_playable(toy, project, ha
 
 def test_numbers_typed_for_many_are_kept_within_each_clip(toy, project):
     short, long = toy.id(project, "rest short"), toy.id(project, "rest long")
-    after = retimed(project, [short, long], "end", 1.5)
+    after = set_timing_field(project, [short, long], "end", 1.5)
     assert after.action(short).timing.end is None, "the short clip ends before"
     assert after.action(long).timing.end == 1.5
-    after = retimed(project, [short, long], "blend_in", 1.0)
+    after = set_timing_field(project, [short, long], "blend_in", 1.0)
     assert after.action(short).timing.blend_in == pytest.approx(0.6)
     assert after.action(long).timing.blend_in == 1.0
-    assert retimed(project, ["gone"], "start", 1.0) is project
+    assert set_timing_field(project, ["gone"], "start", 1.0) is project
 
 
 def test_the_plot_shows_the_hand_the_head_or_the_body(toy, project, wave):

@@ -36,7 +36,7 @@ def eased(a: float, b: float, seconds: float, fps: float = 30) -> list[float]:
 def placed(toy: Any, clip: Clip, **timing: Any) -> tuple[Project, Any]:
     project = edits.add_clips(toy.project(), [("new.glb", 0, "", clip)])
     ident = next(e.id for e in project.clips.values() if e.name == clip.name)
-    project = edits.place(project, [ident], "arms", "gesture", toy.id(project, "rest"))
+    project = edits.place_clips(project, [ident], "arms", "gesture", toy.id(project, "rest"))
     action = next(a for a in project.actions() if a.clip == ident)
     if timing:
         project = edits.update_actions(project, [action.id], timing=timing)

@@ -12,10 +12,10 @@ from metagraph.playback.timing.handles import (
     EDGES,
     block_moved,
     blocks_of,
+    handle_times,
     handles_of,
-    moved_by,
-    slipped,
-    times_of,
+    move_handle_by,
+    slip_action,
 )
 
 
@@ -34,7 +34,7 @@ def wave(toy, project):
 
 
 def edges(project, ident):
-    at = times_of(project, project.action(ident))
+    at = handle_times(project, project.action(ident))
     return [round(at[name], 3) for name in EDGES]
 
 
@@ -91,17 +91,17 @@ def test_a_loop_has_its_seam_and_ends_alone(toy, project):
 
 
 def test_another_part_of_the_clip_is_as_long_and_all_that_was_set_goes_with_it(project, wave):
-    changed = edits.update_actions(project, [wave.id], timing=slipped(project, wave, 0.1))
+    changed = edits.update_actions(project, [wave.id], timing=slip_action(project, wave, 0.1))
     assert edges(changed, wave.id) == pytest.approx([0.3, 0.5, 0.7, 0.9, 1.1])
     back = edits.update_actions(
-        changed, [wave.id], timing=slipped(changed, changed.action(wave.id), -9)
+        changed, [wave.id], timing=slip_action(changed, changed.action(wave.id), -9)
     ).action(wave.id)
     assert (back.timing.start, back.timing.end) == (0.0, pytest.approx(0.8))
-    assert slipped(project, wave, 0.0) == {}
+    assert slip_action(project, wave, 0.0) == {}
 
 
 def test_the_same_drag_moves_the_handle_of_each_within_its_own_clip(toy, project):
     idents = [toy.id(project, n) for n in ("rest short", "rest long", "rest loop")]
-    changes = moved_by(project, [*idents, "gone"], "start", 0.3)
+    changes = move_handle_by(project, [*idents, "gone"], "start", 0.3)
     assert {i: c["timing"]["start"] for i, c in changes.items()} == dict.fromkeys(idents, 0.3)
-    assert set(moved_by(project, idents, "out", -0.1)) == set(idents[:2]), "a loop is not blended out"
+    assert set(move_handle_by(project, idents, "out", -0.1)) == set(idents[:2]), "a loop is not blended out"

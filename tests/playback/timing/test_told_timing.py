@@ -16,10 +16,10 @@ from metagraph.graph.face.names import VISEMES
 from metagraph.graph.model import Project
 from metagraph.playback.life.line_timing import ARKIT, AZURE, OCULUS, POLLY, SETS
 from metagraph.playback.life.lips import mouth
-from metagraph.playback.life.voice import voice_of
+from metagraph.playback.life.voice import voice_for_speech
 from metagraph.playback.plan import Plan
-from metagraph.playback.planning.running_plan import RunningPlan, perform
-from metagraph.playback.timing.told_timing import told_timing
+from metagraph.playback.planning.running_plan import RunningPlan, plan_performance
+from metagraph.playback.timing.told_timing import read_given_timing
 
 OPEN = [VISEMES.index(v) - 1 for v in ("aa", "E", "I", "O", "U")]
 WORDS = [["Hello", 0.1, 0.5], ["there", 1.5, 1.9]]
@@ -32,7 +32,9 @@ def shown(plan: Plan, times: Any) -> Any:
 
 
 def said(project: Project, **fields: Any) -> Plan:
-    return perform(project, [a.request_from({"do": "say", "id": "s", "at": 1.0, **fields})], 10.0, idle=False)
+    return plan_performance(
+        project, [a.request_from({"do": "say", "id": "s", "at": 1.0, **fields})], 10.0, idle=False
+    )
 
 
 def refusal(project: Project, **fields: Any) -> str:
@@ -53,7 +55,7 @@ def test_the_page_on_the_format_tells_when_the_mouth_is_shut(sample: Project) ->
     page = (Path(__file__).parents[3] / "docs" / "reference" / "format.md").read_text(encoding="utf-8")
     found = re.search(r"`(\{\"do\": \"say\".*\})` has the mouth shut from (\S+) to (\S+) s", page)
     assert found is not None
-    plan = perform(sample, [a.read_request(found[1])], 10.0, idle=False)
+    plan = plan_performance(sample, [a.read_request(found[1])], 10.0, idle=False)
     assert shown(plan, np.linspace(float(found[2]), float(found[3]), 50)).max() < 0.05
     assert shown(plan, [1.3, 2.7]).sum(1).min() > 0.4
 
@@ -62,7 +64,7 @@ def test_words_alone_are_what_is_said(sample: Project) -> None:
     (speech,) = said(sample, words=WORDS).track.speeches
     assert speech.text == "Hello there"
     assert speech.end == pytest.approx(1.0 + 1.9 + 0.065, abs=0.02), "the mouth needs a little to shut"
-    accents = voice_of({}, speech).accents
+    accents = voice_for_speech({}, speech).accents
     assert 0.1 < accents[0] < 0.5
 
 
@@ -77,8 +79,8 @@ def test_words_alone_are_what_is_said(sample: Project) -> None:
     ],
 )
 def test_words_may_be_objects(words: list[Any]) -> None:
-    plain = told_timing(a.Say(words=tuple(WORDS)))
-    assert told_timing(a.Say(words=tuple(words))) == plain
+    plain = read_given_timing(a.Say(words=tuple(WORDS)))
+    assert read_given_timing(a.Say(words=tuple(words))) == plain
 
 
 def test_what_polly_says_is_taken_as_it_is() -> None:
@@ -90,7 +92,7 @@ def test_what_polly_says_is_taken_as_it_is() -> None:
         {"time": 260, "type": "viseme", "value": "sil"},
         {"time": 0, "type": "sentence", "start": 0, "end": 3, "value": "Map."},
     ]
-    timing = told_timing(a.Say(visemes=tuple(marks)))
+    timing = read_given_timing(a.Say(visemes=tuple(marks)))
     assert timing is not None
     assert [m.viseme for m in timing.marks] == ["PP", "aa", "PP", "sil"]
     assert timing.marks[1].at == pytest.approx(0.08)
@@ -99,14 +101,14 @@ def test_what_polly_says_is_taken_as_it_is() -> None:
 
 def test_what_azure_says_is_taken_as_it_is() -> None:
     marks = ({"audioOffset": 500_000, "visemeId": 21}, {"audioOffset": 1_500_000, "visemeId": 2}, [0.3, 0])
-    timing = told_timing(a.Say(visemes=marks))
+    timing = read_given_timing(a.Say(visemes=marks))
     assert timing is not None
     assert [(m.at, m.viseme) for m in timing.marks] == [(0.05, "PP"), (0.15, "aa"), (0.3, "sil")]
 
 
 def test_blend_shapes_are_taken_with_their_weights() -> None:
     frames = tuple({"time": n / 60, "weights": {"jawOpen": 0.1 * n, "mouthFunnel": 0.2}} for n in range(6))
-    timing = told_timing(a.Say(visemes=frames))
+    timing = read_given_timing(a.Say(visemes=frames))
     assert timing is not None
     assert [m.viseme for m in timing.marks[:2]] == ["aa", "O"] and timing.marks[4].weight == pytest.approx(
         0.2
@@ -118,7 +120,10 @@ def test_blend_shapes_are_taken_with_their_weights() -> None:
 )
 def test_a_set_is_known_by_its_names(name: str, table: dict[str, str]) -> None:
     marks = tuple([0.1 * n, viseme] for n, viseme in enumerate(table))
-    guessed, named = told_timing(a.Say(visemes=marks)), told_timing(a.Say(visemes=marks, set=name))  # type: ignore[arg-type]
+    guessed, named = (
+        read_given_timing(a.Say(visemes=marks)),
+        read_given_timing(a.Say(visemes=marks, set=name)),
+    )  # type: ignore[arg-type]
     assert guessed == named and guessed is not None
     assert [m.viseme for m in guessed.marks] == list(table.values())
     assert set(table.values()) <= set(VISEMES) and name in SETS
@@ -249,7 +254,7 @@ def test_whatever_is_told_is_understood_or_refused(
 ) -> None:
     ask = a.Say(words=tuple(words), visemes=tuple(marks), duration=duration)
     try:
-        told_timing(ask)
+        read_given_timing(ask)
     except a.RequestError as error:
         assert str(error).startswith(("words", "visemes"))
 

@@ -10,27 +10,27 @@ import pytest
 from msgspec import structs
 
 from metagraph.formats.bvh.file import write_bvh
-from metagraph.formats.clips import read_clips
+from metagraph.formats.clips import read_clip_file
 from metagraph.formats.corpora import Recorded
 from metagraph.formats.store import open_project
 from metagraph.generation.offered import SHIPPED
-from metagraph.graph.edits import place
-from metagraph.graph.expand import connections, size
+from metagraph.graph.edits import place_clips
+from metagraph.graph.expand import count_machine_size, list_connections
 from metagraph.graph.model import Project
 from metagraph.research.exhibits import generated, searching
 from metagraph.research.exhibits import material as materials
-from metagraph.research.exhibits.authoring import figure_1, hours, once, smaller
+from metagraph.research.exhibits.authoring import figure_1, hours, keep_first_uses, smaller
 from metagraph.research.exhibits.exhibit import (
     EXHIBITS,
     NUMBERS,
-    Drawing,
     Exhibit,
+    ExhibitDrawing,
     ExhibitTable,
-    Shown,
-    chosen,
+    MadeExhibit,
+    choose_exhibits,
 )
-from metagraph.research.exhibits.material import Material, actors_rates, made
-from metagraph.research.exhibits.page import data_of, page, text_of
+from metagraph.research.exhibits.material import ExhibitMaterial, actors_rates, make_conversations
+from metagraph.research.exhibits.page import exhibit_as_text, exhibits_as_data, format_exhibits
 from metagraph.research.exhibits.planning import fewest
 from metagraph.research.exhibits.published import FIGURE_6, FIGURE_11, TABLE_1, TABLE_2
 from metagraph.research.exhibits.searching import Scarcity, competing, scarce
@@ -38,16 +38,16 @@ from metagraph.research.exhibits.searching import Scarcity, competing, scarce
 
 @pytest.fixture(scope="module")
 def talks(sample: Project) -> tuple[Recorded, ...]:
-    return made(sample, 2, 32.0)
+    return make_conversations(sample, 2, 32.0)
 
 
 def test_an_exhibit_is_found_by_its_name_and_by_its_paper() -> None:
-    assert chosen([]) == EXHIBITS
-    assert [e.name for e in chosen(["ratings", "growth"])] == ["growth", "ratings"]
-    assert {e.paper for e in chosen(["generator"])} == {"generator"}
-    assert len(chosen(["growth", "meta-graph", "growth"])) == len(chosen(["meta-graph"]))
+    assert choose_exhibits([]) == EXHIBITS
+    assert [e.name for e in choose_exhibits(["ratings", "growth"])] == ["growth", "ratings"]
+    assert {e.paper for e in choose_exhibits(["generator"])} == {"generator"}
+    assert len(choose_exhibits(["growth", "meta-graph", "growth"])) == len(choose_exhibits(["meta-graph"]))
     with pytest.raises(ValueError, match="'grwth'"):
-        chosen(["grwth"])
+        choose_exhibits(["grwth"])
 
 
 def test_what_is_printed_agrees_with_its_own_counts() -> None:
@@ -66,8 +66,8 @@ def test_a_row_of_percentages_comes_of_a_few_counts() -> None:
 
 def test_the_graph_that_figure_1_imagines_has_as_many_connections_as_listing_them_gives() -> None:
     project = figure_1()
-    found = size(project)
-    assert found.connections == len(list(connections(project, project.graphs["arms"])))
+    found = count_machine_size(project)
+    assert found.connections == len(list(list_connections(project, project.graphs["arms"])))
     assert found.states == 9 * (1 + 5 + 5 + 8)
 
 
@@ -81,16 +81,16 @@ def test_clips_that_are_used_twice_are_wired_once_and_that_is_told(few: Path) ->
     graph = project.graphs["arms"]
     stance = next(iter(graph.stances))
     clip = graph.of(stance, "gesture")[0].clip
-    twice = place(project, [clip], "arms", "fidget", stance, None)
-    assert len(list(once(twice).actions())) == len(list(project.actions()))
-    shown = hours(Material(twice))
+    twice = place_clips(project, [clip], "arms", "fidget", stance, None)
+    assert len(list(keep_first_uses(twice).actions())) == len(list(project.actions()))
+    shown = hours(ExhibitMaterial(twice))
     assert "1 further uses" in shown.material and shown.says
 
 
 @pytest.mark.parametrize("exhibit", EXHIBITS, ids=lambda e: e.name)
 def test_of_a_project_without_clips_each_exhibit_is_made_or_says_what_is_missing(exhibit: Exhibit) -> None:
     try:
-        shown = exhibit.make(Material(Project(name="empty")))
+        shown = exhibit.make(ExhibitMaterial(Project(name="empty")))
     except ValueError as error:
         assert str(error)
         return
@@ -104,14 +104,14 @@ def test_of_somebodys_takes_each_exhibit_is_made(
 ) -> None:
     if exhibit.name == "competing":
         monkeypatch.setattr(searching, "SCARCE", (Scarcity("few", 2, 20.0),))
-    shown = exhibit.make(Material(sample, talks, "two talks"))
+    shown = exhibit.make(ExhibitMaterial(sample, talks, "two talks"))
     if exhibit.needs == "model":
         assert "generator" in shown.missing
         return
     assert shown.says and shown.parts and not shown.missing
     assert "two talks" in shown.material or exhibit.needs != "takes" or exhibit.name == "competing"
     for part in shown.parts:
-        if isinstance(part, Drawing):
+        if isinstance(part, ExhibitDrawing):
             ElementTree.fromstring(part.svg)
         else:
             assert all(len(row) == len(part.columns) for row in part.rows)
@@ -121,17 +121,17 @@ def test_a_side_nobody_recorded_and_one_take_alone_spoil_nothing(
     sample: Project, talks: tuple[Recorded, ...]
 ) -> None:
     half = tuple(replace(t, clips=(t.clips[0], None)) for t in talks)
-    assert [a.name for a in Material(sample, half).actors] == ["Speaker 1"]
+    assert [a.name for a in ExhibitMaterial(sample, half).actors] == ["Speaker 1"]
     named = tuple(
         replace(t, conversation=structs.replace(t.conversation, sides=(
             structs.replace(t.conversation.sides[0], name=f"p{n}"), t.conversation.sides[1])))
         for n, t in enumerate(talks)
     )  # fmt: skip
-    assert [a.name for a in Material(sample, named).actors] == ["side 1", "Speaker 2"]
-    none = Material(sample, (replace(talks[0], clips=(None, None)),))
+    assert [a.name for a in ExhibitMaterial(sample, named).actors] == ["side 1", "Speaker 2"]
+    none = ExhibitMaterial(sample, (replace(talks[0], clips=(None, None)),))
     with pytest.raises(ValueError, match="motion"):
         _ = none.actors
-    alone = Material(sample, talks[:1])
+    alone = ExhibitMaterial(sample, talks[:1])
     assert "be held out" in searching.success(alone).missing
     assert "cannot be held out" in searching.search(alone).missing
 
@@ -143,20 +143,22 @@ def test_takes_of_another_figure_are_retargeted_before_a_model_is_judged_on_them
     clip = talks[0].clips[0]
     assert clip is not None
     write_bvh(clip, tmp_path / "other.bvh")  # which has no rest rotations: another skeleton
-    (other,) = read_clips(tmp_path / "other.bvh")
+    (other,) = read_clip_file(tmp_path / "other.bvh")
     assert other.skeleton != clip.skeleton
     talk = replace(talks[0], clips=(other, None))
-    material = Material(sample, (talk,), "one talk", SHIPPED)
-    shown = generated.distance(material)
+    material = ExhibitMaterial(sample, (talk,), "one talk", SHIPPED)
+    shown = generated.exhibit_distances(material)
     assert not shown.missing and shown.numbers["wrists"]["recorded"] > 0
     (note,) = material.notes
     assert note.startswith("1 takes ") and "retargeted" in note
-    plain = generated.distance(Material(sample, (replace(talk, clips=(clip, None)),), "one talk", SHIPPED))
+    plain = generated.exhibit_distances(
+        ExhibitMaterial(sample, (replace(talk, clips=(clip, None)),), "one talk", SHIPPED)
+    )
     assert shown.numbers["wrists"]["recorded"] == pytest.approx(plain.numbers["wrists"]["recorded"], rel=0.05)
 
 
 def test_made_up_conversations_are_the_same_each_time_and_move_at_the_actors_rates(sample: Project) -> None:
-    a, b = (made(sample, 1, 20.0)[0] for _ in range(2))
+    a, b = (make_conversations(sample, 1, 20.0)[0] for _ in range(2))
     assert a.conversation == b.conversation
     assert a.clips[0] is not None and b.clips[0] is not None
     assert (a.clips[0].rotations == b.clips[0].rotations).all()
@@ -168,7 +170,7 @@ def test_made_up_conversations_are_the_same_each_time_and_move_at_the_actors_rat
 def test_where_constraints_compete_some_find_nothing_and_the_best_finds_more(sample: Project) -> None:
     settings = [s for s in searching.SETTINGS if s.name in (searching.ALL, "no constraints")]
     actor = scarce(sample, Scarcity("few", 4, 30.0, adjoining=True), 1)
-    done = searching.evaluate(actor.clips, actor.speech, settings)
+    done = searching.evaluate_search(actor.clips, actor.speech, settings)
     found = {(r.setting, r.search): r.found for r in done.rows}
     cases = done.rows[0].cases
     assert found[searching.ALL, "greedy"] < found[searching.ALL, "exact"] < cases
@@ -180,10 +182,10 @@ def test_adjoining_clauses_leave_no_short_gap_and_rare_answers_are_rarer(sample:
     closed = scarce(sample, Scarcity("x", 1, 40.0, adjoining=True), 1)
     rare = scarce(sample, Scarcity("x", 1, 40.0, rare=3), 1)
 
-    def clauses(actor: materials.Actor) -> list[tuple[float, float]]:
+    def clauses(actor: materials.ExhibitActor) -> list[tuple[float, float]]:
         return [(s.start, s.end) for s in actor.speech[0] if s.kind == "clause"]
 
-    def answers(actor: materials.Actor) -> int:
+    def answers(actor: materials.ExhibitActor) -> int:
         return sum(s.kind != "clause" for s in actor.speech[0])
 
     gaps = [b[0] - a[1] for a, b in zip(clauses(closed), clauses(closed)[1:], strict=False)]
@@ -196,7 +198,7 @@ def test_the_numbers_of_competing_say_who_found_what(
     sample: Project, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(searching, "SCARCE", (Scarcity("few", 3, 20.0),))
-    shown = competing(Material(sample))
+    shown = competing(ExhibitMaterial(sample))
     (few,) = shown.numbers.values()
     best, by_chance = few["all constraints, exact"], few["all constraints, greedy"]
     assert by_chance[0] <= best[0] <= best[1]
@@ -205,10 +207,12 @@ def test_the_numbers_of_competing_say_who_found_what(
 
 def test_a_page_needs_nothing_beside_it_and_escapes_what_it_shows() -> None:
     table = ExhibitTable("<caption>", ("a",), (("<b>",),))
-    shown = Shown("<material>", ("<says>",), (table, Drawing("<drawn>", "<svg/>")), {"n": 1})
-    told = page([(EXHIBITS[0], shown, 1.0), (EXHIBITS[1], Shown("x", missing="<gone>"), 0.0)], {"<k>": "<v>"})
+    shown = MadeExhibit("<material>", ("<says>",), (table, ExhibitDrawing("<drawn>", "<svg/>")), {"n": 1})
+    told = format_exhibits(
+        [(EXHIBITS[0], shown, 1.0), (EXHIBITS[1], MadeExhibit("x", missing="<gone>"), 0.0)], {"<k>": "<v>"}
+    )
     for words in ("caption", "material", "says", "drawn", "gone", "v"):
         assert f"&lt;{words}&gt;" in told and f"<{words}>" not in told
     assert "http" not in told.replace("http://www.w3.org/2000/svg", "") and "src=" not in told
-    assert "missing: <gone>" in text_of(EXHIBITS[1], Shown("x", missing="<gone>"))
-    assert data_of([(EXHIBITS[0], shown, 1.0)])[0]["tables"][0]["rows"] == [["<b>"]]
+    assert "missing: <gone>" in exhibit_as_text(EXHIBITS[1], MadeExhibit("x", missing="<gone>"))
+    assert exhibits_as_data([(EXHIBITS[0], shown, 1.0)])[0]["tables"][0]["rows"] == [["<b>"]]

@@ -7,17 +7,17 @@ from metagraph.errors import FileError
 from metagraph.generation.features import NONE, PARTNER, SELF
 from metagraph.generation.networks import shapes_of, sizes_of
 from metagraph.generation.stored import write_model
-from metagraph.generation.take_files import find_takes, read_takes
+from metagraph.generation.take_files import find_takes, read_take_batch
 from metagraph.research.generation.ablation import (
     CHANGES,
     NAMES,
-    Material,
-    Training,
-    ablate,
-    heard,
+    AblationMaterial,
+    AblationTraining,
+    ablate_features,
+    ablate_model,
     sizes_for,
 )
-from metagraph.research.generation.evaluation import HeldOut, Manner
+from metagraph.research.generation.evaluation import HeldOut, SamplingManner
 from metagraph.research.generation.planted import Planted, write_planted
 from tests.generation.makers import rig, tiny, untrained
 from tests.research.generation.test_evaluation import TAKES
@@ -40,17 +40,17 @@ class Trained:
 
 
 def material(twins=list):
-    return Material(rig(), TAKES[:1], HeldOut(TAKES[1:]), {}, twins)
+    return AblationMaterial(rig(), TAKES[:1], HeldOut(TAKES[1:]), {}, twins)
 
 
 def run(folder, trainer, changes=("whole", "no past", "no activity", "mirrored"), trainings=1):
-    return ablate(
+    return ablate_model(
         folder,
         trainer,
         material(lambda: [replace(TAKES[0], source=replace(TAKES[0].source, mirrored=True))]),
-        Training("flow-vae", tiny("flow-vae"), 1.0, trainings),
+        AblationTraining("flow-vae", tiny("flow-vae"), 1.0, trainings),
         changes=[BY_NAME[c] for c in changes],
-        manner=Manner(seeds=1),
+        manner=SamplingManner(seeds=1),
         draws=2,
     )
 
@@ -104,7 +104,9 @@ def test_what_is_trained_is_not_trained_again(tmp_path):
 def test_another_ablations_folder_is_left_alone(tmp_path):
     run(tmp_path / "a", Trained(), ("whole",))
     with pytest.raises(FileError, match="other seconds"):
-        ablate(tmp_path / "a", Trained(), material(), Training("flow-vae", tiny("flow-vae"), 2.0))
+        ablate_model(
+            tmp_path / "a", Trained(), material(), AblationTraining("flow-vae", tiny("flow-vae"), 2.0)
+        )
     (tmp_path / "b").mkdir()
     (tmp_path / "b" / "thesis.txt").write_text("mine")
     with pytest.raises(FileError, match="other files"):
@@ -115,13 +117,13 @@ def test_another_ablations_folder_is_left_alone(tmp_path):
 
 def test_what_differs_in_sampling_alone_is_trained_once(tmp_path):
     trainer = Trained()
-    found = ablate(
+    found = ablate_model(
         tmp_path,
         trainer,
         material(),
-        Training("matching", tiny("matching"), 1.0),
+        AblationTraining("matching", tiny("matching"), 1.0),
         changes=[BY_NAME["whole"], BY_NAME["no guidance"], BY_NAME["no past"]],
-        manner=Manner(seeds=1),
+        manner=SamplingManner(seeds=1),
         draws=1,
     )
     assert len(trainer.jobs) == 1 and found.left == ("no past",)
@@ -131,8 +133,8 @@ def test_what_differs_in_sampling_alone_is_trained_once(tmp_path):
 def test_without_the_partner_neither_voice_nor_activity_is_left(sample, tmp_path):
     write_planted(sample, tmp_path, Planted(count=1, seconds=20.0))
     files, _ = find_takes([tmp_path])
-    take = read_takes(files).takes[1]
-    alone = heard(BY_NAME["no partner"], take, {f.clip.stem: f for f in files})
+    take = read_take_batch(files).takes[1]
+    alone = ablate_features(BY_NAME["no partner"], take, {f.clip.stem: f for f in files})
     own = take.activity[:, SELF] + take.activity[:, PARTNER] + take.activity[:, NONE] > 0
     assert (alone[:, -4:].sum(1) == 1).all() and own.any()
     assert not alone[:, -4:][:, PARTNER].any()

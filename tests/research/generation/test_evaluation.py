@@ -4,12 +4,19 @@ import numpy as np
 import pytest
 from msgspec.structs import replace as changed
 
-from metagraph.generation.features import RATE, conversation_activity, features, frames_of
-from metagraph.generation.poses import decode, encode, poses_of
-from metagraph.generation.sampler import clip_of, whole
+from metagraph.generation.features import RATE, compute_features, conversation_activity, frames_of
+from metagraph.generation.poses import decode_poses, encode_clip, encode_rotations
+from metagraph.generation.sampler import clip_of, sample_whole
 from metagraph.generation.stored import TakeCard
-from metagraph.generation.takes import Marks, Source, SplitError, Take, split
-from metagraph.research.generation.evaluation import HeldOut, Manner, for_all, generated, judge, unseen
+from metagraph.generation.takes import SplitError, Take, TakeMarks, TakeSource, split_takes
+from metagraph.research.generation.evaluation import (
+    HeldOut,
+    SamplingManner,
+    for_all,
+    generate_poses,
+    judge_on_takes,
+    unseen,
+)
 from tests.generation.makers import babble, conversation, moving, rig, untrained
 
 SECONDS = 12.0
@@ -18,11 +25,11 @@ SECONDS = 12.0
 def take(name: str, seed: int, seconds: float = SECONDS) -> Take:
     own = rig()
     samples = np.stack([babble(seconds, seed), babble(seconds, seed + 50)])
-    poses = poses_of(own, moving(seconds, seed), 25.0)
+    poses = encode_clip(own, moving(seconds, seed), 25.0)
     count = min(len(poses), frames_of(samples.shape[1]))
-    heard = features(samples, conversation_activity(conversation(seconds, seed), 0, count))
-    source = Source(name, (f"motion of {name}", f"sound of {name}"))
-    return Take(source, poses[:count], heard[:count], Marks((2.0, 5.0), (3.0,), (7.0,)))
+    heard = compute_features(samples, conversation_activity(conversation(seconds, seed), 0, count))
+    source = TakeSource(name, (f"motion of {name}", f"sound of {name}"))
+    return Take(source, poses[:count], heard[:count], TakeMarks((2.0, 5.0), (3.0,), (7.0,)))
 
 
 TAKES = (take("a", 1), take("b", 2))
@@ -44,12 +51,12 @@ def test_what_is_judged_is_what_a_user_gets(kind):
     samples = np.stack([babble(4.0, 1), babble(4.0, 2)])
     count = frames_of(samples.shape[1])
     activity = conversation_activity(conversation(4.0), 0, count)
-    clip = whole(model, samples, activity, seed=3, take=0)
-    made = generated(model, features(samples, activity), 3, 0, Manner())
+    clip = sample_whole(model, samples, activity, seed=3, take=0)
+    made = generate_poses(model, compute_features(samples, activity), 3, 0, SamplingManner())
     assert made.shape == (count, model.rig.numbers)
-    whole_rotations = encode(model.rig, clip.rotations)
+    whole_rotations = encode_rotations(model.rig, clip.rotations)
     assert np.allclose(
-        encode(model.rig, clip_of(model, decode(model.rig, made), "again").rotations),
+        encode_rotations(model.rig, clip_of(model, decode_poses(model.rig, made), "again").rotations),
         whole_rotations,
         atol=1e-5,
     )
@@ -62,7 +69,7 @@ def test_takes_that_were_learned_from_are_left_out():
 
 
 def test_a_sound_that_was_learned_from_is_enough_to_be_left_out():
-    other_side = replace(TAKES[1], source=Source("b", ("other motion", "sound of a")))
+    other_side = replace(TAKES[1], source=TakeSource("b", ("other motion", "sound of a")))
     with pytest.raises(SplitError, match="learned from"):
         unseen(taught([TAKES[0]]), [other_side])
 
@@ -74,7 +81,7 @@ def test_a_model_is_not_judged_on_what_it_knows():
 
 def test_of_one_recording_the_block_that_was_held_out_is_taken():
     long = take("long", 3, 60.0)
-    learned, held = split([long])
+    learned, held = split_takes([long])
     fresh, left = unseen(taught(learned, held), [long])
     assert [(t.source.start, t.seconds) for t in fresh] == [(t.source.start, t.seconds) for t in held]
     assert not left
@@ -91,11 +98,11 @@ def test_several_models_share_what_none_has_seen():
 
 def test_the_table_has_the_truth_what_stands_beside_it_and_each_model():
     told = []
-    judged = judge(
+    judged = judge_on_takes(
         rig(),
         {"one": untrained("flow-vae")},
         HeldOut(TAKES, floor=[t.poses[::-1] for t in TAKES]),
-        manner=Manner(seeds=2),
+        manner=SamplingManner(seeds=2),
         draws=3,
         progress=lambda *x: told.append(x),
     )
@@ -109,20 +116,22 @@ def test_the_table_has_the_truth_what_stands_beside_it_and_each_model():
 
 
 def test_what_a_model_hears_can_be_changed():
-    deaf = judge(
+    deaf = judge_on_takes(
         rig(),
         {"one": untrained("cvae")},
         HeldOut(TAKES[:1]),
-        manner=Manner(seeds=1),
+        manner=SamplingManner(seeds=1),
         draws=1,
         hear=lambda _, t: np.repeat(t.features[:1], len(t.features), 0),
     )
-    hears = judge(rig(), {"one": untrained("cvae")}, HeldOut(TAKES[:1]), manner=Manner(seeds=1), draws=1)
+    hears = judge_on_takes(
+        rig(), {"one": untrained("cvae")}, HeldOut(TAKES[:1]), manner=SamplingManner(seeds=1), draws=1
+    )
     assert np.abs(deaf.made["one"][0][0].poses - hears.made["one"][0][0].poses).max() > 1e-4
 
 
 def test_nothing_to_judge_is_refused_in_words():
     with pytest.raises(ValueError, match="no take"):
-        judge(rig(), {}, HeldOut(()))
+        judge_on_takes(rig(), {}, HeldOut(()))
     with pytest.raises(ValueError, match="1 to 100 seeds"):
-        judge(rig(), {}, HeldOut(TAKES), manner=Manner(seeds=0))
+        judge_on_takes(rig(), {}, HeldOut(TAKES), manner=SamplingManner(seeds=0))

@@ -7,19 +7,19 @@ import pytest
 
 from metagraph.generation.features import PARTNER, SELF
 from metagraph.generation.landmarks import LANDMARKS, landmarks_of
-from metagraph.generation.poses import poses_of
-from metagraph.generation.statistics import Performance, mean_landmarks
+from metagraph.generation.poses import encode_clip
+from metagraph.generation.statistics import MotionSample, mean_landmarks
 from metagraph.research.generation import figures
 from tests.generation.makers import moving, rig
 
 
-def performance(seconds: float = 8.0, seed: int = 1) -> Performance:
+def performance(seconds: float = 8.0, seed: int = 1) -> MotionSample:
     own = rig()
-    poses = poses_of(own, moving(seconds, seed), 25.0)
+    poses = encode_clip(own, moving(seconds, seed), 25.0)
     activity = np.zeros((len(poses), 4))
     activity[: len(poses) // 2, SELF] = 1
     activity[len(poses) // 2 :, PARTNER] = 1
-    return Performance(landmarks_of(own, poses), poses, activity)
+    return MotionSample(landmarks_of(own, poses), poses, activity)
 
 
 def test_whiskers_end_at_values_and_what_is_beyond_stands_alone():
@@ -34,26 +34,26 @@ def test_distances_are_in_centimetres_from_the_mean():
     one = performance()
     mean = mean_landmarks([one])
     moved = replace(one, landmarks=np.repeat(mean[None], len(one), 0) + [0.03, 0.04, 0.0])
-    assert figures.distances([moved], mean) == pytest.approx(5.0)
+    assert figures.landmark_distances([moved], mean) == pytest.approx(5.0)
 
 
 def test_changes_are_split_by_who_speaks():
     one = performance()
     mean = mean_landmarks([one])
-    own, partner = (figures.changes([one], mean, who) for who in (SELF, PARTNER))
+    own, partner = (figures.distance_changes([one], mean, who) for who in (SELF, PARTNER))
     assert len(own) + len(partner) == len(one) - 1
-    grown = np.diff(figures.distances([one], mean), axis=0) * 25
+    grown = np.diff(figures.landmark_distances([one], mean), axis=0) * 25
     assert np.allclose(np.concatenate([own, partner]), grown)
 
 
 def test_every_drawing_is_xml_within_its_frame():
     one, other = performance(), performance(seed=2)
     mean = mean_landmarks([one])
-    far = {"true": figures.distances([one], mean), "<b>": figures.distances([other], mean)}
+    far = {"true": figures.landmark_distances([one], mean), "<b>": figures.landmark_distances([other], mean)}
     for drawing in (
-        figures.over_time(one, mean),
-        figures.boxes(far, "cm"),
-        figures.overlaid({"true": one, "<b>": other}),
+        figures.draw_over_time(one, mean),
+        figures.draw_boxes(far, "cm"),
+        figures.draw_overlaid({"true": one, "<b>": other}),
     ):
         root = ElementTree.fromstring(drawing)
         assert root.tag.endswith("svg")
@@ -66,18 +66,20 @@ def test_every_drawing_is_xml_within_its_frame():
 def test_a_box_of_each_landmark_and_system_is_drawn():
     one = performance()
     mean = mean_landmarks([one])
-    drawing = figures.boxes({"a": figures.distances([one], mean), "none": np.zeros((0, 9))}, "cm")
+    drawing = figures.draw_boxes(
+        {"a": figures.landmark_distances([one], mean), "none": np.zeros((0, 9))}, "cm"
+    )
     assert drawing.count("<polygon") == len(LANDMARKS)
-    assert "nothing to draw" in figures.boxes({}, "cm")
+    assert "nothing to draw" in figures.draw_boxes({}, "cm")
 
 
 def test_poses_are_drawn_once_a_second_from_the_front_whichever_way_somebody_looks():
     one = performance(8.0)
-    assert figures.overlaid({"true": one}).count("<path") == 9
+    assert figures.draw_overlaid({"true": one}).count("<path") == 9
     quarter = np.array([[0.0, 0, 1], [0, 1, 0], [-1, 0, 0]])
     turned = replace(one, landmarks=one.landmarks @ quarter.T)
     wide = [
-        np.ptp([float(x) for x in re.findall(r"M([\d.]+) ", figures.overlaid({"a": m}))])
+        np.ptp([float(x) for x in re.findall(r"M([\d.]+) ", figures.draw_overlaid({"a": m}))])
         for m in (one, turned)
     ]
     assert wide[1] == pytest.approx(wide[0], rel=0.02)

@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 
 from metagraph.graph.conversation.model import Segment
-from metagraph.research.motion_graph.extending_evaluation import held_out, news_of, row_of, rows_of, table_of
+from metagraph.research.motion_graph.extending_evaluation import (
+    hold_out_takes,
+    news_of,
+    rows_as_text,
+    score_extending,
+    score_paths,
+)
 from metagraph.synthesis.constraints import HeardStates
 from metagraph.synthesis.search.path import Path
 from metagraph.synthesis.states import SynthesisError
@@ -29,25 +35,25 @@ def test_strokes_are_counted_by_how_much_later_they_come() -> None:
     sound = HeardStates(np.full(300, 2, np.uint8), peaks)
     said = [Segment("clause", t, t + 1.0, t + 1.0) for t in (0.0, 2.0, 4.0, 8.0)]  # at 1, 3, 5 and 9 s
     path = Path(np.arange(300), 0.0, np.zeros(0, int))
-    row = row_of("some", [(graph.states, sound, said, path)])
+    row = score_paths("some", [(graph.states, sound, said, path)])
     assert row.met == 0.5 and row.answered == 0.75 and row.off == 0.0 and row.strokes == 0.75
     assert row.jumps == 0.0 and row.kinds == pytest.approx(0.4)
     silent = HeardStates(np.ones(300, np.uint8), np.zeros(300, bool))
-    none = row_of("none", [(graph.states, silent, said, path)])
-    assert none.met == none.answered == none.chance == 0.0 and "none" in table_of([none])
+    none = score_paths("none", [(graph.states, silent, said, path)])
+    assert none.met == none.answered == none.chance == 0.0 and "none" in rows_as_text([none])
 
 
 def test_takes_are_held_out_and_driven_and_the_best_paths_stand_beside() -> None:
     takes, said = talkers()
-    rows = list(rows_of(held_out(takes[:3], said[:3])[:1], ahead=(None, 1.0)))
+    rows = list(score_extending(hold_out_takes(takes[:3], said[:3])[:1], ahead=(None, 1.0)))
     assert [r.how for r in rows] == ["heard", "told 1 s ahead", "all known"]
     heard, told, best = rows
     assert heard.met < told.met and told.met > 0.6 and best.met > 0.6 and best.searches == 0
     assert told.searches <= 10.5 and told.work > 0 and told.stresses == heard.stresses > 5
-    assert len(table_of(rows).splitlines()) == 4
+    assert len(rows_as_text(rows).splitlines()) == 4
 
 
 def test_fewer_than_two_takes_cannot_be_held_out() -> None:
     takes, said = talkers()
     with pytest.raises(SynthesisError, match="at least two takes"):
-        held_out(takes[:1], said[:1])
+        hold_out_takes(takes[:1], said[:1])

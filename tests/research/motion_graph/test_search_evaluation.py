@@ -13,18 +13,18 @@ import pytest
 
 from metagraph.graph.conversation.model import SOUNDS, Segment
 from metagraph.motion.clip import Clip
-from metagraph.research.motion_graph.evaluation_table import csv_of, table_of
+from metagraph.research.motion_graph.evaluation_table import cases_as_csv, cases_as_text
 from metagraph.research.motion_graph.search_evaluation import (
     SETTINGS,
     GraphMaking,
     Setting,
     Trials,
-    cut,
-    evaluate,
-    windows,
-    without,
+    cut_segments,
+    evaluate_search,
+    hold_out_states,
+    list_case_windows,
 )
-from metagraph.synthesis.states import SynthesisError, states_of, with_velocity
+from metagraph.synthesis.states import SynthesisError, read_states, with_velocity
 from tests.synthesis.talking import speech, talking
 
 Takes = tuple[list[Clip], list[list[Segment]]]
@@ -49,21 +49,25 @@ def first(clip: Clip, frames: int) -> Clip:
 
 
 def test_windows_are_every_fourteen_seconds_and_whole() -> None:
-    assert windows(58) == [(0, 15), (14, 15), (28, 15), (42, 15)]
-    assert windows(56.9) == windows(43) == [(0, 15), (14, 15), (28, 15)]
-    assert windows(15) == [(0, 15)] and windows(9) == [(0, 9)] and windows(0.5) == []
+    assert list_case_windows(58) == [(0, 15), (14, 15), (28, 15), (42, 15)]
+    assert list_case_windows(56.9) == list_case_windows(43) == [(0, 15), (14, 15), (28, 15)]
+    assert (
+        list_case_windows(15) == [(0, 15)]
+        and list_case_windows(9) == [(0, 9)]
+        and list_case_windows(0.5) == []
+    )
 
 
 def test_the_papers_number_of_cases_comes_of_its_takes() -> None:
     # 17 takes of 100 s, seven windows each: 119 cases; the paper's 116 of takes of about that length.
-    assert sum(len(windows(100)) for _ in range(17)) == 119
+    assert sum(len(list_case_windows(100)) for _ in range(17)) == 119
 
 
 def test_speech_is_cut_in_the_windows_own_time() -> None:
     said = [Segment("clause", 1, 3, 1.5), Segment("clause", 9, 12, 11.5, "so"), Segment("response", 20, 21)]
-    assert cut(said, 2, 9) == [Segment("clause", 0, 1), Segment("clause", 7, 9, None, "so")]
-    assert cut(said, 2, 10) == [Segment("clause", 0, 1), Segment("clause", 7, 10, 9.5, "so")]
-    assert cut(said, 3, 6) == []
+    assert cut_segments(said, 2, 9) == [Segment("clause", 0, 1), Segment("clause", 7, 9, None, "so")]
+    assert cut_segments(said, 2, 10) == [Segment("clause", 0, 1), Segment("clause", 7, 10, 9.5, "so")]
+    assert cut_segments(said, 3, 6) == []
 
 
 def test_there_is_a_setting_without_each_constraint_without_peaks_and_with_other_tolerances() -> None:
@@ -77,7 +81,7 @@ def test_there_is_a_setting_without_each_constraint_without_peaks_and_with_other
 
 def test_each_take_is_held_out_and_both_searches_find_its_speech_in_the_others(takes: Takes) -> None:
     told: list[tuple[int, int]] = []
-    found = evaluate(*takes, settings=SOME, progress=lambda n, total: told.append((n, total)))
+    found = evaluate_search(*takes, settings=SOME, progress=lambda n, total: told.append((n, total)))
     assert found.whole and told[-1] == (12, 12) and len(found.cases) == 3 * 1 * 2 * 2
     assert [g.without for g in found.graphs] == ["take 0", "take 1", "take 2"]
     assert all(g.states == 2 * 24 * 30 and 0 < g.kept <= g.states and g.transitions for g in found.graphs)
@@ -91,15 +95,15 @@ def test_each_take_is_held_out_and_both_searches_find_its_speech_in_the_others(t
 
 
 def test_rows_are_told_as_a_table_and_cases_as_csv(takes: Takes) -> None:
-    found = evaluate(*takes, settings=SOME, trials=Trials(("greedy",)))
-    lines = list(csv.DictReader(io.StringIO(csv_of(found.cases))))
+    found = evaluate_search(*takes, settings=SOME, trials=Trials(("greedy",)))
+    lines = list(csv.DictReader(io.StringIO(cases_as_csv(found.cases))))
     assert (
         len(lines) == 6
         and lines[0]["take"] == "take 0"
         and lines[0]["found"] == "1"
         and float(lines[0]["length"]) == 15
     )
-    text = table_of(found)
+    text = cases_as_text(found)
     assert (
         "3 graphs, each without one take" in text
         and "all constraints" in text
@@ -112,7 +116,7 @@ def test_speech_that_no_other_take_has_is_not_found_and_says_where(takes: Takes)
     clips, said = takes
     only = [said[0], *([s for s in some if s.kind != "response"] for some in said[1:])]
     only[0] = [Segment("response", 2.0, 4.0)]
-    found = evaluate(clips, only, settings=(SETTINGS[0], SETTINGS[2]))
+    found = evaluate_search(clips, only, settings=(SETTINGS[0], SETTINGS[2]))
     mine = [c for c in found.cases if c.take == "take 0"]
     assert [c.found for c in mine][:2] == [False, False] and mine[3].found
     assert "no motion goes with this speech beyond" in mine[0].why
@@ -122,7 +126,7 @@ def test_speech_that_no_other_take_has_is_not_found_and_says_where(takes: Takes)
 
 def test_it_can_be_cancelled_and_keeps_what_there_is(takes: Takes) -> None:
     seen: list[int] = []
-    found = evaluate(
+    found = evaluate_search(
         *takes,
         settings=SOME,
         trials=Trials(("greedy",)),
@@ -130,51 +134,55 @@ def test_it_can_be_cancelled_and_keeps_what_there_is(takes: Takes) -> None:
         cancelled=lambda: len(seen) >= 3,
     )
     assert not found.whole and len(found.cases) == 3
-    assert "cancelled" in table_of(found)
-    none = evaluate(*takes, cancelled=lambda: True)
+    assert "cancelled" in cases_as_text(found)
+    none = evaluate_search(*takes, cancelled=lambda: True)
     assert not none.whole and none.cases == () and none.rows == []
 
 
 def test_takes_without_which_there_is_no_graph_find_nothing_and_say_why(takes: Takes) -> None:
     clips, said = takes
     short = [first(c, 3) for c in clips[1:]]
-    found = evaluate([clips[0], *short], [said[0], [], []], settings=SETTINGS[:1], making=GraphMaking(k=4))
+    found = evaluate_search(
+        [clips[0], *short], [said[0], [], []], settings=SETTINGS[:1], making=GraphMaking(k=4)
+    )
     assert found.graphs == () and [c.found for c in found.cases] == [False, False]
-    assert "longer takes" in found.cases[0].why and "0/1" in table_of(found)
+    assert "longer takes" in found.cases[0].why and "0/1" in cases_as_text(found)
 
 
 def test_bad_input_is_told(takes: Takes) -> None:
     clips, said = takes
     with pytest.raises(SynthesisError, match="3 takes, but speech for 2"):
-        evaluate(clips, said[:2])
+        evaluate_search(clips, said[:2])
     with pytest.raises(SynthesisError, match="at least two takes"):
-        evaluate(clips[:1], said[:1])
+        evaluate_search(clips[:1], said[:1])
     one = first(clips[1], 1)
     with pytest.raises(SynthesisError, match="one frame"):
-        evaluate([clips[0], one], said[:2])
+        evaluate_search([clips[0], one], said[:2])
     brief = [first(c, 20) for c in clips]
     with pytest.raises(SynthesisError, match="longer takes"):
-        evaluate(brief, [[], [], []])
+        evaluate_search(brief, [[], [], []])
 
 
 def test_speech_longer_than_its_take_and_none_at_all_are_fine(takes: Takes) -> None:
     clips, said = takes
     beyond = [*said[0], Segment("clause", 23.5, 60.0, 40.0)]
     free = next(s for s in SETTINGS if s.name == "free jumps")
-    found = evaluate(clips, [beyond, [], said[2]], settings=[free], trials=Trials(("greedy",)))
+    found = evaluate_search(clips, [beyond, [], said[2]], settings=[free], trials=Trials(("greedy",)))
     assert len(found.cases) == 3 and not found.cases[1].why.startswith("no motion"), "silence is idle"
 
 
 def test_takes_of_other_rates_are_brought_to_thirty_frames_a_second(takes: Takes) -> None:
     clips, said = takes
     fast = talking("fast", said[1], 24, 1, fps=60.0)
-    found = evaluate([clips[0], fast, clips[2]], said, settings=SETTINGS[:1], trials=Trials(("greedy",)))
+    found = evaluate_search(
+        [clips[0], fast, clips[2]], said, settings=SETTINGS[:1], trials=Trials(("greedy",))
+    )
     assert [c.length for c in found.cases] == [15, 15, 15] and abs(found.graphs[0].states - 2 * 24 * 30) <= 2
 
 
 def test_the_states_of_all_but_one_are_those_of_the_others(takes: Takes) -> None:
-    every, rest = states_of(takes[0]), states_of([takes[0][0], takes[0][2]])
-    mine = without(every, 1)
+    every, rest = read_states(takes[0]), read_states([takes[0][0], takes[0][2]])
+    mine = hold_out_states(every, 1)
     assert np.array_equal(mine.places, rest.places) and np.array_equal(mine.velocities, rest.velocities)
     assert mine.starts.tolist() == rest.starts.tolist() and mine.velocity == pytest.approx(
         with_velocity(rest, None).velocity

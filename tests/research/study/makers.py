@@ -31,11 +31,11 @@ def small() -> Project:
     for stance in ("sides", "hips"):
         project = edits.add_stance(project, LAYER, stance, [ids[f"{stance}_idle"]])
     sides, hips = project.graphs[LAYER].stances
-    project = edits.place(project, [ids["sides_wave"], ids["sides_shrug"]], LAYER, "gesture", sides)
-    project = edits.place(project, [ids["sides_scratch"]], LAYER, "fidget", sides)
-    project = edits.place(project, [ids["hips_point"]], LAYER, "gesture", hips)
-    project = edits.place(project, [ids["sides_to_hips"]], LAYER, "transition", sides, hips)
-    return edits.place(project, [ids["hips_to_sides"]], LAYER, "transition", hips, sides)
+    project = edits.place_clips(project, [ids["sides_wave"], ids["sides_shrug"]], LAYER, "gesture", sides)
+    project = edits.place_clips(project, [ids["sides_scratch"]], LAYER, "fidget", sides)
+    project = edits.place_clips(project, [ids["hips_point"]], LAYER, "gesture", hips)
+    project = edits.place_clips(project, [ids["sides_to_hips"]], LAYER, "transition", sides, hips)
+    return edits.place_clips(project, [ids["hips_to_sides"]], LAYER, "transition", hips, sides)
 
 
 def row(who: str, condition: str, task: str, seconds: float, index: int, **more: object) -> AnalysisRow:

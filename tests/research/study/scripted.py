@@ -17,7 +17,7 @@ from pathlib import Path
 from metagraph.formats.project.journal import Journal, journal_path
 from metagraph.formats.store import save_project
 from metagraph.graph import edits
-from metagraph.research.study.plan.task_projects import make, reopen, write
+from metagraph.research.study.plan.task_projects import make_task_project, reopen, write_task_project
 from metagraph.research.study.sitting import Sitting
 from metagraph.research.study.study_plan import read_study
 
@@ -35,7 +35,7 @@ def go_through(study_path: Path, participant: str) -> None:
             sitting.end()
             continue
         if not sitting.now.begun:
-            write(make(study, phase.clips, "work"), sitting.file)
+            write_task_project(make_task_project(study, phase.clips, "work"), sitting.file)
             sitting.begin()
         project = reopen(sitting.file)[0].project
         journal = Journal(journal_path(sitting.file), sitting.file)

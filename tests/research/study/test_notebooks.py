@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from metagraph.research.study.analysis.reading import collect
-from metagraph.research.study.analysis.results import Results, analyse
-from metagraph.research.study.report import figures, write_report
+from metagraph.research.study.analysis.reading import collect_study
+from metagraph.research.study.analysis.results import Results, analyse_study
+from metagraph.research.study.report import draw_study_figures, write_study_report
 from metagraph.research.study.simulation.files import write_study
 from metagraph.research.study.simulation.people import Truth
 
@@ -28,11 +28,11 @@ ROOT = Path(__file__).resolve().parents[3]
 def results(tmp_path_factory: pytest.TempPathFactory) -> Results:
     folder = write_study(tmp_path_factory.mktemp("made") / "study", Truth(participants=6)).folder
     shutil.rmtree(folder / "data" / "P06")
-    return analyse(collect(folder, jumps=False))
+    return analyse_study(collect_study(folder, jumps=False))
 
 
 def test_python_draws_every_figure_as_the_report_has_it(results: Results, tmp_path: Path) -> None:
-    write_report(results, tmp_path / "report")
+    write_study_report(results, tmp_path / "report")
     cells = json.loads((tmp_path / "report" / "notebooks" / "figures.ipynb").read_text())["cells"]
     program = "\n\n".join("".join(c["source"]) for c in cells if c["cell_type"] == "code")
     env = {
@@ -45,7 +45,7 @@ def test_python_draws_every_figure_as_the_report_has_it(results: Results, tmp_pa
         [sys.executable, "-c", program], env=env, capture_output=True, text=True, timeout=120
     )
     assert done.returncode == 0, done.stderr
-    for name in figures(results):
+    for name in draw_study_figures(results):
         one, other = ((tmp_path / where / f"{name}.svg").read_text() for where in ("report/figures", "again"))
         assert [*unlike(one, other)] == [], name
 
@@ -61,12 +61,12 @@ def unlike(one: str, other: str):
 
 @pytest.mark.skipif(shutil.which("Rscript") is None, reason="R is not installed")
 def test_r_draws_every_figure(results: Results, tmp_path: Path) -> None:
-    write_report(results, tmp_path / "report")
+    write_study_report(results, tmp_path / "report")
     script = tmp_path / "report" / "notebooks" / "figures.R"
     done = subprocess.run(
         ["Rscript", str(script), str(tmp_path / "report"), str(tmp_path / "again")],
         capture_output=True, text=True, timeout=300,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    assert {p.stem for p in (tmp_path / "again").glob("*.pdf")} == set(figures(results))
+    assert {p.stem for p in (tmp_path / "again").glob("*.pdf")} == set(draw_study_figures(results))
     assert f"ratio {results.time.ratio.value:.3f}" in done.stdout if results.time else True

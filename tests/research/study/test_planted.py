@@ -13,11 +13,11 @@ from typing import Any
 
 import pytest
 
-from metagraph.research.study.analysis.reading import collect
-from metagraph.research.study.analysis.results import analyse
-from metagraph.research.study.logs.log import read
-from metagraph.research.study.report import page
-from metagraph.research.study.reports.cells import gathered
+from metagraph.research.study.analysis.reading import collect_study
+from metagraph.research.study.analysis.results import analyse_study
+from metagraph.research.study.logs.log import read_log
+from metagraph.research.study.report import format_study_page
+from metagraph.research.study.reports.cells import gather_missing
 from metagraph.research.study.reports.tables import participants
 from metagraph.research.study.simulation.files import write_study
 from metagraph.research.study.simulation.people import Truth
@@ -44,7 +44,7 @@ def rewrite(log: Path, change: Callable[[list[dict[str, Any]]], None]) -> None:
 
 
 def test_every_way_of_reckoning_recovers_what_was_put_in(made: Path) -> None:
-    found = analyse(collect(made, jumps=False))
+    found = analyse_study(collect_study(made, jumps=False))
     assert found.time is not None and found.sensitivity is not None and found.sensitivity.mixed is not None
     assert found.time.ratio.holds(2.3)
     ways = {w.name: w.ratio for w in found.sensitivity.ways}
@@ -60,7 +60,7 @@ def test_every_way_of_reckoning_recovers_what_was_put_in(made: Path) -> None:
 
 def test_one_person_with_other_sizes_is_left_out_and_the_unit_stays(study: Path) -> None:
     """The larger task in the one condition, the smaller in the other: nothing can be compared within them."""
-    before = analyse(collect(study, jumps=False))
+    before = analyse_study(collect_study(study, jumps=False))
 
     def unfinish(events: list[dict[str, Any]]) -> None:
         for e in events:
@@ -69,7 +69,7 @@ def test_one_person_with_other_sizes_is_left_out_and_the_unit_stays(study: Path)
                 e["why"] = "broken off"
 
     rewrite(study / "data" / "P05" / "log.jsonl", unfinish)
-    found = analyse(collect(study, jumps=False))
+    found = analyse_study(collect_study(study, jumps=False))
     assert before.time is not None and found.time is not None
     assert (found.time.unit, found.time.ratio.n, found.time.left_out) == ("task", 15, ("P05",))
     assert any("P05" in words for words in found.time.cautions)
@@ -91,11 +91,11 @@ def test_a_sitting_of_63_minutes_under_a_limit_of_40_is_told(study: Path) -> Non
         stretched(events, {e["n"]: more * k for k, e in enumerate(inner, 1)})
 
     rewrite(study / "data" / "P03" / "log.jsonl", stretch)
-    found = analyse(collect(study, jumps=False))
+    found = analyse_study(collect_study(study, jumps=False))
     assert found.sensitivity is not None
     odd = " ".join(found.sensitivity.odd)
     assert "P03, large (" in odd and "limit of 40" in odd and "others" in odd
-    assert "limit of 40" in page(found)
+    assert "limit of 40" in format_study_page(found)
 
 
 def stretched(events: list[dict[str, Any]], later: dict[int, float]) -> None:
@@ -111,12 +111,12 @@ def stretched(events: list[dict[str, Any]], later: dict[int, float]) -> None:
 
 
 def test_a_swapped_reference_and_a_changed_clip_are_told(study: Path) -> None:
-    before = collect(study, jumps=False)
+    before = collect_study(study, jumps=False)
     assert before.missing == ()
     shutil.copy(study / "small.metagraph.yaml", study / "large.metagraph.yaml")
     clip = next((study / "clips").iterdir())
     clip.write_bytes(clip.read_bytes() + b"\n")
-    told = collect(study, jumps=False).missing
+    told = collect_study(study, jumps=False).missing
     for name in ("large.metagraph.yaml", f"clips/{clip.name}"):
         assert any(f"'{name}'" in words for words in told), name
 
@@ -126,7 +126,7 @@ def test_another_consent_and_other_questions_are_told(study: Path) -> None:
     path.write_text(
         path.read_text().replace("questionnaires: [sus, tlx]", "questionnaires: [sus]\nconsent: Else.")
     )
-    told = collect(study, jumps=False).missing
+    told = collect_study(study, jumps=False).missing
     for what in ("consent", "questions"):
         assert any(words.startswith("everybody: ") and what in words for words in told), what
 
@@ -137,13 +137,13 @@ def test_halved_seconds_of_the_program_are_told(study: Path) -> None:
             e["mono"] /= 2
 
     rewrite(study / "data" / "P02" / "log.jsonl", halve)
-    told = collect(study, jumps=False).missing
+    told = collect_study(study, jumps=False).missing
     assert [w for w in told if w.startswith("P02: the clocks disagree all along events 0 to")]
 
 
 def test_an_old_log_says_that_nothing_was_frozen(study: Path) -> None:
     rewrite(study / "data" / "P01" / "log.jsonl", lambda events: events.pop(1))
-    told = collect(study, jumps=False).missing
+    told = collect_study(study, jumps=False).missing
     assert any(words.startswith("P01: the log does not say which references and clips") for words in told)
 
 
@@ -153,15 +153,17 @@ def test_what_vanished_is_told_by_condition(study: Path) -> None:
         stretched(events, {events[at]["n"]: 400.0})
 
     rewrite(study / "data" / "P01" / "log.jsonl", wait)
-    first = read(study / "data" / "P01" / "log.jsonl").tasks()[0]
-    found = analyse(collect(study, jumps=False))
+    first = read_log(study / "data" / "P01" / "log.jsonl").tasks()[0]
+    found = analyse_study(collect_study(study, jumps=False))
     lost = found.vanished[first.condition]
     assert (lost.count, round(lost.longest, -2)) == (1, 400) and lost.seconds == pytest.approx(
         400 / 32, rel=0.1
     )
     ways = {w.name: w.ratio.value for w in found.sensitivity.ways} if found.sensitivity else {}
     assert ways["no gap taken off"] != pytest.approx(ways["gaps of more than 120 s off"], rel=1e-3)
-    assert "Time that is not counted" in page(found) and "a task, mean" in page(found)
+    assert "Time that is not counted" in format_study_page(found) and "a task, mean" in format_study_page(
+        found
+    )
 
 
 def test_time_outs_count_as_bounds_and_wrong_machines_as_not_yet_right(study: Path) -> None:
@@ -176,7 +178,7 @@ def test_time_outs_count_as_bounds_and_wrong_machines_as_not_yet_right(study: Pa
 
     for who in ("P02", "P04", "P06"):
         rewrite(study / "data" / who / "log.jsonl", cut)
-    found = analyse(collect(study, jumps=False))
+    found = analyse_study(collect_study(study, jumps=False))
     assert found.time is not None and found.sensitivity is not None
     ways = {w.name: w.ratio for w in found.sensitivity.ways}
     assert ways["time-outs as censored"].value > found.time.ratio.value
@@ -187,8 +189,8 @@ def test_time_outs_count_as_bounds_and_wrong_machines_as_not_yet_right(study: Pa
 def test_what_is_missing_of_many_is_said_once(study: Path) -> None:
     for n in range(3, 17):
         shutil.rmtree(study / "data" / f"P{n:02}")
-    found = collect(study, jumps=False)
+    found = collect_study(study, jumps=False)
     assert len(found.missing) == 14
-    lines = gathered(found.missing)
+    lines = gather_missing(found.missing)
     assert len(lines) == 1 and lines[0].startswith("14 times: has not begun (P03, P04,")
-    assert "did not begin: 14" in page(analyse(found))
+    assert "did not begin: 14" in format_study_page(analyse_study(found))

@@ -10,11 +10,11 @@ from xml.etree import ElementTree
 
 import pytest
 
-from metagraph.research.study.analysis.reading import collect
-from metagraph.research.study.analysis.results import Results, analyse
-from metagraph.research.study.report import chance, page, summary, write_report
+from metagraph.research.study.analysis.reading import collect_study
+from metagraph.research.study.analysis.results import Results, analyse_study
+from metagraph.research.study.report import chance, format_study_page, summarise_study, write_study_report
 from metagraph.research.study.reports import plots
-from metagraph.research.study.reports.tables import cell, tables
+from metagraph.research.study.reports.tables import cell, study_tables
 from metagraph.research.study.simulation.files import write_study
 from metagraph.research.study.simulation.people import Truth
 from metagraph.research.study.statistics.small_samples import Estimate
@@ -23,13 +23,13 @@ from tests.research.study.makers import four
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory: pytest.TempPathFactory) -> Results:
-    return analyse(
-        collect(write_study(tmp_path_factory.mktemp("made") / "study", Truth(participants=6)).folder)
+    return analyse_study(
+        collect_study(write_study(tmp_path_factory.mktemp("made") / "study", Truth(participants=6)).folder)
     )
 
 
 def test_the_page_is_whole_and_needs_nothing_beside_it(results: Results) -> None:
-    text = page(results)
+    text = format_study_page(results)
     for title in (
         "Time",
         "Order",
@@ -51,7 +51,7 @@ def test_the_page_is_whole_and_needs_nothing_beside_it(results: Results) -> None
 
 
 def test_every_plot_is_drawn_whole(results: Results) -> None:
-    text = page(results)
+    text = format_study_page(results)
     found = re.findall(r"<svg.*?</svg>", text)
     assert len(found) == 7
     for svg in found:
@@ -66,7 +66,7 @@ def test_every_plot_is_drawn_whole(results: Results) -> None:
 
 def test_the_same_data_give_the_same_bytes(results: Results, tmp_path: Path) -> None:
     for folder in ("one", "two"):
-        written = write_report(results, tmp_path / folder)
+        written = write_study_report(results, tmp_path / folder)
         assert len(written) == 8 + 7 + 2
     for path in written:
         assert path.read_bytes() == (tmp_path / "one" / path.relative_to(tmp_path / "two")).read_bytes()
@@ -74,13 +74,13 @@ def test_the_same_data_give_the_same_bytes(results: Results, tmp_path: Path) -> 
 
 def test_words_from_files_are_no_markup() -> None:
     data = replace(four(), title="<b>&'", missing=("<script>",), tasks={"a": "<i>a", "b": "B"})
-    text = page(analyse(data))
+    text = format_study_page(analyse_study(data))
     assert "<script>" not in text and "<b>&" not in text and "<i>a" not in text
     assert "&lt;script&gt;" in text
 
 
 def test_tables_have_a_row_for_each(results: Results) -> None:
-    found = {name: list(csv.DictReader(text.splitlines())) for name, text in tables(results).items()}
+    found = {name: list(csv.DictReader(text.splitlines())) for name, text in study_tables(results).items()}
     assert len(found["participants.csv"]) == 6
     assert len(found["tasks.csv"]) == 24
     assert len(found["clips.csv"]) == 6 * 2 * (9 + 16)
@@ -107,7 +107,7 @@ def test_cells_say_what_is_not_known() -> None:
 
 
 def test_the_first_sentence_is_the_finding(results: Results) -> None:
-    first = summary(results)[0]
+    first = summarise_study(results)[0]
     told = r"[\d.]+ times as long as with the meta-graph \(95 % interval [\d.]+ to [\d.]+, 6 people\)\."
     assert re.fullmatch(f"Working on the state machine by hand took {told}", first)
 
@@ -136,11 +136,11 @@ def test_times_are_written_as_people_read_them() -> None:
 def test_plots_of_one_person_and_of_equal_values_have_axes() -> None:
     alone = Estimate(5.0, None, None, 1)
     for svg in (
-        plots.paired([("P1", 5.0, 5.0)], (alone, alone), ("a", "b")),
+        plots.plot_paired([("P1", 5.0, 5.0)], (alone, alone), ("a", "b")),
         plots.ratios([("all", alone)]),
-        plots.curves({"meta": ([5.0, 5.0, 5.0], 5.0, 0.0)}, {"meta": "a"}),
-        plots.stacked({"meta": {"x": 0.0}}, {"meta": "a"}),
-        plots.means([("SUS", {"meta": alone})]),
+        plots.plot_learning({"meta": ([5.0, 5.0, 5.0], 5.0, 0.0)}, {"meta": "a"}),
+        plots.plot_stacked({"meta": {"x": 0.0}}, {"meta": "a"}),
+        plots.plot_means([("SUS", {"meta": alone})]),
     ):
         assert ElementTree.fromstring(svg).tag.endswith("svg")
         assert "nan" not in svg and "inf" not in svg.replace("inside", "")

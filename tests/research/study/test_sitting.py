@@ -15,9 +15,9 @@ import pytest
 from metagraph.errors import FileError
 from metagraph.formats.store import read_project
 from metagraph.graph import edits
-from metagraph.research.study.logs.log import read
-from metagraph.research.study.plan.task_projects import make, reopen, write
-from metagraph.research.study.sitting import Sitting, SittingError, phases, where
+from metagraph.research.study.logs.log import read_log
+from metagraph.research.study.plan.task_projects import make_task_project, reopen, write_task_project
+from metagraph.research.study.sitting import Sitting, SittingError, find_place_in_sitting, list_phases
 from metagraph.research.study.study_plan import read_study
 from tests.processes import started
 from tests.thorough import many
@@ -28,7 +28,7 @@ ROOT = Path(__file__).resolve().parents[3]
 
 
 def names(study, participant: str) -> list[str]:
-    return [" ".join(filter(None, (p.name, p.condition, p.task))) for p in phases(study, participant)]
+    return [" ".join(filter(None, (p.name, p.condition, p.task))) for p in list_phases(study, participant)]
 
 
 def test_a_participant_goes_from_consent_to_thanks(tiny):
@@ -47,7 +47,7 @@ def test_a_participant_goes_from_consent_to_thanks(tiny):
         ]
         expected += [f"questionnaire {condition}"] + (["break"] if condition == one[0] else [])
     assert other == [*expected, "questionnaire", "end"]
-    assert [p.index for p in phases(study, "P01")] == list(range(len(other)))
+    assert [p.index for p in list_phases(study, "P01")] == list(range(len(other)))
     assert names(study, "P02")[1] == f"instructions {one[1]}"
 
 
@@ -57,7 +57,9 @@ def test_questionnaires_come_when_they_are_about(tiny):
     )
     tiny.write_text(text)
     found = [
-        (p.condition, p.task, p.questionnaire.id) for p in phases(read_study(tiny), "P01") if p.questionnaire
+        (p.condition, p.task, p.questionnaire.id)
+        for p in list_phases(read_study(tiny), "P01")
+        if p.questionnaire
     ]
     assert [f[2] for f in found] == ["each", "sus", "each", "sus", "more"]
     assert found[0][1] == "nods" and found[1][1] is None and found[4][:2] == (None, None)
@@ -81,8 +83,11 @@ def test_a_stranger_takes_no_part(tiny):
 
 
 def test_nothing_logged_is_the_beginning(tiny):
-    course = phases(read_study(tiny), "P01")
-    assert (where(course, []).phase, where(course, []).begun) == (course[0], False)
+    course = list_phases(read_study(tiny), "P01")
+    assert (find_place_in_sitting(course, []).phase, find_place_in_sitting(course, []).begun) == (
+        course[0],
+        False,
+    )
 
 
 def through(sitting: Sitting, count: int) -> None:
@@ -105,7 +110,7 @@ def test_it_goes_on_in_the_phase_it_was_left_in(tiny):
     second.begin()  # changes nothing: it runs
     second.end()
     second.close()
-    events = read(study.log("P01")).events
+    events = read_log(study.log("P01")).events
     told = [(e["index"], e["state"]) for e in events if e["type"] == "phase"]
     assert told == [(n, state) for n in range(3) for state in ("begin", "end")]
     assert [e["type"] for e in events].count("resumed") == 1
@@ -124,7 +129,7 @@ def test_answers_are_kept_and_told_once(tiny):
     assert again.now.answers == {"sus1": 4, "sus2": 2}
     again.answer("sus1", 4)
     again.close()
-    assert [e["item"] for e in read(study.log("P01")).events if e["type"] == "answer"] == ["sus1", "sus2"]
+    assert [e["item"] for e in read_log(study.log("P01")).events if e["type"] == "answer"] == ["sus1", "sus2"]
 
 
 def test_what_was_made_but_not_told_as_ended_is_ended(tiny):
@@ -133,7 +138,7 @@ def test_what_was_made_but_not_told_as_ended_is_ended(tiny):
     through(sitting, 4)
     sitting.begin()
     assert sitting.phase.name == "task"
-    write(make(study, sitting.phase.clips, "work"), sitting.file)
+    write_task_project(make_task_project(study, sitting.phase.clips, "work"), sitting.file)
     end, sitting.end = sitting.end, lambda why: None  # as if killed in between
     sitting.keep("time")
     assert end
@@ -141,7 +146,7 @@ def test_what_was_made_but_not_told_as_ended_is_ended(tiny):
     again = Sitting(study, "P01")
     assert again.phase.name == "questionnaire"
     again.close()
-    (run,) = read(study.log("P01")).tasks()
+    (run,) = read_log(study.log("P01")).tasks()
     assert run.timed_out and run.artefact == sitting.course[4].file and len(run.digest) == 64
 
 
@@ -162,7 +167,7 @@ def test_the_end_is_told_once(tiny):
     sitting.end()
     sitting.close()
     Sitting(study, "P01").close()
-    log = read(study.log("P01"))
+    log = read_log(study.log("P01"))
     assert log.complete and [e["type"] for e in log.events].count("end") == 1
     assert log.events[-1]["type"] == "end"
 
@@ -184,7 +189,7 @@ def test_a_clip_that_cannot_be_read_stops_the_task_for_everybody(tiny):
     tiny.write_text(tiny.read_text().replace("tasks:", "tasks:\n- {id: bad, clips: [bad.glb]}"))
     study = read_study(tiny)
     with pytest.raises(FileError, match=r"study\.yaml, clips: .*bad\.glb"):
-        make(study, study.plan.task("bad").clips, "bad")
+        make_task_project(study, study.plan.task("bad").clips, "bad")
 
 
 def test_a_task_begins_with_its_clips_and_the_references_base_and_character(tmp_path):
@@ -195,10 +200,10 @@ def test_a_task_begins_with_its_clips_and_the_references_base_and_character(tmp_
         f"  reference: {folder}/sample.metagraph.yaml\n"
     )
     study = read_study(tmp_path)
-    project = make(study, study.plan.task("a").clips, "a", study.reference("a"))
+    project = make_task_project(study, study.plan.task("a").clips, "a", study.reference("a"))
     assert [c.name for c in project.clips.values()] == ["hands_at_sides__stance", "on_hips__stance"]
     assert project.clips[project.base.clip].name == "hands_at_sides__stance"
-    saved = write(project, tmp_path / "data" / "P01" / "a.metagraph.yaml")
+    saved = write_task_project(project, tmp_path / "data" / "P01" / "a.metagraph.yaml")
     assert saved.character.endswith("ada.glb") and saved.character.startswith("..")
     opened, count = reopen(tmp_path / "data" / "P01" / "a.metagraph.yaml")
     assert count == 0 and not opened.notes
@@ -210,7 +215,7 @@ def test_edits_in_the_journal_are_in_the_file_once_it_was_reopened(tiny):
 
     study = read_study(tiny)
     path = study.data("P01") / "x.metagraph.yaml"
-    project = write(make(study, study.plan.tasks[0].clips, "x"), path)
+    project = write_task_project(make_task_project(study, study.plan.tasks[0].clips, "x"), path)
     journal = Journal(journal_path(path), path)
     journal.edit(project, edits.add_stance(project, "head", "straight"))
     journal.close()
@@ -239,12 +244,12 @@ def test_killed_at_many_moments_nothing_is_lost_and_nothing_is_there_twice(tiny)
                 told = process.stdout.readline().strip()
                 if not study.log(participant).exists():
                     continue
-                log = read(study.log(participant))
+                log = read_log(study.log(participant))
                 assert not log.problems
                 assert [e["n"] for e in log.events] == list(range(len(log.events)))
                 marks = [(e["index"], e["state"]) for e in log.events if e["type"] == "phase"]
                 assert marks == [(n // 2, ("begin", "end")[n % 2]) for n in range(len(marks))]
-                now = where(phases(study, participant), log.events)
+                now = find_place_in_sitting(list_phases(study, participant), log.events)
                 if now.phase is not None and now.begun:
                     seen.add(now.phase.name)
                 if told != "killed":
@@ -260,7 +265,7 @@ def test_killed_at_many_moments_nothing_is_lost_and_nothing_is_there_twice(tiny)
                     assert more in (0, 1), "the project is as it was at the last edit"
                     ahead[participant, begun] += more
             process.stdin.close()
-        log = read(study.log(participant))
+        log = read_log(study.log(participant))
         assert log.complete
         assert len(log.answers()) == 21
         assert [r.finished for r in log.tasks()] == [True, True]

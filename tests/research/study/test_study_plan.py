@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.errors import FileError
-from metagraph.research.study.study_plan import SCHEMA, from_text, read_study, schema_text
+from metagraph.research.study.study_plan import SCHEMA, parse_study_plan, read_study, study_schema_text
 
 SMALL = """\
 study: 1
@@ -27,12 +27,12 @@ tasks:
 
 def refused(text: str) -> str:
     with pytest.raises(FileError) as caught:
-        from_text(text)
+        parse_study_plan(text)
     return str(caught.value)
 
 
 def test_the_least_a_study_says_is_enough() -> None:
-    plan = from_text(SMALL)
+    plan = parse_study_plan(SMALL)
     assert plan.ids == ("P01", "P02")
     assert plan.task("ten").name == "ten" and plan.task("ten").minutes is None
     assert (plan.order, plan.when, plan.tolerance, plan.allow, plan.questions()) == (
@@ -45,8 +45,11 @@ def test_the_least_a_study_says_is_enough() -> None:
 
 
 def test_pseudonyms_can_be_given_and_many_participants_are_numbered_alike_wide() -> None:
-    assert from_text(SMALL.replace("participants: 2", "participants: [anna, b-2]")).ids == ("anna", "b-2")
-    ids = from_text(SMALL.replace("participants: 2", "participants: 120")).ids
+    assert parse_study_plan(SMALL.replace("participants: 2", "participants: [anna, b-2]")).ids == (
+        "anna",
+        "b-2",
+    )
+    ids = parse_study_plan(SMALL.replace("participants: 2", "participants: 120")).ids
     assert (ids[0], ids[-1]) == ("P001", "P120")
 
 
@@ -153,17 +156,17 @@ def test_whatever_yaml_says_is_a_plan_or_a_file_error(data: object) -> None:
     if isinstance(data, dict):
         data = {"study": 1, **data}
     with contextlib.suppress(FileError):
-        from_text(yaml.safe_dump(data))
+        parse_study_plan(yaml.safe_dump(data))
 
 
 def test_orders_are_latin_fixed_or_given() -> None:
     two = SMALL + "- {id: twenty, clips: clips}\n"
-    assert {from_text(two).blocks(p)[0][0] for p in ("P01", "P02")} == {"meta", "manual"}
-    assert from_text(two + "order: fixed").blocks("P02") == (
+    assert {parse_study_plan(two).blocks(p)[0][0] for p in ("P01", "P02")} == {"meta", "manual"}
+    assert parse_study_plan(two + "order: fixed").blocks("P02") == (
         ("meta", ("ten", "twenty")),
         ("manual", ("ten", "twenty")),
     )
-    given = from_text(
+    given = parse_study_plan(
         two
         + "order: {given: {P01: [manual, meta], P02: [meta/twenty, meta/ten, manual/ten, meta/ten]}}".replace(
             ", meta/ten]", "]"
@@ -189,8 +192,8 @@ def test_a_task_without_a_reference_is_told(tiny: Path) -> None:
 
 
 def test_the_published_schema_is_this_one_and_accepts_what_is_read(tiny: Path) -> None:
-    assert SCHEMA.read_bytes() == schema_text()
-    validator = jsonschema.Draft202012Validator(json.loads(schema_text()))
+    assert SCHEMA.read_bytes() == study_schema_text()
+    validator = jsonschema.Draft202012Validator(json.loads(study_schema_text()))
     for text in (SMALL, tiny.read_text(encoding="utf-8")):
         validator.validate(yaml.safe_load(text))
     with pytest.raises(jsonschema.ValidationError):

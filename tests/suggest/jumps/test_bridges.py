@@ -12,11 +12,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.graph import edits
-from metagraph.graph.check import check
+from metagraph.graph.check import check_project
 from metagraph.graph.expand import reachable
 from metagraph.graph.model import LAYERS, Project
 from metagraph.suggest.accept import accept
-from metagraph.suggest.jumps.bridges import CAREFUL, LONGEST, SHORTEST, bridged, bridged_at, missing, told
+from metagraph.suggest.jumps.bridges import (
+    CAREFUL,
+    LONGEST,
+    SHORTEST,
+    bridge_all,
+    bridge_stance,
+    describe_bridges,
+    find_missing_bridges,
+)
 from metagraph.suggest.propose import propose
 from tests.conftest import Toy
 from tests.label_zoo.catalogue import named
@@ -40,14 +48,14 @@ def stances(
     ids = list(project.graphs["arms"].stances)
     for a, b in ways:
         clip = next(i for i, e in project.clips.items() if e.name == f"{a} to {b}")
-        project = edits.place(project, [clip], "arms", "transition", ids[a], ids[b])
+        project = edits.place_clips(project, [clip], "arms", "transition", ids[a], ids[b])
     return project
 
 
 def trouble(project: Project) -> set[str]:
     """What is said of stances that are not joined, and of the ends of actions."""
     codes = {"unreachable", "dead-end", "far-start", "far-end", "trim", "empty", "blend", "open-loop"}
-    return {p.code for p in check(project)} & codes
+    return {p.code for p in check_project(project)} & codes
 
 
 graphs = st.integers(0, len(ANGLES)).flatmap(
@@ -69,12 +77,12 @@ def test_every_stance_is_led_to_and_led_back_from_and_bridging_again_adds_nothin
     drawn: tuple[int, list[tuple[int, int]]],
 ) -> None:
     project = stances(*drawn)
-    after, made = bridged(project)
+    after, made = bridge_all(project)
     graph = after.graphs["arms"]
     for stance in graph.stances:
         assert stance in reachable(graph, str(graph.start)) and graph.start in reachable(graph, stance)
-    assert missing(after) == [] and bridged(after) == (after, ())
-    assert bool(missing(project)) == bool(made)
+    assert find_missing_bridges(after) == [] and bridge_all(after) == (after, ())
+    assert bool(find_missing_bridges(project)) == bool(made)
     before = project.graphs["arms"].actions
     assert set(graph.actions) - set(before) == {x.action for x in made}
     assert all(graph.actions[i] is before[i] for i in before)
@@ -83,42 +91,45 @@ def test_every_stance_is_led_to_and_led_back_from_and_bridging_again_adds_nothin
 
 @given(projects())
 def test_whatever_somebody_made_is_bridged_without_an_error_and_only_added_to(project: Project) -> None:
-    after, made = bridged(project)
+    after, made = bridge_all(project)
     kept = {a.id: a for a in after.actions() if a.id not in {x.action for x in made}}
     assert kept == {a.id: a for a in project.actions()}
     for layer in LAYERS:
         assert after.graphs[layer].stances == project.graphs[layer].stances
         for stance in project.graphs[layer].stances:
-            bridged_at(project, stance)
+            bridge_stance(project, stance)
 
 
 def test_without_stances_or_with_one_there_is_nothing_to_bridge() -> None:
-    assert bridged(Project()) == (Project(), ()) and missing(Project()) == []
+    assert bridge_all(Project()) == (Project(), ()) and find_missing_bridges(Project()) == []
     one = stances(1)
-    assert bridged(one) == (one, ()) and bridged_at(one, next(iter(one.graphs["arms"].stances))) == (one, ())
+    assert bridge_all(one) == (one, ()) and bridge_stance(one, next(iter(one.graphs["arms"].stances))) == (
+        one,
+        (),
+    )
 
 
 def test_a_stance_that_is_not_there_gets_no_bridge() -> None:
     project = stances(2)
-    assert bridged_at(project, "s99") == (project, ())
+    assert bridge_stance(project, "s99") == (project, ())
 
 
 def test_stances_without_a_loop_are_left_as_they_are() -> None:
     project = stances(3)
     second = list(project.graphs["arms"].stances)[1]
     bare = edits.remove_actions(project, [a.id for a in project.graphs["arms"].of(second, "stance")])
-    made = bridged(bare)[1]
+    made = bridge_all(bare)[1]
     assert {s for x in made for s in (x.start, x.end)} == set(project.graphs["arms"].stances) - {second}
-    assert bridged_at(bare, second) == (bare, ())
+    assert bridge_stance(bare, second) == (bare, ())
     none = edits.remove_actions(project, [a.id for a in project.actions()])
-    assert bridged(none) == (none, ())
+    assert bridge_all(none) == (none, ())
 
 
 def test_a_start_without_a_loop_leaves_the_layer_as_it_is() -> None:
     project = stances(3)
     graph = project.graphs["arms"]
     bare = edits.remove_actions(project, [a.id for a in graph.of(str(graph.start), "stance")])
-    assert bridged(bare) == (bare, ()) and missing(bare) == []
+    assert bridge_all(bare) == (bare, ()) and find_missing_bridges(bare) == []
 
 
 def test_a_loop_of_another_skeleton_or_whose_file_is_gone_gives_way_to_the_next(toy: Any) -> None:
@@ -126,20 +137,20 @@ def test_a_loop_of_another_skeleton_or_whose_file_is_gone_gives_way_to_the_next(
     first, second = project.graphs["arms"].stances
     clip = toy.clip("second loop", 1.5, ANGLES[1], swing=0.02)
     project = edits.add_clips(project, [("second.glb", 0, "", clip)])
-    project = edits.place(project, [TOY.id(project, "second loop")], "arms", "stance", second)
+    project = edits.place_clips(project, [TOY.id(project, "second loop")], "arms", "stance", second)
     lost = project.graphs["arms"].of(second, "stance")[0].clip
     gone = replace(project, clips={**project.clips, lost: replace(project.clips[lost], motion=None)})
-    after, made = bridged(gone)
+    after, made = bridge_all(gone)
     assert {(x.start, x.end) for x in made} == {(first, second), (second, first)}
     assert after.clips[after.action(made[0].action).clip].name == "second loop"  # type: ignore[union-attr]
     other = replace(
         project.clips[lost], motion=scaled(TOY.clip("other", 2.0), 3.0)
     )  # as reading a changed file again may bring
-    assert len(bridged(replace(project, clips={**project.clips, lost: other}))[1]) == 2
+    assert len(bridge_all(replace(project, clips={**project.clips, lost: other}))[1]) == 2
 
 
 def test_the_nearest_stance_is_bridged_to_and_from() -> None:
-    after, made = bridged(stances(3))  # 0.0, 0.4, 0.8: in a row
+    after, made = bridge_all(stances(3))  # 0.0, 0.4, 0.8: in a row
     first, middle, last = after.graphs["arms"].stances
     assert {(x.start, x.end) for x in made} == {
         (first, middle),
@@ -151,14 +162,14 @@ def test_the_nearest_stance_is_bridged_to_and_from() -> None:
 
 @pytest.mark.parametrize("size", [0.01, 1.0, 100.0])
 def test_a_bridge_takes_as_long_whatever_the_units_and_nothing_is_said_to_pop(size: float) -> None:
-    after, made = bridged(stances(4, size=size))
-    plain, usual = bridged(stances(4))
+    after, made = bridge_all(stances(4, size=size))
+    plain, usual = bridge_all(stances(4))
     assert [x.seconds for x in made] == pytest.approx([x.seconds for x in usual])
     assert [x.metres for x in made] == pytest.approx([x.metres * size for x in usual], rel=1e-4)
     assert all(SHORTEST - 1e-9 <= x.seconds <= LONGEST + 1e-9 for x in made) and not trouble(after)
-    lines = told(after, made)
+    lines = describe_bridges(after, made)
     assert [("a clip would look better" in x) for x in lines] == [
-        ("a clip would look better" in x) for x in told(plain, usual)
+        ("a clip would look better" in x) for x in describe_bridges(plain, usual)
     ]
 
 
@@ -167,7 +178,7 @@ def test_a_single_pose_is_blended_into_out_of_the_loop_before_it() -> None:
     still = TOY.clip("still").trimmed(0, 1)
     project = edits.add_clips(project, [("still.glb", 0, "", still)])
     project = edits.add_stance(project, "arms", "still", [TOY.id(project, "still")])
-    after, made = bridged(project)
+    after, made = bridge_all(project)
     ends = list(after.graphs["arms"].stances)[2]
     (into,) = [after.action(x.action) for x in made if x.end == ends]
     assert into is not None and after.clips[into.clip].duration > 1
@@ -180,8 +191,8 @@ def test_between_single_poses_there_is_nothing_to_blend() -> None:
     project = edits.add_clips(Project("p"), [(f"{c.name}.glb", 0, "", c) for c in clips])
     for name in ("a", "b"):
         project = edits.add_stance(project, "arms", name, [TOY.id(project, name)])
-    assert bridged(project) == (project, ()) and missing(project) == []
-    assert bridged_at(project, next(iter(project.graphs["arms"].stances))) == (project, ())
+    assert bridge_all(project) == (project, ()) and find_missing_bridges(project) == []
+    assert bridge_stance(project, next(iter(project.graphs["arms"].stances))) == (project, ())
 
 
 @pytest.mark.parametrize(("start", "end"), [(0.0, 0.3), (0.1, 0.4), (1.9, 2.2), (3.6, 4.0)])
@@ -194,7 +205,7 @@ def test_a_bridge_by_a_moment_of_a_longer_clip_shows_that_moment_where_it_blends
     project = edits.add_stance(project, "arms", "held", [TOY.id(project, "wave")])
     held = list(project.graphs["arms"].actions)[-1]
     project = edits.update_actions(project, [held], timing={"start": start, "end": end, "loop": True})
-    after, made = bridged(project)
+    after, made = bridge_all(project)
     into = after.action(made[0].action)
     assert into is not None and into.timing.end is not None
     assert into.timing.end - into.timing.start >= CAREFUL - 2e-3
@@ -212,13 +223,15 @@ def test_one_stance_is_joined_and_the_others_keep_their_troubles(
     if len(ids) < 2:
         return
     chosen = data.draw(st.sampled_from(ids))
-    after, made = bridged_at(project, chosen)
-    about = [p for p in check(after) if p.stance == chosen and p.code in ("unreachable", "dead-end")]
+    after, made = bridge_stance(project, chosen)
+    about = [p for p in check_project(after) if p.stance == chosen and p.code in ("unreachable", "dead-end")]
     assert not about and all(chosen in (x.start, x.end) for x in made)
-    before = {(p.code, p.stance) for p in check(project) if p.code in ("unreachable", "dead-end")}
+    before = {(p.code, p.stance) for p in check_project(project) if p.code in ("unreachable", "dead-end")}
     assert bool(made) >= any(stance == chosen for _, stance in before)
-    assert {(p.code, p.stance) for p in check(after) if p.code in ("unreachable", "dead-end")} <= before
-    assert bridged_at(after, chosen) == (after, ())
+    assert {
+        (p.code, p.stance) for p in check_project(after) if p.code in ("unreachable", "dead-end")
+    } <= before
+    assert bridge_stance(after, chosen) == (after, ())
 
 
 @pytest.mark.nightly
@@ -226,9 +239,9 @@ def test_one_stance_is_joined_and_the_others_keep_their_troubles(
 def test_labelled_takes_that_lack_transitions_become_whole(name: str) -> None:
     made = named(name)
     project = accept(made.project, propose(made.project)).project
-    after, bridges = bridged(project)
-    assert missing(project) and bridges and not missing(after)
+    after, bridges = bridge_all(project)
+    assert find_missing_bridges(project) and bridges and not find_missing_bridges(after)
     mine = {x.action for x in bridges}
-    assert not [p for p in check(after) if p.action in mine or p.code in ("unreachable", "dead-end")]
-    assert len(told(after, bridges)) == len(bridges)
+    assert not [p for p in check_project(after) if p.action in mine or p.code in ("unreachable", "dead-end")]
+    assert len(describe_bridges(after, bridges)) == len(bridges)
     assert np.isfinite([x.metres for x in bridges]).all()

@@ -20,14 +20,14 @@ from metagraph.suggest.jumps.compatibility import (
     STEP,
     Statistics,
     blend,
-    costs,
-    fitting,
+    compatibility_matrix,
+    fit_clip,
     loop_times,
     loops_of,
-    matrix,
+    propose_times,
     stance_frames,
     statistics,
-    times,
+    transition_costs,
 )  # fmt: skip
 from metagraph.suggest.tracks import RATE
 from tests.suggest.test_traits import chain, moved
@@ -56,7 +56,9 @@ def test_without_clips_the_threshold_is_the_least() -> None:
 def test_clips_in_which_nothing_moves_have_the_least_threshold() -> None:
     stats = statistics([slide(0.0)], "body", {})
     assert stats.distribution is None and stats.threshold == statistics([], "body").threshold
-    assert np.allclose(costs(stats, slide(0.0), stance_frames(stats, [(slide(0.0), 0.0, 1.0)], {}), {}), 0)
+    assert np.allclose(
+        transition_costs(stats, slide(0.0), stance_frames(stats, [(slide(0.0), 0.0, 1.0)], {}), {}), 0
+    )
 
 
 def test_clips_of_one_and_two_frames_say_nothing_and_break_nothing() -> None:
@@ -65,9 +67,9 @@ def test_clips_of_one_and_two_frames_say_nothing_and_break_nothing() -> None:
     stance = stance_frames(stats, [(slide(1.0, 1), 0.0, 0.0)], {})
     moving = statistics([slide(1.0)], "body", {})
     for frames in (1, 2):
-        cost = costs(moving, slide(1.0, frames), stance, {})
+        cost = transition_costs(moving, slide(1.0, frames), stance, {})
         assert len(cost) == frames and np.isfinite(cost).all()
-        found = times(moving, slide(1.0, frames), cost, roles={})
+        found = propose_times(moving, slide(1.0, frames), cost, roles={})
         assert 0 <= found.start <= found.end <= slide(1.0, frames).duration
 
 
@@ -76,7 +78,7 @@ def test_a_cost_by_hand() -> None:
     stats = statistics([slide(0.3, 60)], "body", {})
     assert stats.threshold == pytest.approx(0.02, rel=1e-3)
     # Beside a stance 0.1 m above, at rest: 0.1 m and w_v * 0.3 m/s.
-    cost = costs(
+    cost = transition_costs(
         replace(stats, velocity=0.5),
         slide(0.3, 2),
         stance_frames(stats, [(slide(0.0, 1, 0.1), 0.0, 0.0)], {}),
@@ -87,7 +89,7 @@ def test_a_cost_by_hand() -> None:
 
 def test_the_velocity_weighs_as_much_as_the_position(sample: Project) -> None:
     motions = [e.motion for e in list(sample.clips.values())[:20] if e.motion is not None]
-    stats = statistics(motions, "arms", anatomy.roles(sample))
+    stats = statistics(motions, "arms", anatomy.project_roles(sample))
     assert stats.velocity > 0 and stats.count > 500
     assert stats.share == pytest.approx(LEVEL, abs=0.04)
 
@@ -115,17 +117,21 @@ def test_place_and_facing_do_not_count(toy: Any) -> None:
     clip = toy.clip("x", 0.6, 0.0, 0.8)  # short enough to be compared with every frame
     stats = statistics([clip], "arms")
     other = moved(clip, 2.0, (3, 0, -1))
-    assert np.allclose(costs(stats, other, stance_frames(stats, [(clip, 0.0, clip.duration)])), 0, atol=1e-3)
+    assert np.allclose(
+        transition_costs(stats, other, stance_frames(stats, [(clip, 0.0, clip.duration)])), 0, atol=1e-3
+    )
 
 
 def test_another_skeleton_or_no_frames_cannot_be_entered(toy: Any) -> None:
     clip = toy.clip("x")
     stats = statistics([clip], "arms")
-    assert np.isinf(costs(stats, clip, stance_frames(stats, []))).all()
+    assert np.isinf(transition_costs(stats, clip, stance_frames(stats, []))).all()
     odd = Clip("odd", chain(3), 30, np.tile([0, 0, 0, 1.0], (4, 3, 1)), np.zeros((4, 1, 3)))
-    cost = costs(stats, odd, stance_frames(stats, [(clip, 0.0, 1.0)]))
+    cost = transition_costs(stats, odd, stance_frames(stats, [(clip, 0.0, 1.0)]))
     assert np.isinf(cost).all()
-    found = times(stats, clip, np.full(len(costs(stats, clip, stance_frames(stats, []))), np.inf))
+    found = propose_times(
+        stats, clip, np.full(len(transition_costs(stats, clip, stance_frames(stats, []))), np.inf)
+    )
     assert (
         not found.good
         and 0 <= found.start <= found.end <= clip.duration
@@ -135,7 +141,7 @@ def test_another_skeleton_or_no_frames_cannot_be_entered(toy: Any) -> None:
 
 def test_where_a_clip_fits_by_hand() -> None:
     clip = slide(0.0, 6)
-    f = fitting(clip, np.array([0.5, 2.0, 3.0, 0.9, 0.2, 4.0]))
+    f = fit_clip(clip, np.array([0.5, 2.0, 3.0, 0.9, 0.2, 4.0]))
     assert f.leave == ((0.0, 0.0), (3 / RATE, 4 / RATE)) and f.leave_at == pytest.approx(4 / RATE)
     # Entering compares with the frame before.
     assert f.enter == ((0.0, 1 / RATE), (4 / RATE, 5 / RATE)) and f.enter_at == pytest.approx(5 / RATE)
@@ -147,7 +153,9 @@ def test_a_gesture_begins_and_ends_with_its_movement(toy: Any) -> None:
     joined = Clip("x", toy.skeleton, 30, np.concatenate([still.rotations, wave.rotations, still.rotations]),
                   np.concatenate([still.translations, wave.translations, still.translations]))  # fmt: skip
     stats = statistics([joined], "arms")
-    found = times(stats, joined, costs(stats, joined, stance_frames(stats, [(still, 0.0, 1.0)])))
+    found = propose_times(
+        stats, joined, transition_costs(stats, joined, stance_frames(stats, [(still, 0.0, 1.0)]))
+    )
     assert found.good and 0.6 < found.start < 1.2 and 1.9 < found.end < 2.5
     assert found.earliest_exit is None or 1.5 < found.earliest_exit < found.end
     assert BLEND[0] <= found.blend_in <= BLEND[1] and BLEND[0] <= found.blend_out <= BLEND[1]
@@ -156,7 +164,9 @@ def test_a_gesture_begins_and_ends_with_its_movement(toy: Any) -> None:
 def test_a_clip_that_ends_elsewhere_cannot_be_left(toy: Any) -> None:
     still, away = toy.clip("still", 1.0, swing=0.0), toy.clip("away", 0.6, 0.0, 1.5, 0.0)
     stats = statistics([away, still], "arms")
-    found = times(stats, away, costs(stats, away, stance_frames(stats, [(still, 0.0, 1.0)])))
+    found = propose_times(
+        stats, away, transition_costs(stats, away, stance_frames(stats, [(still, 0.0, 1.0)]))
+    )
     assert not found.good and "leaving" in found.reason and "jump" in found.reason
 
 
@@ -174,7 +184,7 @@ def test_a_loop_without_a_seam_needs_no_overlap(toy: Any) -> None:
 
 @pytest.mark.parametrize("layer", LAYERS)
 def test_the_samples_clips_fit_their_stances(sample: Project, layer: Any) -> None:
-    m, graph = matrix(sample, layer), sample.graphs[layer]
+    m, graph = compatibility_matrix(sample, layer), sample.graphs[layer]
     assert m.can_enter.shape == (len(sample.clips), len(graph.stances)) and m.stances == tuple(graph.stances)
     strangers = []
     for action in graph.actions.values():
@@ -188,7 +198,7 @@ def test_the_samples_clips_fit_their_stances(sample: Project, layer: Any) -> Non
 
 @pytest.mark.parametrize("layer", LAYERS)
 def test_the_samples_timings_are_good(sample: Project, layer: Any) -> None:
-    graph, roles = sample.graphs[layer], anatomy.roles(sample)
+    graph, roles = sample.graphs[layer], anatomy.project_roles(sample)
     motions = [m for c in graph.uses if (m := sample.clips[c].motion) is not None]
     stats = statistics(motions, layer, roles, REACH[layer])
     frames = {s: stance_frames(stats, loops, roles) for s, loops in loops_of(sample, layer).items()}
@@ -198,9 +208,9 @@ def test_the_samples_timings_are_good(sample: Project, layer: Any) -> None:
         if action.kind == "stance":
             found = loop_times(stats, clip, roles)
         else:
-            into = costs(stats, clip, frames[action.stance], roles)
-            out = costs(stats, clip, frames[action.end_stance or action.stance], roles)
-            found = times(stats, clip, into, out, action.timing.stroke, roles)
+            into = transition_costs(stats, clip, frames[action.stance], roles)
+            out = transition_costs(stats, clip, frames[action.end_stance or action.stance], roles)
+            found = propose_times(stats, clip, into, out, action.timing.stroke, roles)
             assert found.end - found.start > 0.4
         assert found.good and 0 <= found.start < found.end <= clip.duration + 1e-9, action.name
         assert found.start + found.blend_in <= found.end - found.blend_out + 1e-9
@@ -210,19 +220,21 @@ def test_the_samples_timings_are_good(sample: Project, layer: Any) -> None:
 
 def test_a_matrix_takes_other_stances_and_clips_and_can_be_cancelled(sample: Project) -> None:
     stance, loops = next(iter(loops_of(sample, "head").items()))
-    m = matrix(sample, "head", {"mine": loops, "none": []}, clips=["no such clip", *list(sample.clips)[:3]])
+    m = compatibility_matrix(
+        sample, "head", {"mine": loops, "none": []}, clips=["no such clip", *list(sample.clips)[:3]]
+    )
     assert m.stances == ("mine", "none") and m.enter_cost.shape == (4, 2)
     assert (
         np.isinf(m.enter_cost[:, 1]).all()
         and np.isinf(m.enter_cost[0]).all()
         and np.isfinite(m.enter_cost[1:, 0]).all()
     )
-    assert np.isinf(matrix(sample, "head", cancelled=lambda: True).enter_cost).all()
+    assert np.isinf(compatibility_matrix(sample, "head", cancelled=lambda: True).enter_cost).all()
     assert stance in sample.graphs["head"].stances
 
 
 def test_an_empty_project_has_an_empty_matrix() -> None:
-    assert matrix(Project(), "arms").enter_cost.shape == (0, 0)
+    assert compatibility_matrix(Project(), "arms").enter_cost.shape == (0, 0)
 
 
 def test_statistics_are_values(toy: Any) -> None:

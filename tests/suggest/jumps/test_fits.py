@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from metagraph.suggest.jumps.fits import fits
+from metagraph.suggest.jumps.fits import fit_distributions
 
 DRAWS = {
     "log-normal": lambda rng, n: rng.lognormal(0.3, 0.6, n),
@@ -17,13 +17,13 @@ DRAWS = {
 
 @pytest.mark.parametrize("values", [[], [1.0] * 50, [0.1, 0.2, 0.3], [np.nan] * 20])
 def test_too_few_values_or_all_alike_fit_nothing(values: list[float]) -> None:
-    assert fits(values, 0.95) == ()
+    assert fit_distributions(values, 0.95) == ()
 
 
 @pytest.mark.parametrize("name", DRAWS)
 def test_what_was_drawn_from_a_distribution_is_near_to_it(name: str) -> None:
     x = DRAWS[name](np.random.default_rng(4), 20_000)
-    found = {f.name: f for f in fits(x, 0.95)}
+    found = {f.name: f for f in fit_distributions(x, 0.95)}
     assert found[name].distance < 0.02
     assert found[name].limit == pytest.approx(np.quantile(x, 0.95), rel=0.02)
     assert found[name].likelihood >= max(f.likelihood for f in found.values()) - 0.01
@@ -33,7 +33,7 @@ def test_what_was_drawn_from_a_distribution_is_near_to_it(name: str) -> None:
 def test_limits_and_distances_are_those_of_scipy(name: str) -> None:
     stats = pytest.importorskip("scipy.stats")
     x = DRAWS[name](np.random.default_rng(1), 3000)
-    found = {f.name: f for f in fits(x, 0.9)}
+    found = {f.name: f for f in fit_distributions(x, 0.9)}
     for other, kind in (
         ("log-normal", stats.lognorm),
         ("Weibull", stats.weibull_min),

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from metagraph.graph import edits
-from metagraph.graph.checks.end_gaps import gaps
+from metagraph.graph.checks.end_gaps import find_end_gaps
 from metagraph.graph.model import LAYERS, Project
 from metagraph.suggest.accept import accept
 from metagraph.suggest.jumps import compatibility as c
-from metagraph.suggest.jumps.bridges import bridged
-from metagraph.suggest.jumps.found import FEWEST_CLIPS, Measured, curves, jumps
+from metagraph.suggest.jumps.bridges import bridge_all
+from metagraph.suggest.jumps.found import FEWEST_CLIPS, Measured, jumps, stance_curves
 from metagraph.suggest.propose import propose
 from tests.label_zoo.catalogue import named
 
@@ -26,7 +26,7 @@ def cut(toy: Any, project: Project, name: str, **timing: Any) -> Project:
 def wide(toy: Any) -> Project:
     """The toy project with a wave so wide that it is far from its stance in the middle."""
     project = edits.add_clips(toy.project(), [("wide.glb", 0, "", toy.clip("wide", 2.4, swing=2.4))])
-    return edits.place(project, [toy.id(project, "wide")], "arms", "gesture", toy.id(project, "rest"))
+    return edits.place_clips(project, [toy.id(project, "wide")], "arms", "gesture", toy.id(project, "rest"))
 
 
 def found(project: Project) -> list[Any]:
@@ -57,7 +57,7 @@ def test_the_sample_has_no_jumps(sample: Project, layer: Any) -> None:
 def test_no_proposed_timing_jumps(sample: Project, layer: Any) -> None:
     measured, changes = Measured(sample, layer), {}
     for action in sample.graphs[layer].actions.values():
-        p = curves(sample, measured, action).proposed  # type: ignore[union-attr]
+        p = stance_curves(sample, measured, action).proposed  # type: ignore[union-attr]
         timing = {"start": p.start, "end": p.end, "blend_in": p.blend_in, "blend_out": p.blend_out}
         changes[action.id] = {"timing": timing if action.kind != "stance" else {"blend_in": p.blend_in}}
     assert jumps(edits.update_each(sample, changes), measured) == []
@@ -84,7 +84,9 @@ def test_a_late_start_jumps_and_a_start_before_the_stroke_mends_it(toy: Any, wid
 
 def test_an_early_exit_behind_the_new_end_goes(toy: Any) -> None:
     project = edits.add_clips(toy.project(), [("away.glb", 0, "", toy.clip("away", 2.4, 0.0, 2.6, 0.0))])
-    project = edits.place(project, [toy.id(project, "away")], "arms", "gesture", toy.id(project, "rest"))
+    project = edits.place_clips(
+        project, [toy.id(project, "away")], "arms", "gesture", toy.id(project, "rest")
+    )
     project = cut(toy, project, "away", stroke=0.1, earliest_exit=2.0, blend_out=0.1)
     (jump,) = found(project)
     assert (
@@ -121,7 +123,7 @@ def test_an_open_loop_is_mended_by_blending_its_seam(toy: Any) -> None:
     project = toy.project()
     loop = toy.clip("open", 2.0, 0.0, 0.5, 0.2)
     project = edits.add_clips(project, [("open.glb", 0, "", loop)])
-    project = edits.place(project, [toy.id(project, "open")], "arms", "stance", toy.id(project, "rest"))
+    project = edits.place_clips(project, [toy.id(project, "open")], "arms", "stance", toy.id(project, "rest"))
     project = cut(toy, project, "open", blend_in=0.0)
     (jump,) = [j for j in found(project) if j.edge == "loops"]
     assert set(jump.change) == {"blend_in"}
@@ -162,29 +164,31 @@ def test_curves_of_a_loop_are_its_seam_and_of_a_missing_file_nothing(toy: Any, w
     project = wide
     measured = Measured(project, "arms")
     loop = project.action(next(a.id for a in project.actions() if a.name == "rest loop"))
-    seen = curves(project, measured, loop)
+    seen = stance_curves(project, measured, loop)
     assert (
         seen is not None
         and len(seen.times) == len(seen.leave)
         and seen.leave[0] == pytest.approx(0, abs=1e-6)
     )
     wave = project.action(toy.id(project, "wide"))
-    seen = curves(project, measured, wave)
+    seen = stance_curves(project, measured, wave)
     assert seen is not None and seen.leave.max() > 1 > seen.leave[-1] and np.isfinite(seen.enter).all()
     clips = {**project.clips, wave.clip: replace(project.clips[wave.clip], motion=None)}
-    assert curves(replace(project, clips=clips), measured, wave) is None
+    assert stance_curves(replace(project, clips=clips), measured, wave) is None
 
 
 def test_a_blend_takes_off_what_the_player_blends() -> None:
-    assert c.shown(2.0, 0.0) == 2.0 and c.shown(2.0, 0.05) == 2.0
-    assert c.shown(2.0, 0.2) == pytest.approx(1.0) and np.allclose(
-        c.shown(np.array([1.0, 3.0]), 0.1), [1.0, 3.0]
+    assert c.visible_difference(2.0, 0.0) == 2.0 and c.visible_difference(2.0, 0.05) == 2.0
+    assert c.visible_difference(2.0, 0.2) == pytest.approx(1.0) and np.allclose(
+        c.visible_difference(np.array([1.0, 3.0]), 0.1), [1.0, 3.0]
     )
 
 
 def test_a_moment_far_away_is_not_proposed_where_a_longer_blend_would_do(toy: Any) -> None:
     project = edits.add_clips(toy.project(), [("away.glb", 0, "", toy.clip("away", 2.4, 0.0, 1.5, 0.0))])
-    project = edits.place(project, [toy.id(project, "away")], "arms", "gesture", toy.id(project, "rest"))
+    project = edits.place_clips(
+        project, [toy.id(project, "away")], "arms", "gesture", toy.id(project, "rest")
+    )
     (jump,) = found(cut(toy, project, "away", stroke=0.1, blend_out=0.1))
     assert jump.better is None and set(jump.change) == {"blend_out"}
 
@@ -192,12 +196,12 @@ def test_a_moment_far_away_is_not_proposed_where_a_longer_blend_would_do(toy: An
 def test_a_long_slow_blend_over_a_wide_gap_is_no_jump_and_a_short_one_is() -> None:
     """Takes in which little moves from frame to frame, so that each blend from seat to seat is unusual."""
     made = named("opaque days of sitting").project
-    project, bridges = bridged(accept(made, propose(made)).project)
+    project, bridges = bridge_all(accept(made, propose(made)).project)
     (name,) = [x.action for x in bridges]
     for blend, edges in ((0.1, ["begins"]), (0.39, ["begins"]), (0.55, [])):
         blended = edits.update_actions(project, [name], timing={"blend_in": blend})
         assert [x.edge for x in found(blended) if x.action == name] == edges, blend
-    strip = curves(project, Measured(project, "arms"), project.action(name))  # type: ignore[arg-type]
+    strip = stance_curves(project, Measured(project, "arms"), project.action(name))  # type: ignore[arg-type]
     assert strip is not None and strip.gaps is not None
     assert strip.gaps[0][0] > 0.3 > 0.05 > strip.gaps[1][0]
 
@@ -205,11 +209,11 @@ def test_a_long_slow_blend_over_a_wide_gap_is_no_jump_and_a_short_one_is() -> No
 @pytest.mark.parametrize("name", ["opaque takes", "sitting, leaning, standing"])
 def test_proposed_times_leave_no_joint_far_from_a_stance_where_the_present_ones_do_not(name: str) -> None:
     made = named(name).project
-    project, _ = bridged(accept(made, propose(made)).project)
+    project, _ = bridge_all(accept(made, propose(made)).project)
     measured = {layer: Measured(project, layer) for layer in LAYERS}
     changes = {}
     for action in project.actions():
-        strip = curves(project, measured[action.layer], action)
+        strip = stance_curves(project, measured[action.layer], action)
         if strip is not None and action.kind != "stance":
             p = strip.proposed
             times = {"start": p.start, "end": p.end, "blend_in": p.blend_in, "blend_out": p.blend_out}
@@ -222,4 +226,6 @@ def test_proposed_times_leave_no_joint_far_from_a_stance_where_the_present_ones_
 
 def far(project: Project) -> set[str]:
     graphs = project.graphs.values()
-    return {a.id for g in graphs for a in g.actions.values() if any(x.far for x in gaps(project, g, a))}
+    return {
+        a.id for g in graphs for a in g.actions.values() if any(x.far for x in find_end_gaps(project, g, a))
+    }

@@ -7,16 +7,18 @@ import pytest
 
 from metagraph.graph import edits
 from metagraph.playback.timing.speed_curves import speed_of
-from metagraph.suggest.jumps.found import Measured, curves
-from metagraph.suggest.jumps.seen_jumps import Seen
-from metagraph.suggest.jumps.snapping import Snap, nearest, snaps_of, turning
+from metagraph.suggest.jumps.found import Measured, stance_curves
+from metagraph.suggest.jumps.seen_jumps import SeenJumps
+from metagraph.suggest.jumps.snapping import Snap, find_nearest_snap, snaps_of, turning
 
 
 @pytest.fixture(scope="module")
 def wide(toy):
     """A wave so wide that it is far from its stance in the middle, ended there."""
     project = edits.add_clips(toy.project(), [("wide.glb", 0, "", toy.clip("wide", 2.4, swing=2.4))])
-    project = edits.place(project, [toy.id(project, "wide")], "arms", "gesture", toy.id(project, "rest"))
+    project = edits.place_clips(
+        project, [toy.id(project, "wide")], "arms", "gesture", toy.id(project, "rest")
+    )
     return edits.update_actions(project, [toy.id(project, "wide")], timing={"end": 1.5, "blend_out": 0.05})
 
 
@@ -26,7 +28,7 @@ def action(toy, wide):
 
 
 def test_an_end_rests_where_it_is_proposed_and_says_so(wide, action):
-    seen = Seen(action, curves(wide, Measured(wide, "arms"), action))
+    seen = SeenJumps(action, stance_curves(wide, Measured(wide, "arms"), action))
     found = snaps_of(wide, action, "end", seen)
     assert found[0] == Snap(seen.proposed.end, "proposed: it ends without a jump")
     assert "the clip's last frame" in [s.why for s in found]
@@ -40,7 +42,7 @@ def test_a_blend_rests_where_it_is_long_enough_for_its_way(wide, action):
     blended = edits.update_actions(wide, [action.id], timing={"blend_out": round(1.5 - found.at, 3)})
     from metagraph.graph.checks import end_gaps
 
-    after = end_gaps.gaps(blended, blended.graphs["arms"], blended.action(action.id))
+    after = end_gaps.find_end_gaps(blended, blended.graphs["arms"], blended.action(action.id))
     assert not next(g for g in after if g.edge == "ends").far
 
 
@@ -60,9 +62,9 @@ def test_stresses_and_the_playhead_are_places_for_every_handle(wide, action):
 
 def test_the_nearest_is_taken_only_within_reach(wide):
     snaps = [Snap(1.0, "a"), Snap(1.0, "b"), Snap(2.0, "c")]
-    assert nearest(snaps, 1.04, 0.05) == Snap(1.0, "a")
-    assert nearest(snaps, 1.06, 0.05) is None
-    assert nearest([], 1.0, 9.0) is None
+    assert find_nearest_snap(snaps, 1.04, 0.05) == Snap(1.0, "a")
+    assert find_nearest_snap(snaps, 1.06, 0.05) is None
+    assert find_nearest_snap([], 1.0, 9.0) is None
 
 
 def test_peaks_that_do_not_stand_out_are_passed_over():

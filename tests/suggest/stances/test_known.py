@@ -18,13 +18,13 @@ from metagraph.suggest.motion_guess import MotionGuess, guess
 from metagraph.suggest.stances.known import (
     Shape,
     discover,
-    discovered,
-    distance,
-    known,
+    discover_stances,
+    distance_from_stance,
     likely,
-    nearest,
-    parted,
-    settled,
+    list_known_stances,
+    rank_stances,
+    settle_stances,
+    split_stances,
 )
 from metagraph.suggest.traits import Traits, traits, traits_of
 from tests.suggest.test_traits import backwards, chain, mirrored, of, one_armed, scaled
@@ -50,12 +50,12 @@ def test_a_clip_of_no_figure_gets_a_guess(count: int, frames: int) -> None:
     still = Clip("x", chain(count), 30, np.tile([0, 0, 0, 1.0], (frames, count, 1)), np.zeros((frames, 1, 3)))
     t = of(still)
     sane(guess(t, {}))
-    sane(guess(t, discovered({"x": t})))
+    sane(guess(t, discover_stances({"x": t})))
 
 
 def test_without_clips_there_are_no_stances(toy: Any) -> None:
-    assert discovered({}) == dict.fromkeys(LAYERS, ())
-    assert known(Project(), {}) == dict.fromkeys(LAYERS, ())
+    assert discover_stances({}) == dict.fromkeys(LAYERS, ())
+    assert list_known_stances(Project(), {}) == dict.fromkeys(LAYERS, ())
 
 
 def test_without_stances_a_guess_names_none(toy: Any) -> None:
@@ -75,7 +75,7 @@ def test_a_short_clip_in_which_nothing_moves_founds_no_stance(toy: Any) -> None:
     )
     t = of(still)
     assert guess(t, {}).kind.confidence < 0.6 and guess(t, {}).layer.confidence < 0.4
-    assert all(not shapes for shapes in discovered({"smile": t}).values())
+    assert all(not shapes for shapes in discover_stances({"smile": t}).values())
 
 
 def test_one_armed_movements_take_the_arm_that_moves(toy: Any) -> None:
@@ -111,7 +111,7 @@ def test_size_does_not_change_a_guess(factor: float, end: float) -> None:
 
 
 def test_a_transition_backwards_goes_back(sample: Project, found: dict[str, Traits]) -> None:
-    stances = known(sample, found)
+    stances = list_known_stances(sample, found)
     transitions = [a for a in sample.actions() if a.kind == "transition"]
     assert transitions
     for action in transitions:
@@ -124,11 +124,11 @@ def test_a_transition_backwards_goes_back(sample: Project, found: dict[str, Trai
 
 def test_the_toys_stances_are_known_by_their_loops(toy: Any) -> None:
     project = toy.project()
-    stances = known(project, traits_of(project))
+    stances = list_known_stances(project, traits_of(project))
     assert {s.name for s in stances["arms"]} == {"rest", "up", "far"} and not stances["head"]
     shape = next(s for s in stances["arms"] if s.name == "up")
-    assert distance(shape, shape.names, shape.poses[0]) == 0
-    assert nearest(stances["arms"], shape.names, shape.poses[0])[0][1].name == "up"
+    assert distance_from_stance(shape, shape.names, shape.poses[0]) == 0
+    assert rank_stances(stances["arms"], shape.names, shape.poses[0])[0][1].name == "up"
 
 
 def test_a_stance_without_a_loop_is_known_by_where_transitions_end(
@@ -138,20 +138,20 @@ def test_a_stance_without_a_loop_is_known_by_where_transitions_end(
     stance = next(iter(graph.stances))
     loops = {a.id: None for a in graph.of(stance, "stance")}
     project = sample.with_graph(graph.with_actions(loops))
-    shape = next(s for s in known(project, found)["arms"] if s.id == stance)
-    whole = next(s for s in known(sample, found)["arms"] if s.id == stance)
-    assert distance(whole, shape.names, shape.poses[0]) < 0.02
+    shape = next(s for s in list_known_stances(project, found)["arms"] if s.id == stance)
+    whole = next(s for s in list_known_stances(sample, found)["arms"] if s.id == stance)
+    assert distance_from_stance(whole, shape.names, shape.poses[0]) < 0.02
 
 
 def test_points_that_only_one_of_two_characters_has_are_left_out() -> None:
     shape = Shape("", "x", "arms", ("left_hand", "right_hand"), np.zeros((1, 2, 3)), (), "", 0.0, 1.0)
-    assert distance(shape, ("right_hand",), np.array([[0, 0.3, 0]])) == pytest.approx(0.3)
-    assert distance(shape, ("head",), np.zeros((1, 3))) == float("inf")
-    assert nearest([shape], ("head",), np.zeros((1, 3))) == []
+    assert distance_from_stance(shape, ("right_hand",), np.array([[0, 0.3, 0]])) == pytest.approx(0.3)
+    assert distance_from_stance(shape, ("head",), np.zeros((1, 3))) == float("inf")
+    assert rank_stances([shape], ("head",), np.zeros((1, 3))) == []
 
 
 def test_the_samples_stances_are_discovered(sample: Project, found: dict[str, Traits]) -> None:
-    for layer, shapes in discovered(found).items():
+    for layer, shapes in discover_stances(found).items():
         graph = sample.graphs[layer]
         loops = {a.clip: a.stance for a in graph.actions.values() if a.kind == "stance"}
         assert sorted(loops[s.clip] for s in shapes) == sorted(graph.stances), layer
@@ -196,7 +196,11 @@ def test_the_samples_labels_are_guessed_from_motion_alone(
     sample: Project, found: dict[str, Traits], source: str
 ) -> None:
     stances = (
-        known(sample, found) if source == "known" else discovered(found) if source == "discovered" else {}
+        list_known_stances(sample, found)
+        if source == "known"
+        else discover_stances(found)
+        if source == "discovered"
+        else {}
     )
     good: Counter[str] = Counter()
     count: Counter[str] = Counter()
@@ -232,7 +236,7 @@ def test_the_samples_labels_are_guessed_from_motion_alone(
 
 def test_reasons_hold_numbers(sample: Project, found: dict[str, Traits]) -> None:
     action = next(a for a in sample.actions() if a.kind == "transition" and a.layer == "arms")
-    g = guess(found[action.clip], known(sample, found))
+    g = guess(found[action.clip], list_known_stances(sample, found))
     assert (
         g.end_stance is not None
         and g.end_stance.reason.startswith("ends ")
@@ -298,16 +302,18 @@ def test_stances_are_parted_only_where_words_and_poses_part_alike() -> None:
     def ends(*some: tuple[str, Any]) -> list[tuple[str, float, Any, str]]:
         return [(f"{word} {n}", 0.0, pose, word) for n, (word, pose) in enumerate(some)]
 
-    assert parted((), ()) == () and parted(shapes, ()) == (one,)
-    assert parted(shapes, ends(("idle 1", near), ("idle 2", far))) == (one,)  # one clip of each is none
-    two = parted(shapes, ends(*[("idle 1", near)] * 3, *[("idle 2", far)] * 3))
+    assert split_stances((), ()) == () and split_stances(shapes, ()) == (one,)
+    assert split_stances(shapes, ends(("idle 1", near), ("idle 2", far))) == (
+        one,
+    )  # one clip of each is none
+    two = split_stances(shapes, ends(*[("idle 1", near)] * 3, *[("idle 2", far)] * 3))
     assert [s.clip.rpartition(" ")[0] for s in two] == ["idle 1", "idle 2"]
     assert np.allclose(two[0].poses[0], near) and np.allclose(two[1].poses[0], far)
     assert not set(two[0].members) & set(two[1].members)
     same = ends(*[("idle 1", near)] * 3, *[("idle 2", near)] * 3)
-    assert parted(shapes, same) == (one,)
+    assert split_stances(shapes, same) == (one,)
     mixed = ends(*[("a", near), ("b", near), ("a", far), ("b", far)] * 3)
-    assert parted(shapes, mixed) == (one,)
+    assert split_stances(shapes, mixed) == (one,)
 
 
 def test_where_clips_begin_and_end_anywhere_there_is_one_stance() -> None:
@@ -315,9 +321,9 @@ def test_where_clips_begin_and_end_anywhere_there_is_one_stance() -> None:
     draw = np.random.default_rng(0)
     anywhere = [(HANDS, draw.uniform(-0.5, 1.0, (2, 3))) for _ in range(40)]
     inside = [(HANDS, np.full((2, 3), 0.2 * (n % 3)) + 0.002) for n in range(40)]
-    assert settled(shapes, anywhere) == shapes[:1] and settled(shapes, inside) == shapes
-    assert settled((), anywhere) == () and settled(shapes[:1], anywhere) == shapes[:1]
-    assert settled(shapes, ()) == shapes  # nothing speaks against them
+    assert settle_stances(shapes, anywhere) == shapes[:1] and settle_stances(shapes, inside) == shapes
+    assert settle_stances((), anywhere) == () and settle_stances(shapes[:1], anywhere) == shapes[:1]
+    assert settle_stances(shapes, ()) == shapes  # nothing speaks against them
 
 
 def test_together_the_clips_of_all_layers_tell_the_stances(toy: Any, found: dict[str, Traits]) -> None:

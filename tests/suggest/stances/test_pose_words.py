@@ -11,7 +11,7 @@ from metagraph.formats.imports import import_files
 from metagraph.graph.model import Project
 from metagraph.suggest.propose import propose
 from metagraph.suggest.stances.known import Shape
-from metagraph.suggest.stances.pose_words import pose_words
+from metagraph.suggest.stances.pose_words import describe_pose
 
 ROOT = Path(__file__).resolve().parents[3]
 ARMS = ("left_hand", "left_lower_arm", "left_upper_arm", "right_hand", "right_lower_arm", "right_upper_arm")
@@ -43,12 +43,12 @@ def arms(left: list[float], right: list[float], out: float = 0.0) -> Shape:
     ],
 )
 def test_arms_are_called_by_where_the_hands_are(left: list[float], right: list[float], words: str) -> None:
-    assert pose_words(arms(left, right, 0.1 if "hips" in words else 0.0)) == words
+    assert describe_pose(arms(left, right, 0.1 if "hips" in words else 0.0)) == words
 
 
 def test_a_pose_of_no_figure_has_a_name_too() -> None:
     shape = Shape("", "", "body", ("joint 0",), np.zeros((1, 1, 3)), (), "", 0.0, 1.0)
-    assert pose_words(shape) and pose_words(shape, shape)
+    assert describe_pose(shape) and describe_pose(shape, shape)
 
 
 def test_stances_that_names_do_not_speak_of_are_called_as_they_look() -> None:

@@ -7,19 +7,19 @@ import pytest
 
 from metagraph.graph import edits
 from metagraph.graph.checks import end_gaps
-from metagraph.suggest.jumps.found import Measured, curves
-from metagraph.suggest.jumps.seen_jumps import Seen
+from metagraph.suggest.jumps.found import Measured, stance_curves
+from metagraph.suggest.jumps.seen_jumps import SeenJumps
 from metagraph.suggest.stances.stance_distance import distance_of
 
 
 @pytest.fixture(scope="module")
 def wide(toy):
     project = edits.add_clips(toy.project(), [("wide.glb", 0, "", toy.clip("wide", 2.4, swing=2.4))])
-    return edits.place(project, [toy.id(project, "wide")], "arms", "gesture", toy.id(project, "rest"))
+    return edits.place_clips(project, [toy.id(project, "wide")], "arms", "gesture", toy.id(project, "rest"))
 
 
 def seen_of(project, action):
-    return Seen(action, curves(project, Measured(project, action.layer), action))
+    return SeenJumps(action, stance_curves(project, Measured(project, action.layer), action))
 
 
 @pytest.mark.parametrize("known", [False, True])
@@ -28,7 +28,7 @@ def test_the_ends_are_as_far_as_the_problems_say(toy, wide, known):
     ends = edits.update_actions(wide, [ident], timing={"end": 1.2, "blend_out": 0.1})
     action = ends.action(ident)
     found = distance_of(ends, action, seen_of(ends, action) if known else None)
-    gap = next(g for g in end_gaps.gaps(ends, ends.graphs["arms"], action) if g.edge == "ends")
+    gap = next(g for g in end_gaps.find_end_gaps(ends, ends.graphs["arms"], action) if g.edge == "ends")
     at = int(np.argmin(np.abs(found.times - 1.2)))
     assert gap.far and found.shows[at]
     assert found.metres[at] == pytest.approx(gap.metres, rel=0.05)

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from metagraph.errors import FileError
-from metagraph.suggest.words.files import FOLDER, LanguageFile, listed, read_words
+from metagraph.suggest.words.files import FOLDER, LanguageFile, list_phrases, read_words
 
 ESPERANTO = {
     "doubtful": "al",
@@ -68,5 +68,5 @@ def test_a_file_with_something_wrong_is_named(tmp_path: Path, words: str, said: 
 
 
 def test_phrases_have_commas_between_them_and_may_take_several_lines() -> None:
-    assert listed(" look  around,, nod ") == ["look around", "nod"]
-    assert listed(("look around, nod", "shrug")) == ["look around", "nod", "shrug"]
+    assert list_phrases(" look  around,, nod ") == ["look around", "nod"]
+    assert list_phrases(("look around, nod", "shrug")) == ["look around", "nod", "shrug"]

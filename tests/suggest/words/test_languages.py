@@ -12,12 +12,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.suggest.words.cut import Token, tokens
+from metagraph.suggest.words.cut import Token, cut_tokens
 from metagraph.suggest.words.defaults import DEFAULTS
 from metagraph.suggest.words.files import LanguageFile, sources
-from metagraph.suggest.words.folded import folded, romaji, spellings
-from metagraph.suggest.words.languages import MARKS, languages
-from metagraph.suggest.words.names import Patterns, learn, read_names
+from metagraph.suggest.words.folded import fold_letters, romaji, spellings
+from metagraph.suggest.words.languages import MARKS, list_word_languages
+from metagraph.suggest.words.names import Patterns, learn_correction, read_names
 
 Row = tuple[str, str | None, str | None, str | None]
 SETS: dict[str, list[Row]] = {
@@ -285,7 +285,7 @@ def test_words_of_a_house_stand_for_english_ones() -> None:
 
 def test_corrections_are_remembered_by_the_words_of_the_name() -> None:
     names = ["Sitzen_Ruhe", "Sitzen_Nicken", "Sitzen_nicken_02"]
-    taught = learn(Patterns(), "Sitzen_Nicken", "kind", "fidget", names)
+    taught = learn_correction(Patterns(), "Sitzen_Nicken", "kind", "fidget", names)
     assert taught.learned["kind"] == {"nicken": {"fidget": 1}}
     assert told(names, "Sitzen_nicken_02", taught)["kind"] == "fidget"
 
@@ -302,15 +302,15 @@ def test_every_word_stands_for_words_that_mean_something(source: LanguageFile) -
 
 
 def test_letters_are_folded_and_keep_their_places() -> None:
-    assert folded("") == ("", (0,)) and folded("Añ")[0] == "An"
+    assert fold_letters("") == ("", (0,)) and fold_letters("Añ")[0] == "An"
     text = "e\u0301ß"
-    assert folded(text) == ("ess", (0, 2, 2, 3))
+    assert fold_letters(text) == ("ess", (0, 2, 2, 3))
     assert spellings("schütteln") == {"schutteln", "schuetteln"}
     assert {"jesucha", "jesuchaa"} & romaji("じぇすちゃー") and "kitte" in romaji("きって")
 
 
 def test_names_are_cut_where_writings_change() -> None:
-    cut = [t.text for t in tokens("座りPose０2うなずき_KopfSchütteln") if isinstance(t, Token)]
+    cut = [t.text for t in cut_tokens("座りPose０2うなずき_KopfSchütteln") if isinstance(t, Token)]
     assert cut == ["座り", "pose", "02", "うなずき", "kopf", "schutteln"]
 
 
@@ -323,4 +323,4 @@ def test_words_are_read_from_their_files_when_names_are_first_read() -> None:
 
 
 def test_the_languages_have_their_words() -> None:
-    assert min(len(language.exact) for language in languages()) > 400
+    assert min(len(language.exact) for language in list_word_languages()) > 400

@@ -16,7 +16,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.graph.words import KINDS, LAYERS, LIMBS
-from metagraph.suggest.words.names import NameGuess, Patterns, PatternsError, forget, learn, read_names
+from metagraph.suggest.words.names import (
+    NameGuess,
+    Patterns,
+    PatternsError,
+    forget_learned,
+    learn_correction,
+    read_names,
+)
 
 ROOT = Path(__file__).resolve().parents[3]
 SEATED = [
@@ -415,7 +422,7 @@ def test_words_of_other_languages_can_be_taught() -> None:
 
 def test_patterns_survive_a_file() -> None:
     patterns = Patterns().with_pattern("kinds", "gawk", "fidget").with_pattern("tags", "shrug", None)
-    patterns = learn(patterns, "Shrug_01", "kind", "fidget")
+    patterns = learn_correction(patterns, "Shrug_01", "kind", "fidget")
     assert Patterns.from_json(json.loads(json.dumps(patterns.to_json()))) == patterns
     assert Patterns.from_json(Patterns().to_json()) == Patterns()
 
@@ -446,15 +453,15 @@ def test_nonsense_cannot_be_taught_or_learned() -> None:
     with pytest.raises(PatternsError, match="one of stance"):
         Patterns().with_pattern("kinds", "gawk", "dance")
     with pytest.raises(PatternsError, match="'mood'"):
-        learn(Patterns(), "Shrug", "mood", "glad")
+        learn_correction(Patterns(), "Shrug", "mood", "glad")
     with pytest.raises(PatternsError, match="cannot be 'dance'"):
-        learn(Patterns(), "Shrug", "kind", "dance")
+        learn_correction(Patterns(), "Shrug", "kind", "dance")
 
 
 def test_one_correction_changes_its_words_and_nothing_else(bench: ModuleType) -> None:
     names = list(next(t for t in bench.truths() if t["set"] == "sample_clips")["clips"])
     before = read_names(names)
-    patterns = learn(Patterns(), "arms_crossed__tap_fingers_rt_01", "kind", "gesture", names)
+    patterns = learn_correction(Patterns(), "arms_crossed__tap_fingers_rt_01", "kind", "gesture", names)
     after = read_names(names, patterns)
     changed = {n for n in names if after[n] != before[n]}
     assert changed == {"arms_crossed__tap_fingers_rt_01", "on_hips__tap_fingers_rt_01"}
@@ -466,34 +473,38 @@ def test_one_correction_changes_its_words_and_nothing_else(bench: ModuleType) ->
         assert all(
             getattr(guess, f.name) == getattr(before[name], f.name) for f in fields(guess) if f.name != "kind"
         )
-    assert read_names(names, forget(patterns)) == before
-    assert read_names(names, forget(patterns, "kind")) == before
-    assert read_names(names, forget(patterns, "limb")) == after
+    assert read_names(names, forget_learned(patterns)) == before
+    assert read_names(names, forget_learned(patterns, "kind")) == before
+    assert read_names(names, forget_learned(patterns, "limb")) == after
 
 
 def test_two_corrections_that_agree_teach_a_word() -> None:
-    patterns = learn(learn(Patterns(), "shrug_dx_01", "limb", "right"), "point_dx_01", "limb", "right")
+    patterns = learn_correction(
+        learn_correction(Patterns(), "shrug_dx_01", "limb", "right"), "point_dx_01", "limb", "right"
+    )
     assert told(["offer_dx_03"], patterns=patterns)["limb"] == "right"
     assert told(["offer_sx_03"], patterns=patterns).get("limb") is None
-    torn = learn(patterns, "wave_dx_01", "limb", "left")
+    torn = learn_correction(patterns, "wave_dx_01", "limb", "left")
     assert told(["offer_dx_03"], patterns=torn).get("limb") is None
     assert told(["wave_dx_02"], patterns=torn)["limb"] == "left"  # the very words that were corrected
 
 
 def test_corrections_that_contradict_each_other_teach_nothing() -> None:
-    patterns = learn(learn(Patterns(), "Shrug_01", "kind", "fidget"), "Shrug_02", "kind", "gesture")
+    patterns = learn_correction(
+        learn_correction(Patterns(), "Shrug_01", "kind", "fidget"), "Shrug_02", "kind", "gesture"
+    )
     guess = read_names(["Shrug_03"], patterns)["Shrug_03"].kind
     assert guess is not None and guess.reason == "name says 'Shrug'"
 
 
 def test_a_side_in_the_name_outweighs_what_another_clip_taught() -> None:
-    patterns = learn(Patterns(), "Wave_01", "limb", "left")
+    patterns = learn_correction(Patterns(), "Wave_01", "limb", "left")
     assert told(["Wave_02"], patterns=patterns)["limb"] == "left"
     assert told(["Wave_Rt_01"], patterns=patterns)["limb"] == "right"
 
 
 def test_a_stance_renamed_once_is_renamed_everywhere() -> None:
-    patterns = learn(Patterns(), "IdleSeatedBack01_Shrug01", "stance", "leaning back", SEATED)
+    patterns = learn_correction(Patterns(), "IdleSeatedBack01_Shrug01", "stance", "leaning back", SEATED)
     assert told(SEATED, "IdleSeatedBack01", patterns)["stance"] == "leaning back"
     assert told(SEATED, "IdleSeatedForward01_ToIdleSeatedBack01", patterns)["end_stance"] == "leaning back"
     assert told(SEATED, "IdleSeatedForward01", patterns) == told(SEATED, "IdleSeatedForward01")
@@ -505,11 +516,14 @@ def test_a_corrected_name_is_read_as_corrected_or_teaches_nothing(
     name: str, field: str, data: st.DataObject
 ) -> None:
     value = data.draw(st.sampled_from({"kind": KINDS, "layer": LAYERS, "limb": LIMBS}[field]))
-    patterns = learn(Patterns(), name, field, value)
+    patterns = learn_correction(Patterns(), name, field, value)
     assert Patterns.from_json(patterns.to_json()) == patterns
     if patterns.learned and field != "limb":
         assert told([name], patterns=patterns)[field] == value
-    assert learn(patterns, name, "tags", ["a", "b"]).learned.get("tags") is not None or not patterns.learned
+    assert (
+        learn_correction(patterns, name, "tags", ["a", "b"]).learned.get("tags") is not None
+        or not patterns.learned
+    )
 
 
 # --- numbers and letters that tell stances apart

@@ -11,8 +11,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.formats.clips import read_clips
-from metagraph.research.motion_graph.extending_evaluation import extended, news_of
+from metagraph.formats.clips import read_clip_file
+from metagraph.research.motion_graph.extending_evaluation import extend_by_windows, news_of
 from metagraph.synthesis.constraints import HeardStates
 from metagraph.synthesis.extending.path import (
     NODES,
@@ -21,14 +21,14 @@ from metagraph.synthesis.extending.path import (
     ExtendingRules,
     PathExtender,
     driver_graph,
-    replayed,
+    replay_path,
 )
 from metagraph.synthesis.extending.speech_so_far import MOST, SpeechNews
-from metagraph.synthesis.graph import build
+from metagraph.synthesis.graph import build_graph
 from metagraph.synthesis.search.path import Path
 from metagraph.synthesis.search.path_quality import quality
 from metagraph.synthesis.search.ruled_search import FREE, JumpRules
-from metagraph.synthesis.states import SynthesisError, states_of
+from metagraph.synthesis.states import SynthesisError, read_states
 from tests.synthesis.talking import speech, talkers_graph
 from tests.synthesis.test_search import graph_of
 from tests.thorough import many
@@ -86,7 +86,7 @@ def test_what_was_shown_and_what_is_locked_never_changes(
         assert extender.spent <= graph.rules.work + 60 * 64
     way = [fixed[frame] for frame in range(160)]
     assert all(leads(graph, a, b) for a, b in pairwise(way))
-    again = replayed(graph, told, 160, seed)
+    again = replay_path(graph, told, 160, seed)
     assert again.states.tolist() == way
 
 
@@ -96,7 +96,7 @@ def test_strokes_meet_stresses_that_are_announced_and_cannot_meet_those_that_are
     said = speech(60.0, 50)
     strokes = {}
     for ahead in (None, 1.0):
-        path, _ = extended(graph, said, 60.0, ahead)
+        path, _ = extend_by_windows(graph, said, 60.0, ahead)
         at = np.flatnonzero(graph.heard.peaks[path.states]) / 30
         near = [np.abs(at - s.peak).min() <= 0.117 for s in said if s.peak is not None]
         strokes[ahead] = np.mean(near)
@@ -158,10 +158,10 @@ def test_a_run_that_ends_too_soon_is_left_before_the_least_time() -> None:
 
 @pytest.mark.skipif(not REAL.is_dir(), reason="the recordings of others are not there")
 def test_somebody_elses_clips_go_on_for_a_minute_without_standing_still() -> None:
-    clips = [read_clips(path)[0] for path in sorted(REAL.glob("*Idle*.bvh"))[:8]]
-    states = states_of(clips)
+    clips = [read_clip_file(path)[0] for path in sorted(REAL.glob("*Idle*.bvh"))[:8]]
+    states = read_states(clips)
     sound = HeardStates(np.ones(len(states), np.uint8), np.zeros(len(states), bool))
-    way = np.array(shown(PathExtender(driver_graph(build(states), sound)), 1800))
+    way = np.array(shown(PathExtender(driver_graph(build_graph(states), sound)), 1800))
     looks = quality(states, Path(way, 0.0, np.flatnonzero(np.diff(way) != 1) + 1))
     assert not looks.stands_still and looks.repeated < 0.2 and (np.diff(way) != 0).all()
 
@@ -184,7 +184,7 @@ def test_the_work_of_a_search_is_bounded_and_there_is_an_answer_after_any(graph:
     said = speech(30.0, 51)
     for work in (50, 5_000):
         less = replace(graph, rules=replace(graph.rules, work=work))
-        path, searches = extended(less, said, 30.0, 1.0)
+        path, searches = extend_by_windows(less, said, 30.0, 1.0)
         assert max(spent for spent, _ in searches) <= work + 60 * 64 and len(path.states) == 900
     assert NODES >= 1000
 

@@ -12,10 +12,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.graph.conversation.model import Segment
-from metagraph.synthesis.constraints import ALL, HeardStates, heard, wanted
+from metagraph.synthesis.constraints import ALL, HeardStates, find_heard_at, list_wanted
 from metagraph.synthesis.graph import MotionGraph
 from metagraph.synthesis.search.path_quality import quality
-from metagraph.synthesis.search.ruled_search import FREE, JUMP_RULES, JumpRules, find_path, ruled
+from metagraph.synthesis.search.ruled_search import FREE, JUMP_RULES, JumpRules, apply_rules, find_path
 from metagraph.synthesis.states import SynthesisError
 from tests.synthesis.test_search import graph_of
 
@@ -36,7 +36,7 @@ def moving(frames: int, takes: list[int], links: dict[tuple[int, int], float]) -
 def test_a_path_does_not_stand_still_where_a_frame_resembles_itself() -> None:
     links = {(n, n): 0.001 for n in range(200)} | {(n, (n + 90) % 200): 0.2 for n in range(0, 200, 5)}
     graph = moving(200, [0, 200], links)
-    asked = wanted([], 12.0, use=())
+    asked = list_wanted([], 12.0, use=())
     frozen = find_path(graph, anything(graph), asked, rules=FREE)
     looks = quality(graph.states, frozen)
     assert looks.stands_still and looks.frozen > 3 and looks.repeated > 0.3
@@ -61,7 +61,7 @@ def test_what_rules_leave_is_what_they_say(data: st.DataObject) -> None:
         recent=data.draw(st.sampled_from([0.0, 3.0])),
         again=0.8,
     )
-    out = ruled(graph, rules)
+    out = apply_rules(graph, rules)
     left = {}
     for source in range(frames):
         for place in range(out.starts[source], out.starts[source + 1]):
@@ -83,7 +83,7 @@ def test_transitions_are_as_far_apart_as_rules_say_and_cost_what_they_look_like(
     links = {(int(a), int(b)): 0.1 for a, b in chance.integers(0, 300, (4000, 2)) if b != a + 1}
     graph = moving(300, [0, 100, 200, 300], links)
     for search in ("exact", "greedy"):
-        path = find_path(graph, anything(graph), wanted([], 20.0, use=()), search)  # type: ignore[arg-type]
+        path = find_path(graph, anything(graph), list_wanted([], 20.0, use=()), search)  # type: ignore[arg-type]
         assert len(path.jumps) >= 4 and (np.diff(path.jumps) >= JUMP_RULES.frames).all()
         assert path.cost == pytest.approx(0.1 * len(path.jumps), abs=1e-5)
         assert path.price >= path.cost + JUMP_RULES.price * len(path.jumps) - 1e-4
@@ -92,39 +92,39 @@ def test_transitions_are_as_far_apart_as_rules_say_and_cost_what_they_look_like(
 def test_where_rules_leave_no_way_the_remedy_is_named() -> None:
     graph = moving(40, [0, 40], {(n, n - 8): 0.1 for n in range(8, 40)})
     with pytest.raises(SynthesisError, match="or let it jump as often as it likes"):
-        find_path(graph, anything(graph), wanted([], 10.0, use=()))
-    assert len(find_path(graph, anything(graph), wanted([], 10.0, use=()), rules=FREE).states) == 300
+        find_path(graph, anything(graph), list_wanted([], 10.0, use=()))
+    assert len(find_path(graph, anything(graph), list_wanted([], 10.0, use=()), rules=FREE).states) == 300
 
 
 def test_two_clauses_do_not_pass_as_one() -> None:
     graph = graph_of(120, [0, 120], {})
     two = [Segment("clause", 1.0, 2.0, 1.5), Segment("clause", 2.0, 3.0, 2.5)]
     one = [Segment("clause", 1.0, 3.0, 1.5)]
-    spoken, asked_one = heard(graph.states, [two]), wanted(one, 3.5)
+    spoken, asked_one = find_heard_at(graph.states, [two]), list_wanted(one, 3.5)
     with pytest.raises(SynthesisError):
         find_path(graph, spoken, asked_one)
-    loose = find_path(graph, spoken, wanted(one, 3.5, edges=False))
+    loose = find_path(graph, spoken, list_wanted(one, 3.5, edges=False))
     assert not len(loose.jumps)
-    assert not len(find_path(graph, spoken, wanted(two, 3.5)).jumps)
+    assert not len(find_path(graph, spoken, list_wanted(two, 3.5)).jumps)
     with pytest.raises(SynthesisError):  # nor one as two
-        find_path(graph, heard(graph.states, [one]), wanted(two, 3.5))
+        find_path(graph, find_heard_at(graph.states, [one]), list_wanted(two, 3.5))
 
 
 def test_a_clause_does_not_begin_with_the_middle_of_another() -> None:
     graph = graph_of(200, [0, 100, 200], {(20, 130): 0.1})
     long = [[], [Segment("clause", 0.5, 3.0, 1.6)]]  # frames 115 to 190: 130 lies within
-    asked = wanted([Segment("clause", 0.7, 2.7, 1.3)], 2.9)
-    spoken = heard(graph.states, long)
+    asked = list_wanted([Segment("clause", 0.7, 2.7, 1.3)], 2.9)
+    spoken = find_heard_at(graph.states, long)
     with pytest.raises(SynthesisError):
         find_path(graph, spoken, asked, rules=FREE)
-    loose = wanted([Segment("clause", 0.7, 2.7, 1.3)], 2.5, edges=False)
+    loose = list_wanted([Segment("clause", 0.7, 2.7, 1.3)], 2.5, edges=False)
     assert find_path(graph, spoken, loose, rules=FREE).jumps.tolist() == [21]
 
 
 @pytest.mark.parametrize("rules", [FREE, JUMP_RULES])
 def test_a_graph_that_was_searched_is_let_go(rules: JumpRules) -> None:
     graph = moving(200, [0, 200], {(n, (n + 90) % 200): 0.2 for n in range(0, 200, 5)})
-    find_path(graph, anything(graph), wanted([], 2.0, use=()), rules=rules)
+    find_path(graph, anything(graph), list_wanted([], 2.0, use=()), rules=rules)
     gone = weakref.ref(graph)
     del graph
     gc.collect()

@@ -9,10 +9,10 @@ from app.features.conversation.drags.new import NewDrag
 from app.features.conversation.drags.peak import PeakDrag
 from app.features.conversation.drags.scrub import SegmentScrub
 from app.features.conversation.segment_hits import SegmentHit
-from app.widgets.gesture import Gesture
+from app.widgets.gesture import PointerDrag
 
 
-def gesture_for(view: SegmentHost, hit: SegmentHit) -> Gesture:
+def gesture_for(view: SegmentHost, hit: SegmentHit) -> PointerDrag:
     """Return what a press on something begins."""
     if hit.part in ("start", "end"):
         return EdgeDrag(view, hit)

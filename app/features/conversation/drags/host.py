@@ -7,20 +7,20 @@ from typing import Protocol
 from app.features.conversation.segment_editing import Editing
 from app.features.conversation.sound_reading import Sounds
 from app.project.document import Document, Edit
-from app.stage.session import Session
-from app.widgets.lane_geometry import Scale
+from app.stage.session import StageSession
+from app.widgets.lane_geometry import LaneScale
 
 
 class SegmentHost(Protocol):
     """The view as its gestures see it. each: pixels a second. first: the first second in sight."""
 
     document: Document
-    session: Session
+    session: StageSession
     editing: Editing
     sounds: Sounds
     each: float
     first: float
 
-    def scale(self) -> Scale: ...
+    def scale(self) -> LaneScale: ...
     def hold(self, edit: Edit | None) -> None: ...
     def look_at(self, first: float) -> None: ...

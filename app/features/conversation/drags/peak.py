@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import QPointF
 
 from app.features.conversation.drags.segment import SegmentDrag
-from app.features.conversation.segment_hits import snapped
+from app.features.conversation.segment_hits import snap_time
 from app.project.document import Edit
 from app.translation import tr, tr_noop
 from metagraph.graph.conversation import edits as conversation_edits
@@ -24,6 +24,6 @@ class PeakDrag(SegmentDrag):
         heard = view.sounds.of(of, hit.side)
         to = segment.peak + (at.x() - self.origin.x()) / view.each
         tops = [m for m in (heard.maxima if heard is not None else ()) if segment.start <= m <= segment.end]
-        to = min(max(segment.start, snapped(to, tops, view.scale(), not free)), segment.end)
+        to = min(max(segment.start, snap_time(to, tops, view.scale(), not free)), segment.end)
         self.words, self.seconds = tr("Stress at {to:.2f} s", to=to), to
         return lambda p: conversation_edits.set_peak(p, ident, hit.side, hit.at, to)

@@ -12,17 +12,17 @@ from app.features.graph.graph_drops import Drop
 from app.features.graph.graph_hover import Hover
 from app.features.graph.graph_layout import GraphHit, Layout
 from app.project.document import Document
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.stage.thumbnails import Thumbnails
-from app.widgets.gesture import Hand
+from app.widgets.gesture import PointerHand
 
 
 class GraphHost(Protocol):
     """The canvas as its gestures see it. hand: what holds them."""
 
     document: Document
-    session: Session
-    hand: Hand
+    session: StageSession
+    hand: PointerHand
     hover: Hover
     thumbnails: Thumbnails
 

@@ -7,7 +7,7 @@ from PySide6.QtGui import QDrag
 
 from app.features.graph.drags.action import ActionDrag
 from app.translation import tr_plural
-from app.widgets.mime import drag_picture, mime
+from app.widgets.mime import drag_picture, make_mime
 
 
 class RowDrag(ActionDrag):
@@ -22,7 +22,7 @@ class RowDrag(ActionDrag):
         actions = chosen if self.action in chosen else (self.action,)
         widget = self.host.widget
         drag = QDrag(widget)
-        drag.setMimeData(mime(actions=actions))
+        drag.setMimeData(make_mime(actions=actions))
         action = self.host.document.project.action(self.action)
         picture = self.host.thumbnails.picture(action.clip, bare=True) if action is not None else None
         words = (

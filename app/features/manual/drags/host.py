@@ -9,8 +9,8 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 
 from app.features.manual.manual_scene import ManualScene, ManualView
 from app.project.document import Document
-from app.stage.session import Session
-from app.widgets.gesture import Hand
+from app.stage.session import StageSession
+from app.widgets.gesture import PointerHand
 from metagraph.graph.model import Project
 
 
@@ -20,8 +20,8 @@ class ManualHost(Protocol):
     """
 
     document: Document
-    session: Session
-    hand: Hand
+    session: StageSession
+    hand: PointerHand
     view: ManualView
     at: QPointF
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from app.features.timing_editor.axis import Axis
-from app.features.timing_editor.track import Kept
+from app.features.timing_editor.track import KeptHand
 from app.project.document import Document
 from app.stage.transport import Transport
 from metagraph.suggest.jumps.snapping import Snap
@@ -21,7 +21,7 @@ class Host(Protocol):
     snapped: Snap | None
     held: str
     snaps: tuple[Snap, ...]
-    stretched: tuple[str, Kept] | None
+    stretched: tuple[str, KeptHand] | None
 
     @property
     def transport(self) -> Transport: ...

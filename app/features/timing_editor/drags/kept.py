@@ -9,12 +9,12 @@ from PySide6.QtCore import QPointF
 
 from app.features.timing_editor.drags.host import Host
 from app.features.timing_editor.drags.rows import SNAP, RowsDrag
-from app.features.timing_editor.kept_rows import Part, change
+from app.features.timing_editor.kept_rows import KeptPart, change
 from app.features.timing_editor.track import Facts
 from app.translation import tr
-from app.widgets.vocabulary import word
+from app.widgets.vocabulary import vocabulary_word
 from metagraph.playback.timing.handles import WORDS
-from metagraph.suggest.jumps.snapping import Snap, nearest
+from metagraph.suggest.jumps.snapping import Snap, find_nearest_snap
 
 
 class KeptDrag(RowsDrag):
@@ -24,7 +24,7 @@ class KeptDrag(RowsDrag):
 
     def __init__(self, host: Host, facts: Facts, name: str, playhead: float | None) -> None:
         super().__init__(host, facts)
-        part = Part.of(name)
+        part = KeptPart.of(name)
         assert part is not None
         self.part = part
         self.kept = self.now = next(k for k in facts.kept if k.place == part.place)
@@ -37,7 +37,7 @@ class KeptDrag(RowsDrag):
         by = (at.x() - self.origin.x()) / host.axis.each
         if self.part.end:
             was = float(getattr(self.kept, self.part.end))
-            snap = None if free else nearest(self.snaps, was + by, SNAP / host.axis.each)
+            snap = None if free else find_nearest_snap(self.snaps, was + by, SNAP / host.axis.each)
             moment = min(max(0.0, snap.at if snap is not None else was + by), last)
             self.now = self.kept.with_end(self.part.end, moment)
         else:
@@ -60,7 +60,7 @@ class KeptDrag(RowsDrag):
 def _snaps(facts: Facts, playhead: float | None) -> Iterator[Snap]:
     for handle in facts.handles:
         if handle.name not in ("in", "out"):
-            yield Snap(handle.at, tr("the action's {handle}", handle=word(WORDS[handle.name])))
+            yield Snap(handle.at, tr("the action's {handle}", handle=vocabulary_word(WORDS[handle.name])))
     for stay in facts.stays:
         yield Snap(stay.first, tr("the clip is held from here on"))
         yield Snap(stay.last, tr("the clip goes on here"))

@@ -5,10 +5,10 @@ from __future__ import annotations
 from PySide6.QtCore import QPointF
 
 from app.features.timing_editor.drags.host import Host
-from app.widgets.gesture import Gesture, Reason
+from app.widgets.gesture import PointerDrag, Reason
 
 
-class Panning(Gesture):
+class Panning(PointerDrag):
     """The rows follow the pointer."""
 
     begun = True

@@ -6,10 +6,10 @@ from PySide6.QtCore import QPointF
 
 from app.features.timing_editor.drags.host import Host
 from app.features.timing_editor.track import Facts
-from app.widgets.gesture import Gesture, Reason
+from app.widgets.gesture import PointerDrag, Reason
 
 
-class Scrubbing(Gesture):
+class Scrubbing(PointerDrag):
     """The character follows the pointer."""
 
     begun = True

@@ -15,8 +15,8 @@ from app.translation import tr
 from app.widgets.gesture import Reason
 from metagraph.graph import edits
 from metagraph.graph.model import Project
-from metagraph.playback.timing.handles import block_moved, moved_by, slipped
-from metagraph.suggest.jumps.snapping import Snap, nearest
+from metagraph.playback.timing.handles import block_moved, move_handle_by, slip_action
+from metagraph.suggest.jumps.snapping import Snap, find_nearest_snap
 
 MERGE = "timing"
 Changes = Mapping[str, Mapping[str, Any]]
@@ -48,7 +48,7 @@ class TimingDrag(RowsDrag):
             return
         axis = self.host.axis
         by = axis.seconds(at.x()) - axis.seconds(self.origin.x())
-        snap = None if free else nearest(self.snaps, self.grip + by, SNAP / axis.each)
+        snap = None if free else find_nearest_snap(self.snaps, self.grip + by, SNAP / axis.each)
         by = snap.at - self.grip if snap is not None else by
         self._move(by)
         seconds = min(max(0.0, self.grip + by), self.facts.entry.duration)
@@ -79,7 +79,7 @@ class TimingDrag(RowsDrag):
 
 def handle_change(idents: tuple[str, ...], handle: str) -> Callable[[Project, float], Changes]:
     """Return what dragging a handle changes in some actions."""
-    return lambda project, by: moved_by(project, idents, handle, by)
+    return lambda project, by: move_handle_by(project, idents, handle, by)
 
 
 def block_change(idents: tuple[str, ...], block: str) -> Callable[[Project, float], Changes]:
@@ -92,7 +92,9 @@ def block_change(idents: tuple[str, ...], block: str) -> Callable[[Project, floa
         for ident in idents:
             action = project.action(ident)
             if action is not None and action.clip in project.clips:
-                fields = block_moved(project, action, block, by) if block else slipped(project, action, by)
+                fields = (
+                    block_moved(project, action, block, by) if block else slip_action(project, action, by)
+                )
                 out[ident] = {"timing": fields}
         return out
 

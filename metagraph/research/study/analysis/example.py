@@ -17,7 +17,7 @@ SCATTERS = (0.25, 0.5, 1.0)  # standard deviations of the logs of people's ratio
 
 
 @dataclass(frozen=True)
-class Example:
+class PublishedExample:
     """minutes: a clip, meta and by hand. ratio: without an interval. with_tutorial: the ratio when the week
     before counts, in days as long as those of the work. needed: scatter -> people for an 80 % chance to show
     such a ratio.
@@ -29,16 +29,16 @@ class Example:
     needed: dict[float, int | None]
 
 
-def example() -> Example:
+def compute_example() -> PublishedExample:
     """Return the published figures, recomputed."""
     ratio = stats.ratio([MANUAL_HOURS], [META_HOURS])
     tutorial = WEEK * MANUAL_HOURS / MANUAL_DAYS
-    needed = {s: stats.people_needed(log(ratio.value) / s) for s in SCATTERS}
+    needed = {s: stats.count_pairs_needed(log(ratio.value) / s) for s in SCATTERS}
     minutes = META_HOURS * 60 / CLIPS, MANUAL_HOURS * 60 / CLIPS
-    return Example(minutes, ratio, (MANUAL_HOURS + tutorial) / META_HOURS, needed)
+    return PublishedExample(minutes, ratio, (MANUAL_HOURS + tutorial) / META_HOURS, needed)
 
 
-def told(found: Example) -> str:
+def describe_example(found: PublishedExample) -> str:
     """Return the example in words."""
     meta, manual = found.minutes
     lines = [
@@ -53,7 +53,7 @@ def told(found: Example) -> str:
         "of them.",
         "",
         "What it does not show:",
-        f"- {stats.cautions(found.ratio, None)[0]}",
+        f"- {stats.ratio_cautions(found.ratio, None)[0]}",
         "- The meta-graph came first and the state machine second, so practice with the clips helped the "
         "second.",
         "- Before the state machine there was a week of tutorial and often help, before the meta-graph an "

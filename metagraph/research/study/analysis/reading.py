@@ -16,16 +16,16 @@ from metagraph.errors import FileError
 from metagraph.formats.store import open_project, read_project
 from metagraph.graph.model import Layer, Project
 from metagraph.research.study.logs.engine_import import engine_logs
-from metagraph.research.study.logs.gaps import Gap, gaps
-from metagraph.research.study.logs.log import Log, Standing, TaskRun, read
-from metagraph.research.study.logs.withdrawal import deleted
-from metagraph.research.study.machines.klm import USUAL, Times, predicted
+from metagraph.research.study.logs.gaps import LogGap, find_log_gaps
+from metagraph.research.study.logs.log import Standing, StudyLog, TaskRun, read_log
+from metagraph.research.study.logs.withdrawal import read_deleted
+from metagraph.research.study.machines.klm import USUAL, OperatorTimes, predict_seconds
 from metagraph.research.study.machines.normal_machine import NormalMachine, normal
-from metagraph.research.study.plan.freeze import changed, differences, listed
+from metagraph.research.study.plan.freeze import describe_study_differences, find_changed_names, list_people
 from metagraph.research.study.questionnaires import BUILT_IN, sus_score, tlx_raw, tlx_weighted
 from metagraph.research.study.scores.jumps import with_jumps
 from metagraph.research.study.scores.machines import TOLERANCE, Score, score
-from metagraph.research.study.scores.tasks import Answer
+from metagraph.research.study.scores.tasks import ItemAnswer
 from metagraph.research.study.scores.uses import uses
 from metagraph.research.study.study_plan import Study, read_study
 
@@ -51,7 +51,7 @@ class AnalysisRow:
     clips: int
     predicted: float
     score: Score | None = None
-    gaps: tuple[Gap, ...] = ()
+    gaps: tuple[LogGap, ...] = ()
     minutes: float | None = None
     uses: Mapping[str, float] = field(default_factory=dict)
 
@@ -71,7 +71,7 @@ class AnalysisRow:
 
 
 @dataclass(frozen=True, slots=True)
-class Rating:
+class StudyRating:
     """What a questionnaire amounts to, or what was answered to one number item of others. condition: None for
     the whole study.
     """
@@ -96,26 +96,26 @@ class Data:
     tasks: Mapping[str, str]
     participants: tuple[str, ...]
     rows: tuple[AnalysisRow, ...] = ()
-    ratings: tuple[Rating, ...] = ()
-    answers: tuple[Answer, ...] = ()
+    ratings: tuple[StudyRating, ...] = ()
+    answers: tuple[ItemAnswer, ...] = ()
     missing: tuple[str, ...] = ()
     tolerance: float = TOLERANCE
     simulated: bool = False
     unit: Literal["task", "clip"] | None = None
-    people: Mapping[str, Taken] = field(default_factory=dict)
+    people: Mapping[str, StudyParticipant] = field(default_factory=dict)
     sites: Mapping[str, str] = field(default_factory=dict)
     smallest: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
-class Taken:
+class StudyParticipant:
     """How a participant took part. first: the condition the plan gives them first."""
 
     standing: Standing
     first: str
 
 
-def prediction(run: TaskRun, times: Times = USUAL) -> float:
+def prediction(run: TaskRun, times: OperatorTimes = USUAL) -> float:
     """Return the seconds the keystroke-level model predicts for a task: its operators, a drag as a pointing
     besides its two button operators, and a thought for every edit and for every step back.
     """
@@ -127,10 +127,10 @@ def prediction(run: TaskRun, times: Times = USUAL) -> float:
         "H": ops["H"],
         "M": run.edits + run.undos,
     }
-    return predicted(counts, times)
+    return predict_seconds(counts, times)
 
 
-def collect(folder: str | Path, jumps: bool = True, progress: Progress | None = None) -> Data:
+def collect_study(folder: str | Path, jumps: bool = True, progress: Progress | None = None) -> Data:
     """Read a study's folder, or study file, and what lies beside it. jumps: judge them, which needs the
     references' clips. Raises FileError where the study file cannot be read; whatever else is wrong is told in
     `missing`.
@@ -140,11 +140,11 @@ def collect(folder: str | Path, jumps: bool = True, progress: Progress | None = 
     missing: list[str] = []
     references = _References(study, jumps, missing)
     rows: list[AnalysisRow] = []
-    answers: list[Answer] = []
-    people: dict[str, Taken] = {}
+    answers: list[ItemAnswer] = []
+    people: dict[str, StudyParticipant] = {}
     orders = _orders(study)
     worked: dict[str, Mapping[str, str] | None] = {}
-    gone = deleted(study)
+    gone = read_deleted(study)
     simulated = False
     for n, participant in enumerate(plan.ids):
         if progress is not None:
@@ -152,10 +152,10 @@ def collect(folder: str | Path, jumps: bool = True, progress: Progress | None = 
         first = orders.get(participant, (("", ()),))[0][0]
         if participant in gone and not study.log(participant).is_file():
             missing.append(f"{participant}: withdrew, and all data was deleted.")
-            people[participant] = Taken("deleted", first)
+            people[participant] = StudyParticipant("deleted", first)
             continue
         log = _log(study, participant, missing)
-        people[participant] = Taken(log.standing if log is not None else "not begun", first)
+        people[participant] = StudyParticipant(log.standing if log is not None else "not begun", first)
         if log is None or log.standing == "withdrawn":
             continue
         if log.tasks():
@@ -174,7 +174,7 @@ def collect(folder: str | Path, jumps: bool = True, progress: Progress | None = 
     missing += [
         f"{name}: a folder of data, but nobody of that name takes part; it is left out." for name in strangers
     ]
-    missing += differences(study, worked, jumps)
+    missing += describe_study_differences(study, worked, jumps)
     ratings = _ratings(study, answers, missing)
     return Data(
         plan.title,
@@ -218,13 +218,13 @@ def _unit(study: Study) -> Literal["task", "clip"] | None:
     return None if groups else "clip"
 
 
-def _log(study: Study, participant: str, missing: list[str]) -> Log | None:
+def _log(study: Study, participant: str, missing: list[str]) -> StudyLog | None:
     path = study.log(participant)
     if not path.is_file():
         missing.append(f"{participant}: has not begun.")
         return None
     try:
-        log = read(path)
+        log = read_log(path)
     except FileError as error:
         missing.append(f"{participant}: {error}")
         return None
@@ -236,9 +236,9 @@ def _log(study: Study, participant: str, missing: list[str]) -> Log | None:
         missing.append(f"{participant}: worked with another version of the study file.")
     told = [e["digests"] for e in log.events if e["type"] == "frozen" and isinstance(e.get("digests"), dict)]
     for one, other in pairwise(told):
-        names = changed(one, other)
+        names = find_changed_names(one, other)
         if names:
-            missing.append(f"{participant}: {listed(names)} changed between two parts of the sitting.")
+            missing.append(f"{participant}: {list_people(names)} changed between two parts of the sitting.")
     if log.standing == "withdrawn":
         missing.append(f"{participant}: withdrew; their data is left out.")
     elif log.standing == "declined":
@@ -248,10 +248,10 @@ def _log(study: Study, participant: str, missing: list[str]) -> Log | None:
     return log
 
 
-def _rows(study: Study, log: Log, references: _References, missing: list[str]) -> list[AnalysisRow]:
+def _rows(study: Study, log: StudyLog, references: _References, missing: list[str]) -> list[AnalysisRow]:
     out: list[AnalysisRow] = []
     order: list[str] = []
-    found_gaps, found_uses = gaps(log.events), uses(log.events)
+    found_gaps, found_uses = find_log_gaps(log.events), uses(log.events)
     for run in log.tasks():
         who = f"{log.participant}, {run.task} ({run.condition})"
         if run.condition not in order:
@@ -288,12 +288,12 @@ def _rows(study: Study, log: Log, references: _References, missing: list[str]) -
 def _engine_rows(study: Study, path: Path, participant: str, missing: list[str]) -> list[AnalysisRow]:
     """Return the tasks done in an engine; nobody counts mistakes there."""
     try:
-        log = read(path)
+        log = read_log(path)
     except FileError as error:
         missing.append(f"{participant}: {error}")
         return []
     missing += [f"{participant}, {path.stem}: {words}." for words in log.problems]
-    known, breaks = {t.id: t for t in study.plan.tasks}, gaps(log.events)
+    known, breaks = {t.id: t for t in study.plan.tasks}, find_log_gaps(log.events)
     out = []
     for run in log.tasks():
         if run.task not in known:
@@ -355,22 +355,22 @@ class _References:
         return with_jumps(found, attempt, right[0]) if self.jumps else found
 
 
-def _ratings(study: Study, answers: Sequence[Answer], missing: list[str]) -> tuple[Rating, ...]:
+def _ratings(study: Study, answers: Sequence[ItemAnswer], missing: list[str]) -> tuple[StudyRating, ...]:
     """Return the questionnaires' scores, and of other questionnaires the items answered with numbers."""
     sheets: dict[tuple[str, str, str | None, int], dict[str, Any]] = {}
     for a in answers:
         sheets.setdefault((a.participant, a.questionnaire, a.condition, a.index), {})[a.item] = a.value
     titles = {q.id: {i.id: i.title or i.text for i in q.items} for q in study.plan.questions()}
-    out: list[Rating] = []
+    out: list[StudyRating] = []
     for (who, sheet, condition, _), values in sheets.items():
         if sheet in SCORED:
             name, formula = SCORED[sheet]
             try:
-                out.append(Rating(who, name, condition, formula(values)))
+                out.append(StudyRating(who, name, condition, formula(values)))
             except ValueError as error:
                 missing.append(f"{who}: {BUILT_IN[sheet].title} cannot be scored: {error}.")
             continue
         for item, value in values.items():
             if isinstance(value, int | float) and not isinstance(value, bool):
-                out.append(Rating(who, titles.get(sheet, {}).get(item, item), condition, float(value)))
+                out.append(StudyRating(who, titles.get(sheet, {}).get(item, item), condition, float(value)))
     return tuple(out)

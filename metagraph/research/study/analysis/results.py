@@ -13,17 +13,33 @@ from math import exp, inf, log
 import numpy as np
 
 from metagraph.research.study.analysis.reading import TOTALS, AnalysisRow, Data
-from metagraph.research.study.logs.gaps import Vanished, vanished
+from metagraph.research.study.logs.gaps import Vanished, count_vanished
 from metagraph.research.study.plan.planning import Equivalence, equivalence
 from metagraph.research.study.scores.machines import WORDS, Score, What
 from metagraph.research.study.scores.tasks import SPENT
 from metagraph.research.study.scores.uses import USES
 from metagraph.research.study.statistics import small_samples as stats
-from metagraph.research.study.statistics.comparison import ABOVE, BELOW, PAIR, Comparison, compare
+from metagraph.research.study.statistics.comparison import (
+    ABOVE,
+    BELOW,
+    PAIR,
+    ConditionComparison,
+    compare_conditions,
+)
 from metagraph.research.study.statistics.sensitivity import Sensitivity, sensitivity
 from metagraph.research.study.statistics.small_samples import Estimate, Test
 
-__all__ = ["ABOVE", "BELOW", "MISTAKES", "TITLES", "Comparison", "Measure", "Results", "analyse", "compare"]
+__all__ = [
+    "ABOVE",
+    "BELOW",
+    "MISTAKES",
+    "TITLES",
+    "ConditionComparison",
+    "Results",
+    "StudyMeasure",
+    "analyse_study",
+    "compare_conditions",
+]
 
 TITLES: Mapping[str, str] = {
     "meta": "meta-graph",
@@ -35,7 +51,7 @@ TITLES: Mapping[str, str] = {
 
 
 @dataclass(frozen=True)
-class Measure:
+class StudyMeasure:
     """Something counted or rated under both conditions. means: by condition, with t intervals. difference: of
     pairs, ABOVE less BELOW.
     """
@@ -79,26 +95,26 @@ class Results:
     """
 
     data: Data
-    time: Comparison | None = None
+    time: ConditionComparison | None = None
     by_task: Mapping[str, Estimate] = field(default_factory=dict)
     curves: Mapping[str, Curve] = field(default_factory=dict)
     spent: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     predicted: Mapping[str, Predicted] = field(default_factory=dict)
-    mistakes: tuple[Measure, ...] = ()
-    ratings: tuple[Measure, ...] = ()
+    mistakes: tuple[StudyMeasure, ...] = ()
+    ratings: tuple[StudyMeasure, ...] = ()
     together: tuple[tuple[str, Test, float | None], ...] = ()
     sensitivity: Sensitivity | None = None
     vanished: Mapping[str, Vanished] = field(default_factory=dict)
-    others: tuple[Comparison, ...] = ()
+    others: tuple[ConditionComparison, ...] = ()
     by_site: Mapping[str, Estimate] = field(default_factory=dict)
     equivalence: Equivalence | None = None
 
 
-def analyse(data: Data) -> Results:
+def analyse_study(data: Data) -> Results:
     """Return what the data show."""
     done = [r for r in data.rows if r.done]
-    time = compare(done, data.unit)
-    ratios = {t: compare([r for r in done if r.run.task == t]) for t in data.tasks}
+    time = compare_conditions(done, data.unit)
+    ratios = {t: compare_conditions([r for r in done if r.run.task == t]) for t in data.tasks}
     conditions = [c for c in data.conditions if any(r.run.condition == c for r in done)]
     by = {c: [r for r in done if r.run.condition == c] for c in conditions}
     mistakes = tuple(
@@ -118,7 +134,7 @@ def analyse(data: Data) -> Results:
         for m in (*mistakes[:1], *(m for m in ratings if m.name in TOTALS))
         if m.test is not None and m.test.p is not None
     ]
-    others = [compare(done, data.unit, (c, BELOW)) for c in conditions if c not in PAIR]
+    others = [compare_conditions(done, data.unit, (c, BELOW)) for c in conditions if c not in PAIR]
     return Results(
         data,
         time,
@@ -133,7 +149,7 @@ def analyse(data: Data) -> Results:
             for (name, test), p in zip(asked, stats.holm([t.p for _, t in asked]), strict=True)
         ),
         sensitivity(done, time, data.sites) if time is not None else None,
-        {c: vanished([(r.run.seconds, r.gaps) for r in rows]) for c, rows in by.items()},
+        {c: count_vanished([(r.run.seconds, r.gaps) for r in rows]) for c, rows in by.items()},
         tuple(found for found in others if found is not None),
         {s: e for s in dict.fromkeys(data.sites.values()) if (e := _site(done, data, s)) is not None},
         equivalence(time.logs, data.smallest) if time is not None and data.smallest is not None else None,
@@ -141,7 +157,7 @@ def analyse(data: Data) -> Results:
 
 
 def _site(done: Sequence[AnalysisRow], data: Data, site: str) -> Estimate | None:
-    found = compare([r for r in done if data.sites.get(r.run.participant) == site], data.unit)
+    found = compare_conditions([r for r in done if data.sites.get(r.run.participant) == site], data.unit)
     return found.ratio if found is not None else None
 
 
@@ -241,7 +257,7 @@ def _rated(data: Data, name: str) -> list[tuple[str, str, float]]:
 
 def _measure(
     name: str, values: Sequence[tuple[str, str, float]], least: float = -inf, most: float = inf
-) -> Measure | None:
+) -> StudyMeasure | None:
     """Return a measure of (participant, condition, value), several of one participant taken together by their
     mean. least, most: what a value can be; intervals do not go beyond.
     """
@@ -254,10 +270,10 @@ def _measure(
     means = {c: _within(stats.mean(list(people.values())), least, most) for c, people in each.items()}
     both = sorted(each.get(ABOVE, {}).keys() & each.get(BELOW, {}).keys())
     if not both:
-        return Measure(name, means, None, None)
+        return StudyMeasure(name, means, None, None)
     a, b = ([each[c][who] for who in both] for c in (ABOVE, BELOW))
     difference = stats.mean([x - y for x, y in zip(a, b, strict=True)])
-    return Measure(name, means, difference, stats.paired_t(a, b), stats.effect_size(a, b))
+    return StudyMeasure(name, means, difference, stats.paired_t(a, b), stats.effect_size(a, b))
 
 
 def _within(found: Estimate, least: float, most: float) -> Estimate:

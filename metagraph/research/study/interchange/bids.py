@@ -21,8 +21,8 @@ from metagraph.formats.atomic import write_together
 from metagraph.research.study.analysis.reading import Data
 from metagraph.research.study.analysis.results import Results
 from metagraph.research.study.interchange.bids_phenotype import phenotype
-from metagraph.research.study.logs.log import Event, read
-from metagraph.research.study.reports.tables import clips, estimates, mistakes, participants, table
+from metagraph.research.study.logs.log import Event, read_log
+from metagraph.research.study.reports.tables import clips, estimates, format_rows, mistakes, participants
 from metagraph.research.study.reports.tables import tasks as task_table
 from metagraph.research.study.scores.tasks import moment
 from metagraph.research.study.study_plan import Study
@@ -143,18 +143,20 @@ def write_bids(study: Study, results: Results, out: Path) -> list[Path]:
     content: dict[str, str] = {
         "dataset_description.json": _json(_description(study.plan.title, "raw")),
         "README": _readme(study, results),
-        "participants.tsv": table(("participant_id", *columns[1:]), rows, "\t"),
+        "participants.tsv": format_rows(("participant_id", *columns[1:]), rows, "\t"),
         "participants.json": _json({c: PEOPLE[c] for c in ("participant_id", *columns[1:]) if c in PEOPLE}),
     }
     content |= {f"task-{label}_events.json": _json(DESCRIBED) for label in tasks.values()}
     for who, label in there.items():
-        for (task, condition), found in _tasks(read(study.log(who)).events).items():
+        for (task, condition), found in _tasks(read_log(study.log(who)).events).items():
             if task in tasks:
                 stem = f"sub-{label}/beh/sub-{label}_task-{tasks[task]}_acq-{condition}"
-                content[f"{stem}_events.tsv"] = table(COLUMNS, sorted(found, key=lambda row: row[0]), "\t")
+                content[f"{stem}_events.tsv"] = format_rows(
+                    COLUMNS, sorted(found, key=lambda row: row[0]), "\t"
+                )
                 content |= _summary(study, data, who, task, condition, stem)
     for name, ((heads, answered), told) in phenotype(study, data, there).items():
-        content[f"phenotype/{name}.tsv"] = table(heads, answered, "\t")
+        content[f"phenotype/{name}.tsv"] = format_rows(heads, answered, "\t")
         content[f"phenotype/{name}.json"] = _json(told)
     content |= _derived(study, results)
     return write_together(out, {name: text.encode() for name, text in content.items()})
@@ -199,7 +201,7 @@ def _summary(study: Study, data: Data, who: str, task: str, condition: str, stem
         if c.endswith("seconds") or c in ("wall", "paused", "away"):
             told[c]["Units"] = "s"
     return {
-        f"{stem}_beh.tsv": table(columns[3:], [row[3:] for row in mine], "\t"),
+        f"{stem}_beh.tsv": format_rows(columns[3:], [row[3:] for row in mine], "\t"),
         f"{stem}_beh.json": _json(told),
     }
 
@@ -216,7 +218,7 @@ def _derived(study: Study, results: Results) -> dict[str, str]:
         "estimates": (estimates(results), "The ratio of times, as reported and reckoned otherwise"),
     }
     for name, ((columns, rows), words) in described.items():
-        out[f"{where}/{name}.tsv"] = table(columns, rows, "\t")
+        out[f"{where}/{name}.tsv"] = format_rows(columns, rows, "\t")
         told: dict[str, Any] = {c: {"Description": c.replace("_", " ")} for c in columns}
         out[f"{where}/{name}.json"] = _json({"Description": words, **told})
     return out

@@ -12,8 +12,8 @@ from xml.etree import ElementTree
 from metagraph import __version__
 from metagraph.common.xml_text import xml_text
 from metagraph.formats.atomic import write_atomically
-from metagraph.research.study.logs.log import Log, read
-from metagraph.research.study.scores.tasks import Event, steps
+from metagraph.research.study.logs.log import StudyLog, read_log
+from metagraph.research.study.scores.tasks import Event, list_event_steps
 from metagraph.research.study.study_plan import Study
 
 EXTENSIONS = {
@@ -68,7 +68,7 @@ def write_xes(study: Study, out: Path) -> int:
     for who in study.plan.ids:
         if not study.log(who).is_file():
             continue
-        log = read(study.log(who))
+        log = read_log(study.log(who))
         if log.standing == "withdrawn":
             continue
         for begun, events in _tasks(log):
@@ -86,11 +86,11 @@ def write_xes(study: Study, out: Path) -> int:
     return count
 
 
-def _tasks(log: Log) -> Iterator[tuple[Event, list[tuple[Event, float]]]]:
+def _tasks(log: StudyLog) -> Iterator[tuple[Event, list[tuple[Event, float]]]]:
     begun: Event | None = None
     kept: list[tuple[Event, float]] = []
     waited = 0.0
-    for event, seconds, _ in steps(log.events):
+    for event, seconds, _ in list_event_steps(log.events):
         waited += seconds
         if begun is not None and event["type"] in TOLD:
             kept.append((event, waited))

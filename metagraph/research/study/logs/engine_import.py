@@ -13,7 +13,7 @@ from metagraph.common.budgets import LOG_FILE
 from metagraph.common.files import read_file
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
-from metagraph.research.study.logs.log import Log, read
+from metagraph.research.study.logs.log import StudyLog, read_log
 from metagraph.research.study.study_plan import Study
 
 ENGINES = ("unreal", "unity", "godot")
@@ -25,13 +25,13 @@ def engine_logs(study: Study, participant: str) -> list[Path]:
     return [p for e in ENGINES if (p := study.data(participant) / f"engine-{e}.jsonl").is_file()]
 
 
-def import_engine(study: Study, participant: str, path: Path) -> tuple[Log, list[str]]:
+def import_engine(study: Study, participant: str, path: Path) -> tuple[StudyLog, list[str]]:
     """Copy an engine's log to a participant's data; return it, and what is odd about it in words. Raises
     FileError where it is none, is another's, or one of that engine is there already; ValueError for a
     stranger.
     """
     study.plan.known(participant)
-    log = read(path)
+    log = read_log(path)
     begin = next((e for e in log.events if e["type"] == "begin"), {})
     engine = begin.get("engine")
     if engine not in ENGINES:

@@ -8,28 +8,28 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
 
-from metagraph.research.study.scores.tasks import AWAY, Event, steps
+from metagraph.research.study.scores.tasks import AWAY, Event, list_event_steps
 
 SHORTEST = 30.0  # seconds; shorter ones are work by any limit
 LIMITS = (30.0, AWAY, 120.0, inf)  # seconds above which a gap is taken to be absence
 
 
 @dataclass(frozen=True, slots=True)
-class Gap:
+class LogGap:
     """seconds: of more than SHORTEST. playing: the preview was running meanwhile."""
 
     seconds: float
     playing: bool
 
 
-def gaps(events: Sequence[Event]) -> dict[int, tuple[Gap, ...]]:
+def find_log_gaps(events: Sequence[Event]) -> dict[int, tuple[LogGap, ...]]:
     """Return the gaps of each task, by its place in the sitting; pauses are none."""
-    out: dict[int, list[Gap]] = {}
+    out: dict[int, list[LogGap]] = {}
     task: int | None = None
     playing = False
-    for event, seconds, why in steps(events):
+    for event, seconds, why in list_event_steps(events):
         if task is not None and why != "paused" and seconds > SHORTEST:
-            out[task].append(Gap(seconds, playing))
+            out[task].append(LogGap(seconds, playing))
         if event["type"] == "phase":
             begins = event.get("name") == "task" and event.get("state") == "begin"
             task = place_of(event) if begins else None
@@ -46,7 +46,7 @@ def place_of(phase: Event) -> int:
     return int(index) if isinstance(index, int | float) else -1
 
 
-def seconds_within(active: float, found: Sequence[Gap], limit: float) -> float:
+def seconds_by_limit(active: float, found: Sequence[LogGap], limit: float) -> float:
     """Return a task's seconds by another limit. active: by that of AWAY."""
     there = sum(g.seconds for g in found if g.seconds <= AWAY)
     return active - there + sum(g.seconds for g in found if g.seconds <= limit)
@@ -66,7 +66,7 @@ class Vanished:
     playing: float
 
 
-def vanished(tasks: Sequence[tuple[float, Sequence[Gap]]]) -> Vanished:
+def count_vanished(tasks: Sequence[tuple[float, Sequence[LogGap]]]) -> Vanished:
     """Return what vanished of tasks, each (active seconds, gaps)."""
     lost = [g for _, found in tasks for g in found if g.seconds > AWAY]
     total, active = sum(g.seconds for g in lost), sum(a for a, _ in tasks)

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from metagraph.common.budgets import LOG_FILE
 from metagraph.common.files import read_file
 from metagraph.errors import FileError
-from metagraph.research.study.logs.log import Log
+from metagraph.research.study.logs.log import StudyLog
 from metagraph.research.study.reports.tables import Table
 from metagraph.research.study.scores.tasks import Event, moment
 
@@ -31,7 +31,7 @@ LEAST = 0.6  # of Pupil's confidence
 
 
 @dataclass(frozen=True)
-class Gaze:
+class GazeRecording:
     """Samples of a recording: seconds `[n]` (since 1970 where epoch, else by the recorder's own clock),
     places on the screen `[n, 2]`, pixels or, where scaled, shares of its width and height; NaN where
     nothing was seen.
@@ -43,7 +43,7 @@ class Gaze:
     epoch: bool
 
 
-def read_gaze(path: Path) -> Gaze:
+def read_gaze(path: Path) -> GazeRecording:
     """Read an export. Raises FileError with what was expected."""
     text = read_file(path, LOG_FILE).decode("utf-8-sig", "replace")
     first = text.split("\n", 1)[0]
@@ -80,7 +80,7 @@ def _named(columns: Mapping[str, str], *starts: str) -> str | None:
     return next((c for start in starts for low, c in columns.items() if low.startswith(start)), None)
 
 
-def _tobii(rows: Sequence[Mapping[str, str]], columns: Mapping[str, str]) -> Gaze | None:
+def _tobii(rows: Sequence[Mapping[str, str]], columns: Mapping[str, str]) -> GazeRecording | None:
     time, x, y = (
         _named(columns, "recording timestamp"),
         _named(columns, "gaze point x"),
@@ -91,10 +91,12 @@ def _tobii(rows: Sequence[Mapping[str, str]], columns: Mapping[str, str]) -> Gaz
     sensor = _named(columns, "sensor")
     kept = [r for r in rows if sensor is None or "eye" in (r.get(sensor) or "eye").lower()]
     scale = 1e-3 if "[ms]" in time else 1e-6
-    return Gaze(_column(kept, time) * scale, np.stack([_column(kept, x), _column(kept, y)], 1), False, False)
+    return GazeRecording(
+        _column(kept, time) * scale, np.stack([_column(kept, x), _column(kept, y)], 1), False, False
+    )
 
 
-def _pupil_surface(rows: Sequence[Mapping[str, str]], columns: Mapping[str, str]) -> Gaze | None:
+def _pupil_surface(rows: Sequence[Mapping[str, str]], columns: Mapping[str, str]) -> GazeRecording | None:
     time, x, y = (
         _named(columns, "gaze_timestamp", "timestamp"),
         _named(columns, "x_norm"),
@@ -109,10 +111,10 @@ def _pupil_surface(rows: Sequence[Mapping[str, str]], columns: Mapping[str, str]
     on = _named(columns, "on_surf")
     if on is not None:
         places[[str(r[on]).strip().lower() not in ("true", "1") for r in rows]] = np.nan
-    return Gaze(_column(rows, time), places, True, False)
+    return GazeRecording(_column(rows, time), places, True, False)
 
 
-def _pupil_cloud(rows: Sequence[Mapping[str, str]], columns: Mapping[str, str]) -> Gaze | None:
+def _pupil_cloud(rows: Sequence[Mapping[str, str]], columns: Mapping[str, str]) -> GazeRecording | None:
     time = _named(columns, "timestamp [ns]")
     x = _named(columns, "gaze position in reference image x", "gaze position on surface x", "gaze x [px]")
     y = _named(columns, "gaze position in reference image y", "gaze position on surface y", "gaze y [px]")
@@ -120,7 +122,7 @@ def _pupil_cloud(rows: Sequence[Mapping[str, str]], columns: Mapping[str, str]) 
         return None
     # Whole nanoseconds since 1970 have more digits than a float; a float's are good to a quarter of a
     # microsecond.
-    return Gaze(
+    return GazeRecording(
         _column(rows, time) * 1e-9, np.stack([_column(rows, x), _column(rows, y)], 1), "surface" in x, True
     )
 
@@ -128,7 +130,7 @@ def _pupil_cloud(rows: Sequence[Mapping[str, str]], columns: Mapping[str, str]) 
 # --- on what it lay
 
 
-def offset(log: Log, gaze: Gaze, clap: float | None) -> float:
+def offset(log: StudyLog, gaze: GazeRecording, clap: float | None) -> float:
     """Return the seconds to add to a recording's times to have those since 1970. clap: when the recording
     shows the sitting's first clap, in its own seconds; None where its times are those since 1970. Raises
     ValueError.
@@ -143,7 +145,7 @@ def offset(log: Log, gaze: Gaze, clap: float | None) -> float:
     return moment(marks[0]).timestamp() - clap
 
 
-def dwelt(log: Log, gaze: Gaze, clap: float | None = None) -> Table:
+def dwelt(log: StudyLog, gaze: GazeRecording, clap: float | None = None) -> Table:
     """Return how long each panel, and each node in it, was looked at in each task: seconds, share of what was
     measured, visits. Raises ValueError where the times cannot be brought together.
     """
@@ -185,7 +187,7 @@ def dwelt(log: Log, gaze: Gaze, clap: float | None = None) -> Table:
     return ("participant", "condition", "task", "area", "seconds", "share", "visits", "samples_lost"), rows
 
 
-def _screen(log: Log) -> dict[str, float]:
+def _screen(log: StudyLog) -> dict[str, float]:
     """Return what the log says of the screen: width and height, logical pixels, and device pixels for
     each.
     """
@@ -199,7 +201,7 @@ def _screen(log: Log) -> dict[str, float]:
 Layout = Mapping[str, Sequence[float]]
 
 
-def _tasks(log: Log) -> list[tuple[tuple[float, Event], float, list[tuple[float, Layout]]]]:
+def _tasks(log: StudyLog) -> list[tuple[tuple[float, Event], float, list[tuple[float, Layout]]]]:
     """Return each task's begin, end, and the layouts of the screen up to then."""
     out = []
     layouts: list[tuple[float, Layout]] = []

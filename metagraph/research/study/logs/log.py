@@ -27,9 +27,20 @@ from metagraph.common.files import read_file
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.research.study.logs.clocks import clock_problems
-from metagraph.research.study.scores.tasks import Answer, Event, TaskRun, answers, moment, task_runs
+from metagraph.research.study.scores.tasks import Event, ItemAnswer, TaskRun, last_answers, moment, task_runs
 
-__all__ = ["BOUNDARIES", "NAME", "TYPES", "Answer", "Event", "Log", "TaskRun", "Writer", "read", "wall_time"]
+__all__ = [
+    "BOUNDARIES",
+    "NAME",
+    "TYPES",
+    "Event",
+    "ItemAnswer",
+    "StudyLog",
+    "TaskRun",
+    "Writer",
+    "read_log",
+    "wall_time",
+]
 
 NAME = "log.jsonl"
 Standing = Literal["not begun", "declined", "broken off", "done", "withdrawn", "deleted"]
@@ -66,7 +77,7 @@ SYNC = 0.25  # seconds between syncs to the disk
 
 
 @dataclass(frozen=True)
-class Log:
+class StudyLog:
     """A log as it was read. torn: a half-written last line was left out. problems: what else is wrong, in
     words. following: the number of the event that comes next.
     """
@@ -112,9 +123,9 @@ class Log:
         """Return the tasks that were begun, in their order."""
         return task_runs(self.participant, self.events)
 
-    def answers(self) -> list[Answer]:
+    def answers(self) -> list[ItemAnswer]:
         """Return the answers to questionnaires; of several to one item the last."""
-        return answers(self.participant, self.events)
+        return last_answers(self.participant, self.events)
 
 
 def wall_time(now: datetime) -> str:
@@ -125,7 +136,7 @@ def wall_time(now: datetime) -> str:
 # --- reading
 
 
-def read(path: str | Path) -> Log:
+def read_log(path: str | Path) -> StudyLog:
     """Read a log. Raises FileError when there is none; damaged lines are left out and told among the
     problems.
     """
@@ -156,7 +167,7 @@ def read(path: str | Path) -> Log:
         expected = event["n"] + 1
         events.append(event)
     problems += clock_problems(events)
-    return Log(path, tuple(events), bool(tail), tuple(problems), expected)
+    return StudyLog(path, tuple(events), bool(tail), tuple(problems), expected)
 
 
 def _event(line: bytes) -> Event | str:
@@ -227,7 +238,7 @@ class Writer:
         """Raises FileError."""
         self.path, self._clock, self._now = Path(path), clock, now
         self.run = run or uuid.uuid4().hex[:12]
-        self.before = read(self.path) if self.path.exists() else Log(self.path)
+        self.before = read_log(self.path) if self.path.exists() else StudyLog(self.path)
         self.n = self.before.following
         self._waiting: list[bytes] = []  # lines that could not be written yet
         self.listeners: list[Callable[[Event], None]] = []  # told of each event that is in the log

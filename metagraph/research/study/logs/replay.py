@@ -12,8 +12,8 @@ from metagraph.formats.project.data import from_data, to_data
 from metagraph.formats.project.fields import Data, DataError
 from metagraph.formats.project.replay import Replay
 from metagraph.graph.model import Project
-from metagraph.research.study.plan.task_projects import make
-from metagraph.research.study.scores.tasks import Event, steps
+from metagraph.research.study.plan.task_projects import make_task_project
+from metagraph.research.study.scores.tasks import Event, list_event_steps
 from metagraph.research.study.study_plan import Study
 
 CHANGES = frozenset({"edit", "undo", "redo"})
@@ -21,7 +21,7 @@ DETAILED = "change"  # the field of an edit that says what became of the project
 
 
 @dataclass(frozen=True)
-class Part:
+class SittingPart:
     """One task, or practice, of a sitting. times: seconds of each event from its begin, ascending; pauses and
     gaps count, the time between two runs of the program does not.
     """
@@ -46,14 +46,14 @@ class Part:
         return bisect_right(self.times, seconds)
 
 
-def parts(study: Study, events: Sequence[Event]) -> list[Part]:
+def list_sitting_parts(study: Study, events: Sequence[Event]) -> list[SittingPart]:
     """Return what somebody worked on, in its order."""
-    out: list[Part] = []
+    out: list[SittingPart] = []
     begun: Event | None = None
     kept: list[Event] = []
     times: list[float] = []
     at = 0.0
-    for event, seconds, _ in steps(events):
+    for event, seconds, _ in list_event_steps(events):
         at += seconds
         if begun is not None:
             kept.append(event)
@@ -70,16 +70,16 @@ def parts(study: Study, events: Sequence[Event]) -> list[Part]:
     return out
 
 
-def _part(study: Study, begun: Event, events: Sequence[Event], times: Sequence[float]) -> Part:
+def _part(study: Study, begun: Event, events: Sequence[Event], times: Sequence[float]) -> SittingPart:
     task = str(begun["task"]) if "task" in begun else None
     try:
         title = study.plan.task(task).name if task is not None else "Practice"
     except KeyError:
         title = str(task)
-    return Part(str(begun.get("condition", "")), task, title, tuple(events), tuple(times))
+    return SittingPart(str(begun.get("condition", "")), task, title, tuple(events), tuple(times))
 
 
-def first_project(study: Study, part: Part) -> Project:
+def first_project(study: Study, part: SittingPart) -> Project:
     """Return the project the work began with, its clips with their motion and absolute paths. Raises
     FileError, also where the study has no such task any more.
     """
@@ -87,9 +87,11 @@ def first_project(study: Study, part: Part) -> Project:
     if part.task is not None:
         task = next((t for t in plan.tasks if t.id == part.task), None)
         clips = task.clips if task is not None else ()
-        return make(study, clips, part.title, study.reference(part.task) if task is not None else None)
+        return make_task_project(
+            study, clips, part.title, study.reference(part.task) if task is not None else None
+        )
     training = next((t for t in plan.training if t.condition == part.condition), None)
-    return make(study, training.clips if training is not None else (), part.title)
+    return make_task_project(study, training.clips if training is not None else (), part.title)
 
 
 @dataclass
@@ -144,8 +146,8 @@ def _absolute(change: Data, folder: Path) -> Data:
     return {**change, "clips": moved}
 
 
-def replayed(
-    study: Study, participant: str, part: Part, seconds: float, first: Project | None = None
+def replay_to(
+    study: Study, participant: str, part: SittingPart, seconds: float, first: Project | None = None
 ) -> Project:
     """Return the project as it was at a moment of a part. Raises FileError, DataError."""
     again = Again(first if first is not None else first_project(study, part), study.data(participant))
@@ -154,4 +156,4 @@ def replayed(
     return again.project()
 
 
-__all__ = ["CHANGES", "Again", "DataError", "Part", "first_project", "parts", "replayed"]
+__all__ = ["CHANGES", "Again", "DataError", "SittingPart", "first_project", "list_sitting_parts", "replay_to"]

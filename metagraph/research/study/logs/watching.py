@@ -12,16 +12,16 @@ from pathlib import Path
 from typing import Any
 
 from metagraph.errors import FileError
-from metagraph.research.study.logs.log import read
+from metagraph.research.study.logs.log import read_log
 from metagraph.research.study.scores.tasks import moment
-from metagraph.research.study.sitting import phases, standing, where
+from metagraph.research.study.sitting import describe_standing, find_place_in_sitting, list_phases
 from metagraph.research.study.study_plan import Study
 
 LOCK = "sitting.lock"
 
 
 @dataclass(frozen=True)
-class Seen:
+class ParticipantView:
     """Where a participant is. words: how far, or the phase. live: a window has the sitting open. elapsed:
     seconds of the phase, without pauses, up to the last event; minutes: its limit. quiet: seconds since the
     last event. paused: the clock stands. events: of the log; troubles: of them that failed or were refused.
@@ -39,23 +39,23 @@ class Seen:
     troubles: int = 0
 
 
-def watch(study: Study, now: datetime | None = None) -> list[Seen]:
+def watch_participants(study: Study, now: datetime | None = None) -> list[ParticipantView]:
     """Return where everybody is, in the order of the plan."""
     at = now or datetime.now(UTC)
     return [_seen(study, who, at) for who in study.plan.ids]
 
 
-def _seen(study: Study, who: str, now: datetime) -> Seen:
+def _seen(study: Study, who: str, now: datetime) -> ParticipantView:
     path = study.log(who)
     live = is_open(study.data(who) / LOCK)
     if not path.is_file():
-        return Seen(who, "not begun", live)
+        return ParticipantView(who, "not begun", live)
     try:
-        log = read(path)
-        course = phases(study, who)
-        stands = where(course, log.events)
+        log = read_log(path)
+        course = list_phases(study, who)
+        stands = find_place_in_sitting(course, log.events)
     except (FileError, ValueError) as error:
-        return Seen(who, str(error), live)
+        return ParticipantView(who, str(error), live)
     quiet = max(0.0, (now - moment(log.events[-1])).total_seconds()) if log.events else None
     pauses = [e.get("state") for e in log.events if e["type"] in ("pause", "resumed", "phase")]
     told: dict[str, Any] = {
@@ -64,9 +64,9 @@ def _seen(study: Study, who: str, now: datetime) -> Seen:
         "troubles": sum(e["type"] == "error" and e.get("what") != "warning" for e in log.events),
     }
     if stands.phase is None or log.standing in ("declined", "withdrawn"):
-        return Seen(who, standing(study, who), live, **told)
+        return ParticipantView(who, describe_standing(study, who), live, **told)
     last = next((e for e in reversed(log.events) if e["type"] in ("pause", "resumed", "phase")), {})
-    return Seen(
+    return ParticipantView(
         who,
         stands.phase.title if stands.begun else f"before: {stands.phase.title}",
         live,
@@ -95,7 +95,7 @@ def is_open(lock: Path) -> bool:
     return True
 
 
-def table(found: Sequence[Seen]) -> list[str]:
+def tabulate_participants(found: Sequence[ParticipantView]) -> list[str]:
     """Return lines for a terminal."""
     rows = [("", "who", "where", "step", "time", "quiet", "events", "troubles")]
     for s in found:

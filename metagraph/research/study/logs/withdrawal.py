@@ -18,7 +18,7 @@ from metagraph.common.budgets import LOG_FILE
 from metagraph.common.files import read_file
 from metagraph.errors import FileError
 from metagraph.formats.atomic import append_line
-from metagraph.research.study.logs.log import Writer, read, wall_time
+from metagraph.research.study.logs.log import Writer, read_log, wall_time
 from metagraph.research.study.logs.watching import LOCK, is_open
 
 DELETIONS = "deletions.jsonl"
@@ -45,7 +45,7 @@ class Keeping(Protocol):
         """Return somebody's log."""
 
 
-def withdraw(
+def note_withdrawal(
     study: Keeping, participant: str, why: str = "", now: Callable[[], datetime] = lambda: datetime.now(UTC)
 ) -> bool:
     """Note in a participant's log that they withdrew, so that no report or export uses it; return whether it
@@ -54,7 +54,7 @@ def withdraw(
     """
     study.known(participant)
     path = study.log(participant)
-    if read(path).standing == "withdrawn":
+    if read_log(path).standing == "withdrawn":
         return False
     writer = Writer(path, now=now)
     try:
@@ -64,7 +64,7 @@ def withdraw(
     return True
 
 
-def delete(
+def delete_data(
     study: Keeping, participant: str, now: Callable[[], datetime] = lambda: datetime.now(UTC)
 ) -> dict[str, object]:
     """Delete all that is kept of a participant beside the study file, and note that it was done: who, when,
@@ -100,7 +100,7 @@ def delete(
     return note
 
 
-def deleted(study: Keeping) -> frozenset[str]:
+def read_deleted(study: Keeping) -> frozenset[str]:
     """Return whose data was deleted. Damaged lines are left out."""
     path = study.folder / DELETIONS
     if not path.is_file():

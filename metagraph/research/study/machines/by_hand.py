@@ -13,10 +13,17 @@ from functools import cached_property
 from itertools import pairwise, product
 from typing import Literal, Protocol
 
-from metagraph.graph.expand import connections
+from metagraph.graph.expand import list_connections
 from metagraph.graph.manual.machine import ANY
 from metagraph.graph.model import LAYERS, Layer, Project
-from metagraph.research.study.machines.covering import Cover, Rectangle, as_set, bits, covered, rows_of
+from metagraph.research.study.machines.covering import (
+    Cover,
+    Rectangle,
+    as_set,
+    bits,
+    cover_by_rectangles,
+    target_sets,
+)
 from metagraph.research.study.machines.finding import Finder, Words
 
 Drop = Literal["one by one", "many at once"]
@@ -54,15 +61,15 @@ class Work:
         self.names = tuple(reference.clips[c].name for c in self.clips)
         self.seconds = tuple(reference.clips[c].duration for c in self.clips)
         at = {a.id: str(n) for n, a in enumerate(actions)}
-        pairs = {(at[c.source], at[c.target]) for c in connections(reference, graph)}
-        self.rows = rows_of([str(n) for n in range(len(actions))], pairs)
+        pairs = {(at[c.source], at[c.target]) for c in list_connections(reference, graph)}
+        self.rows = target_sets([str(n) for n in range(len(actions))], pairs)
         self.unasked = as_set(n for n, a in enumerate(actions) if a.kind in ("stance", "fidget"))
         self.loops = as_set(n for n, a in enumerate(actions) if a.kind == "stance")
         self.limbs = {a.clip: a.limb for a in actions}
 
     @cached_property
     def cover(self) -> Cover:
-        return covered(self.rows)
+        return cover_by_rectangles(self.rows)
 
     @property
     def every(self) -> int:
@@ -110,7 +117,7 @@ class Work:
         return out
 
 
-class Hand(Protocol):
+class DrawingHand(Protocol):
     """What draws a machine. Clips stand for their states; what is selected stays so from one call to the
     next.
     """
@@ -136,7 +143,7 @@ def works(reference: Project) -> list[Work]:
     return [Work(reference, x) for x in LAYERS if reference.graphs[x].actions]
 
 
-def ways(named: bool = True) -> list[Way]:
+def list_ways(named: bool = True) -> list[Way]:
     """Return every combination of choices. named: the clips' names tell what they are."""
     drops: tuple[Drop, ...] = ("many at once", "one by one") if named else ("one by one",)
     links: tuple[Links, ...] = (
@@ -173,10 +180,10 @@ def batches(library: dict[str, str], wanted: Sequence[str]) -> list[tuple[list[s
     return out
 
 
-class Drawing:
+class MachineDrawing:
     """Carries a way out. limbs: clip -> the limb its state has once it was dropped."""
 
-    def __init__(self, way: Way, hand: Hand, library: Sequence[tuple[str, str]]) -> None:
+    def __init__(self, way: Way, hand: DrawingHand, library: Sequence[tuple[str, str]]) -> None:
         self.way, self.hand = way, hand
         self.library = dict(library)  # what is not dropped yet: clip -> name
         self.finders: dict[Layer, Finder] = {}

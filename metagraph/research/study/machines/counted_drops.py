@@ -8,11 +8,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from metagraph.graph import edits
-from metagraph.graph.expand import ends_in
+from metagraph.graph.expand import find_end_stance
 from metagraph.graph.model import LAYERS, Action, Kind, MetaGraph, Project
 from metagraph.research.study.machines.by_hand import batches
-from metagraph.research.study.machines.counted_hand import Operators, bare
-from metagraph.research.study.machines.klm import predicted
+from metagraph.research.study.machines.counted_hand import OperatorCounts, bare
+from metagraph.research.study.machines.klm import predict_seconds
 from metagraph.research.study.machines.normal_machine import normal
 from metagraph.research.study.scores.machines import Score, score
 
@@ -26,11 +26,11 @@ class Dropped:
     score: Score
 
 
-def dropped(reference: Project) -> Dropped:
+def label_by_drops(reference: Project) -> Dropped:
     """Label a reference's clips stance by stance, all of a stance's gestures, fidgets and ways to one other
     stance at once: found by the shortest words, all selected, labelled by a key.
     """
-    made, project = Operators(), bare(reference)
+    made, project = OperatorCounts(), bare(reference)
     library = {a.clip: reference.clips[a.clip].name for a in reference.actions()}
     here: dict[str, str] = {}  # the reference's stance -> the one made
     made.think()
@@ -55,7 +55,7 @@ def dropped(reference: Project) -> Dropped:
             made.think()
             for batch in find([a.clip for a in graph.of(stance.id, "stance")], drag=True):
                 if stance.id in here:
-                    project = edits.place(project, batch, layer, "stance", here[stance.id], None)
+                    project = edits.place_clips(project, batch, layer, "stance", here[stance.id], None)
                 else:
                     project = edits.add_stance(project, layer, stance.name, batch)
                     here[stance.id] = list(project.graphs[layer].stances)[-1]
@@ -71,19 +71,19 @@ def dropped(reference: Project) -> Dropped:
                     made.keys(1 + max(1, list(graph.stances).index(end)))
                 made.think()
                 for batch in find([a.clip for a in mine], drag=False):
-                    project = edits.place(
+                    project = edits.place_clips(
                         project, batch, layer, kind, here[stance.id], here[end] if end is not None else None
                     )
     found = score(normal(project, False), normal(reference, False))
-    return Dropped(dict(made.counts), predicted(made.counts), found)
+    return Dropped(dict(made.counts), predict_seconds(made.counts), found)
 
 
 def _groups(graph: MetaGraph, stance: str) -> list[tuple[Kind, str | None, Sequence[Action]]]:
     """Return what is labelled at once: ways by where they end, then fidgets, then gestures."""
     ways = graph.of(stance, "transition")
-    ends = dict.fromkeys(ends_in(a) for a in ways)
+    ends = dict.fromkeys(find_end_stance(a) for a in ways)
     out: list[tuple[Kind, str | None, Sequence[Action]]] = [
-        ("transition", e, [a for a in ways if ends_in(a) == e]) for e in ends
+        ("transition", e, [a for a in ways if find_end_stance(a) == e]) for e in ends
     ]
     kinds: tuple[Kind, ...] = ("fidget", "gesture")
     out += [(kind, None, mine) for kind in kinds if (mine := graph.of(stance, kind))]

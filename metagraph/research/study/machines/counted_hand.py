@@ -10,22 +10,22 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
-from metagraph.formats.manual_table import filled, rows_of
+from metagraph.formats.manual_table import fill_machine, parse_manual_table
 from metagraph.graph.edit_error import EditError
-from metagraph.graph.edits import limb_of, remove_actions
+from metagraph.graph.edits import guess_limb, remove_actions
 from metagraph.graph.manual import edits as manual_edits
 from metagraph.graph.manual import groups as manual_groups
 from metagraph.graph.model import Layer, Project
-from metagraph.research.study.machines.by_hand import Drawing, Way, Work, ways, works
+from metagraph.research.study.machines.by_hand import MachineDrawing, Way, Work, list_ways, works
 from metagraph.research.study.machines.finding import Words
-from metagraph.research.study.machines.klm import predicted
+from metagraph.research.study.machines.klm import predict_seconds
 from metagraph.research.study.machines.normal_machine import normal
 from metagraph.research.study.scores.machines import Score, score
 
 FILE_NAME = 10  # letters typed for a table's file
 
 
-class Operators:
+class OperatorCounts:
     """Counts operators; a hand goes to the other device where that is needed."""
 
     def __init__(self) -> None:
@@ -65,7 +65,7 @@ class CountedHand:
     """project: what was drawn so far; at first the clips alone."""
 
     def __init__(self, project: Project) -> None:
-        self.project, self.made = project, Operators()
+        self.project, self.made = project, OperatorCounts()
         self.on: Layer = "arms"
         self.nodes: tuple[str, ...] = ()
         self.links: tuple[str, ...] = ()
@@ -156,7 +156,7 @@ class CountedHand:
     def into(self) -> None:
         self.made.think()
         self.made.keys(1)
-        self.links = manual_groups.links_of(self.project.manual[self.on], self.nodes, into=True)
+        self.links = manual_groups.find_links(self.project.manual[self.on], self.nodes, into=True)
         self.nodes = ()
 
     def ask(self) -> None:
@@ -187,7 +187,7 @@ class CountedHand:
         self.made.keys(len(text) + FILE_NAME + 2)
         self.made.click()
         self.made.keys(FILE_NAME + 1)
-        out = filled(self.project, self.on, rows_of(text))
+        out = fill_machine(self.project, self.on, parse_manual_table(text))
         if out.problems:
             raise EditError("; ".join(out.problems))
         self._do(out.project)
@@ -224,23 +224,23 @@ def try_way(way: Way, reference: Project, look: bool = False) -> Tried:
     wanted = [c for w in some for c in w.clips]
     library = [(c, reference.clips[c].name) for c in wanted]
     guessed = {
-        c: limb_of(n) if w.layer == "arms" else "both"
+        c: guess_limb(n) if w.layer == "arms" else "both"
         for w in some
         for c, n in zip(w.clips, w.names, strict=True)
     }
-    Drawing(way, hand, library).draw(some, guessed, look)
+    MachineDrawing(way, hand, library).draw(some, guessed, look)
     edges = sum(len(m.links) for m in hand.project.manual.values())
     found = score(normal(hand.project, True), normal(reference, False))
     counts = hand.made.counts
-    return Tried(way, counts, predicted(counts), hand.looked, edges, found, hand.project)
+    return Tried(way, counts, predict_seconds(counts), hand.looked, edges, found, hand.project)
 
 
-def searched(reference: Project, named: bool = True, look: bool = False) -> list[Tried]:
+def search_ways(reference: Project, named: bool = True, look: bool = False) -> list[Tried]:
     """Try every way, the cheapest first; those whose machine is not the reference come last, and those that
     cannot be gone, as names do not tell states apart, are left out.
     """
     out = []
-    for way in ways(named):
+    for way in list_ways(named):
         with suppress(ValueError):  # EditError among them
             out.append(try_way(way, reference, look))
     return sorted(out, key=lambda t: (bool(t.score.mistakes), t.seconds + t.looked))

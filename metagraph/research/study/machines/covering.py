@@ -46,7 +46,7 @@ def as_set(numbers: Iterable[int]) -> int:
     return out
 
 
-def rows_of(keys: Collection[str], pairs: Collection[Pair]) -> list[int]:
+def target_sets(keys: Collection[str], pairs: Collection[Pair]) -> list[int]:
     """Return for each state, in the order of `keys`, the set it leads to."""
     place = {key: n for n, key in enumerate(keys)}
     out = [0] * len(place)
@@ -56,7 +56,7 @@ def rows_of(keys: Collection[str], pairs: Collection[Pair]) -> list[int]:
     return out
 
 
-def covered(rows: list[int]) -> Cover:
+def cover_by_rectangles(rows: list[int]) -> Cover:
     """Cover what each state leads to by rectangles, greedily the one that makes most new connections, and say
     how few there must be.
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, fields
 
 
 @dataclass(frozen=True)
-class Times:
+class OperatorTimes:
     """Seconds an operator takes: K a key, by an average typist; P pointing at a target; B a button pressed or
     released; H a hand to the other device; M a mental preparation; S a scroll or zoom with the wheel to where
     something is, which takes about as long as pointing at it (Hinckley, Cutrell, Bathiche and Muss 2002,
@@ -30,10 +30,10 @@ class Times:
     S: float = 1.10
 
 
-USUAL = Times()
+USUAL = OperatorTimes()
 
 
-def predicted(operators: Mapping[str, float], times: Times = USUAL) -> float:
+def predict_seconds(operators: Mapping[str, float], times: OperatorTimes = USUAL) -> float:
     """Return seconds for how many operators of each kind there were; R and L count as seconds themselves.
     Raises ValueError for a kind that there is not.
     """

@@ -13,8 +13,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
-from metagraph.graph.expand import connections as expanded
-from metagraph.graph.expand import ends_in
+from metagraph.graph.expand import find_end_stance
+from metagraph.graph.expand import list_connections as expanded
 from metagraph.graph.manual.machine import Link, Manual, State
 from metagraph.graph.manual.meta import as_meta
 from metagraph.graph.manual.timing import exit_moment, state_span
@@ -136,7 +136,7 @@ def _of_graph(project: Project, graph: MetaGraph, names: Mapping[str, str]) -> N
             graph.layer,
             a.kind,
             a.stance,
-            ends_in(a),
+            find_end_stance(a),
             loop,
             start,
             end,
@@ -205,7 +205,7 @@ def _roles(manual: Manual, meant: MetaGraph) -> dict[str, Role]:
     action = next(actions, None)
     for state in manual.states.values():
         if action is not None and (action.clip, action.name) == (state.clip, state.name):
-            out[state.id] = action.kind, action.stance, ends_in(action)
+            out[state.id] = action.kind, action.stance, find_end_stance(action)
             action = next(actions, None)
         else:
             out[state.id] = None, None, None

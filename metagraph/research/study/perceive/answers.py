@@ -13,10 +13,10 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import Meta, Struct
 
-from metagraph.common.files import guarded, read_file
+from metagraph.common.files import guard_reader, read_file
 from metagraph.errors import FileError
-from metagraph.formats.project.kernel_lock import alone
-from metagraph.research.study.logs.log import Event, Writer, read
+from metagraph.formats.project.kernel_lock import wait_for_turn
+from metagraph.research.study.logs.log import Event, Writer, read_log
 from metagraph.research.study.perceive.folder import Perceived
 from metagraph.research.study.questionnaires import Name
 
@@ -73,7 +73,7 @@ class SheetError(ValueError):
         super().__init__(words)
 
 
-def decode(content: bytes) -> Sheet:
+def decode_sheet(content: bytes) -> Sheet:
     """Return what a page has sent. Raises SheetError."""
     try:
         return msgspec.json.decode(content, type=Sheet)
@@ -81,25 +81,25 @@ def decode(content: bytes) -> Sheet:
         raise SheetError(f"it holds no answers ({error})") from None
 
 
-@guarded
+@guard_reader
 def read_answers(path: str | Path) -> Sheet:
     """Return the answers a page saved as JSON. Raises FileError."""
     path = Path(path)
     try:
-        return decode(read_file(path, MOST_BYTES))
+        return decode_sheet(read_file(path, MOST_BYTES))
     except SheetError as error:
         raise FileError(path, str(error), "its content", _AGAIN) from None
 
 
 @dataclass(frozen=True)
-class Kept:
+class KeptEvents:
     """How many of a run's events are kept by now, and how many of them are new."""
 
     kept: int
     new: int
 
 
-def keep(study: Perceived, sheet: Sheet) -> Kept:
+def keep_sheet(study: Perceived, sheet: Sheet) -> KeptEvents:
     """Add what is new of a sheet to its person's log; it is on the disk afterwards. Raises SheetError where
     it is another study's, a stranger's, or of somebody whose code was begun elsewhere; FileError.
     """
@@ -112,8 +112,8 @@ def keep(study: Perceived, sheet: Sheet) -> Kept:
     _check(study, sheet)
     path = study.log(sheet.code)
     path.parent.mkdir(parents=True, exist_ok=True)
-    with alone(path.with_name(".answers.lock")):
-        before = list(read(path).events) if path.is_file() else []
+    with wait_for_turn(path.with_name(".answers.lock")):
+        before = list(read_log(path).events) if path.is_file() else []
         runs = [e["page"] for e in before if isinstance(e.get("page"), str)]
         if runs and sheet.run not in runs:
             raise SheetError(f"'{sheet.code}' was begun in another browser, and those answers count", True)
@@ -127,7 +127,7 @@ def keep(study: Perceived, sheet: Sheet) -> Kept:
                 writer.extend((event.type, _fields(sheet, event)) for event in new)
             finally:
                 writer.close()
-    return Kept(have + len(new), len(new))
+    return KeptEvents(have + len(new), len(new))
 
 
 def _fields(sheet: Sheet, event: PageEvent) -> dict[str, Any]:
@@ -148,11 +148,11 @@ def _check(study: Perceived, sheet: Sheet) -> None:
         trial = trials.get(event.trial)
         if trial is None:
             raise SheetError(f"event {event.n} answers a trial that '{sheet.code}' does not have")
-        if not answered(study, bool(trial.right), event.value):
+        if not is_answer(study, bool(trial.right), event.value):
             raise SheetError(f"event {event.n} is no answer to its trial")
 
 
-def answered(study: Perceived, pair: bool, value: object) -> bool:
+def is_answer(study: Perceived, pair: bool, value: object) -> bool:
     """Return whether a value answers a trial: a side of a pair, or all questions on their scales."""
     if pair:
         return value in ("left", "right")
@@ -170,7 +170,7 @@ def answered(study: Perceived, pair: bool, value: object) -> bool:
     )
 
 
-def given(events: list[Event]) -> dict[str, Event]:
+def list_answers(events: list[Event]) -> dict[str, Event]:
     """Return trial -> its answer, the first one where there are several."""
     out: dict[str, Event] = {}
     for event in events:

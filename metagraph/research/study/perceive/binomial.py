@@ -21,7 +21,7 @@ STEADY = 100  # more answers with which the power must hold, since it goes up an
 CLOSE = 1 + 1e-7  # what counts as just as likely
 
 
-def at_most(k: int, n: int, share: float) -> float:
+def probability_at_most(k: int, n: int, share: float) -> float:
     """Return how likely k of n, or fewer, are where each is with probability `share`, 0..1."""
     if k < 0:
         return 0.0
@@ -30,7 +30,7 @@ def at_most(k: int, n: int, share: float) -> float:
     return incomplete_beta(n - k, k + 1, 1 - share)
 
 
-def two_sided(k: int, n: int, share: float = 0.5) -> float | None:
+def two_sided_p(k: int, n: int, share: float = 0.5) -> float | None:
     """Return the p value of k of n against a share, 0 < share < 1; None of nothing. Raises ValueError."""
     _checked(k, n)
     if not n:
@@ -40,14 +40,14 @@ def two_sided(k: int, n: int, share: float = 0.5) -> float | None:
     return float(min(1.0, np.exp(logs[logs <= edge]).sum()))
 
 
-def share_of(k: int, n: int, level: float = LEVEL) -> Estimate:
+def exact_share(k: int, n: int, level: float = LEVEL) -> Estimate:
     """Return the share k / n with its exact interval. Raises ValueError for nothing."""
     _checked(k, n)
     if not n:
         raise ValueError("nothing has no share")
     tail = (1 - level) / 2
-    low = 0.0 if k == 0 else _solve(lambda p: 1 - at_most(k - 1, n, p) >= tail)
-    high = 1.0 if k == n else _solve(lambda p: at_most(k, n, p) <= tail)
+    low = 0.0 if k == 0 else _solve(lambda p: 1 - probability_at_most(k - 1, n, p) >= tail)
+    high = 1.0 if k == n else _solve(lambda p: probability_at_most(k, n, p) <= tail)
     return Estimate(k / n, low, high, n)
 
 
@@ -63,7 +63,7 @@ def fisher(a: int, n: int, b: int, m: int) -> float | None:
     return min(1.0, sum(w for w in ways.values() if w <= here) / total)
 
 
-def power(n: int, share: float, alpha: float = 0.05) -> float:
+def share_power(n: int, share: float, alpha: float = 0.05) -> float:
     """Return how likely n answers show a share to be other than a half."""
     if n < 1:
         return 0.0
@@ -73,10 +73,10 @@ def power(n: int, share: float, alpha: float = 0.05) -> float:
     if not len(out):
         return 0.0
     edge = int(out[-1])
-    return at_most(edge, n, share) + at_most(edge, n, 1 - share)
+    return probability_at_most(edge, n, share) + probability_at_most(edge, n, 1 - share)
 
 
-def needed(share: float, chance: float = 0.8, alpha: float = 0.05) -> int | None:
+def count_needed_answers(share: float, chance: float = 0.8, alpha: float = 0.05) -> int | None:
     """Return with how many answers a share is shown to be other than a half with a chance, and with all
     somewhat larger numbers, too; None beyond MOST. Raises ValueError.
     """
@@ -85,18 +85,22 @@ def needed(share: float, chance: float = 0.8, alpha: float = 0.05) -> int | None
     if off < 1e-9:
         return None
     z = NormalDist().inv_cdf(1 - alpha / 2) + NormalDist().inv_cdf(chance)
-    return _from(ceil((z * 0.5 / off) ** 2), lambda n: power(n, share, alpha) >= chance)
+    return _from(ceil((z * 0.5 / off) ** 2), lambda n: share_power(n, share, alpha) >= chance)
 
 
-def equivalence_power(n: int, margin: float, share: float = 0.5, alpha: float = 0.05) -> float:
+def share_equivalence_power(n: int, margin: float, share: float = 0.5, alpha: float = 0.05) -> float:
     """Return how likely the exact interval of level 1 - 2 alpha of n answers lies within a half and a margin
     either way.
     """
     low, high = 0.5 - margin, 0.5 + margin
-    counts = [k for k in range(n + 1) if 1 - at_most(k - 1, n, low) < alpha and at_most(k, n, high) < alpha]
+    counts = [
+        k
+        for k in range(n + 1)
+        if 1 - probability_at_most(k - 1, n, low) < alpha and probability_at_most(k, n, high) < alpha
+    ]
     if not counts:
         return 0.0
-    return at_most(counts[-1], n, share) - at_most(counts[0] - 1, n, share)
+    return probability_at_most(counts[-1], n, share) - probability_at_most(counts[0] - 1, n, share)
 
 
 def equivalence_needed(margin: float, chance: float = 0.8, alpha: float = 0.05) -> int | None:
@@ -108,7 +112,7 @@ def equivalence_needed(margin: float, chance: float = 0.8, alpha: float = 0.05) 
         raise ValueError(f"a margin lies between 0 and 0.5, not {margin:g}")
     z = NormalDist().inv_cdf(1 - alpha) + NormalDist().inv_cdf((1 + chance) / 2)
     return _from(
-        ceil((z * 0.5 / margin) ** 2), lambda n: equivalence_power(n, margin, 0.5, alpha) >= chance, 20
+        ceil((z * 0.5 / margin) ** 2), lambda n: share_equivalence_power(n, margin, 0.5, alpha) >= chance, 20
     )
 
 

@@ -42,7 +42,7 @@ class Crossed:
     n: int
 
 
-def fit(
+def fit_crossed(
     chosen: Sequence[float],
     effects: Mapping[str, Sequence[float]],
     participants: Sequence[object],

@@ -18,7 +18,7 @@ import msgspec
 from msgspec import Struct
 
 from metagraph.research.study.perceive.perceive_plan import PerceivePlan
-from metagraph.research.study.plan.allocation import commitment, drawer, numbers
+from metagraph.research.study.plan.allocation import commitment, draw_order_numbers, drawer
 
 Kind = Literal["training", "choice", "rating", "told", "same"]
 NAME_LENGTH = 20  # hexadecimal digits of a video's or a trial's name
@@ -46,7 +46,7 @@ class Trial(Struct, frozen=True, forbid_unknown_fields=True):
         return [self.id, self.kind, self.left, self.right, self.told]
 
 
-class Session(Struct, frozen=True, forbid_unknown_fields=True):
+class RatingSession(Struct, frozen=True, forbid_unknown_fields=True):
     """What one person goes through. number: of the sequence that was drawn."""
 
     number: int
@@ -62,7 +62,7 @@ class Key(Struct, frozen=True, forbid_unknown_fields=True):
     commitment: str
     design: str
     stimuli: dict[str, tuple[str, str]]
-    sessions: dict[str, Session]
+    sessions: dict[str, RatingSession]
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ def design(plan: PerceivePlan, secret: str) -> Design:
     used = list(dict.fromkeys(c for pair in plan.pairs for c in pair)) if plan.rating is None else []
     used = used or list(plan.conditions)
     stimuli = {stimulus_name(draw, c, i.id): (c, i.id) for c in used for i in plan.items}
-    taken = numbers(secret, sequences(plan), 1)  # all are drawn before anybody comes
+    taken = draw_order_numbers(secret, count_sequences(plan), 1)  # all are drawn before anybody comes
     sessions = {who: _session(plan, draw, who, next(taken)) for who in plan.ids}
     public = {
         "perceive": plan.perceive,
@@ -117,7 +117,7 @@ def _question(item: Any) -> dict[str, Any]:
     }
 
 
-def sequences(plan: PerceivePlan) -> int:
+def count_sequences(plan: PerceivePlan) -> int:
     """Return how many sequences there are until all is balanced."""
     out = 1
     if plan.choice is not None:
@@ -131,7 +131,7 @@ def sequences(plan: PerceivePlan) -> int:
     return out
 
 
-def _session(plan: PerceivePlan, draw: Draw, who: str, number: int) -> Session:
+def _session(plan: PerceivePlan, draw: Draw, who: str, number: int) -> RatingSession:
     trials: list[Trial] = []
 
     def add(kind: Kind, item: str, a: str, b: str = "", told: str | int | None = None) -> None:
@@ -165,7 +165,7 @@ def _session(plan: PerceivePlan, draw: Draw, who: str, number: int) -> Session:
             if place < len(shown):
                 item, a, b = shown[place]
                 add("choice" if b else "rating", item, a, b)
-    return Session(number, tuple(trials))
+    return RatingSession(number, tuple(trials))
 
 
 def _told_number(plan: PerceivePlan, drawn: int) -> int:

@@ -26,11 +26,11 @@ from metagraph.formats.atomic import write_atomically
 from metagraph.formats.clips import digest
 from metagraph.research.study.logs.log import NAME, wall_time
 from metagraph.research.study.perceive.design import Design, Key
-from metagraph.research.study.perceive.perceive_plan import FILE, PerceivePlan, read_plan
-from metagraph.research.study.perceive.sealed import sealed
+from metagraph.research.study.perceive.perceive_plan import FILE, PerceivePlan, read_perceive_plan
+from metagraph.research.study.perceive.sealed import seal_sessions
 from metagraph.research.study.plan import allocation
 from metagraph.research.study.plan.drawn_orders import LOG
-from metagraph.research.study.plan.freeze import ABSENT, changed, seal
+from metagraph.research.study.plan.freeze import ABSENT, find_changed_names, seal
 
 KEY, LOCK, SHOW, PAGE = "key.json", "perceive.frozen.json", "show", "index.html"
 PLACE = "__STUDY__"  # in the page, where what it shows is put
@@ -70,10 +70,10 @@ class Perceived:
     def differences(self) -> list[str]:
         """Return in words what is not as it was frozen. Raises FileError."""
         before = _frozen(self.folder)
-        now = manifest(self.folder)
+        now = perceive_manifest(self.folder)
         return [
             f"{n} {'is not there any more' if now.get(n, ABSENT) == ABSENT else 'is not as it was frozen'}"
-            for n in changed(before, now)
+            for n in find_changed_names(before, now)
         ]
 
 
@@ -82,7 +82,7 @@ def write_folder(folder: Path, plan: PerceivePlan, text: bytes, made: Design) ->
     FileError.
     """
     page = files(__package__).joinpath("page.html").read_text("utf-8")
-    shown = {**made.public, "sessions": sealed(made.public["sessions"], made.public["design"])}
+    shown = {**made.public, "sessions": seal_sessions(made.public["sessions"], made.public["design"])}
     # Nothing in a text may end the script that holds it.
     told = json.dumps(shown, ensure_ascii=True, separators=(",", ":")).replace("<", "\\u003c")
     write_atomically(folder / SHOW / PAGE, page.replace(PLACE, told).encode())
@@ -96,7 +96,7 @@ def write_folder(folder: Path, plan: PerceivePlan, text: bytes, made: Design) ->
         for place, (who, s) in enumerate(made.key.sessions.items()):
             note = {"place": place, "participant": who, "number": s.number, "at": at}
             allocation.append_durably(log, note, who)
-    digests = manifest(folder)
+    digests = perceive_manifest(folder)
     data = {
         "frozen": wall_time(datetime.now(UTC)),
         "version": __version__,
@@ -107,7 +107,7 @@ def write_folder(folder: Path, plan: PerceivePlan, text: bytes, made: Design) ->
     return Perceived(folder / FILE, plan, made.key)
 
 
-def manifest(folder: Path) -> dict[str, str]:
+def perceive_manifest(folder: Path) -> dict[str, str]:
     """Return name -> SHA-256 of the plan, the key, the page and the videos."""
     paths = [
         folder / FILE,
@@ -151,7 +151,7 @@ def read_folder(path: str | Path) -> Perceived:
         key = msgspec.json.decode(read_file(place, TEXT_FILE), type=Key)
     except (msgspec.DecodeError, RecursionError) as error:
         raise FileError(place, f"is damaged ({error})", "the key", "Take it from a copy.") from None
-    return Perceived((folder / FILE).resolve(), read_plan(folder / FILE), key)
+    return Perceived((folder / FILE).resolve(), read_perceive_plan(folder / FILE), key)
 
 
 def level_times(folder: Path) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 
 from metagraph.research.study.perceive import binomial, crossed
 from metagraph.research.study.perceive.crossed import Crossed
-from metagraph.research.study.perceive.perceive_data import Answers, Chosen, Rated
+from metagraph.research.study.perceive.perceive_data import Answers, Rated, RaterChoice
 from metagraph.research.study.statistics import mixed as stats_mixed
 from metagraph.research.study.statistics import small_samples as stats
 from metagraph.research.study.statistics.small_samples import LEVEL, Estimate
@@ -27,7 +27,7 @@ Verdict = Literal["preferred", "not preferred", "no difference that matters", "n
 
 
 @dataclass(frozen=True)
-class Compared:
+class ComparedPair:
     """A pair of conditions. share: of answers for the first, exact interval. p: the exact binomial's. people:
     of those who chose one more often than the other, the share who chose the first; people_p: its sign test.
     model: None where there is none. together: the p value that is judged by, corrected for all that was asked
@@ -83,7 +83,7 @@ class PerceiveResults:
     """
 
     answers: Answers
-    pairs: tuple[Compared, ...] = ()
+    pairs: tuple[ComparedPair, ...] = ()
     rated: tuple[RatedPair, ...] = ()
     means: Mapping[str, Mapping[str, Estimate]] | None = None
     left: tuple[Estimate, float | None] | None = None
@@ -91,7 +91,7 @@ class PerceiveResults:
     cautions: tuple[str, ...] = ()
 
 
-def analyse(answers: Answers) -> PerceiveResults:
+def analyse_answers(answers: Answers) -> PerceiveResults:
     """Return what the answers show."""
     plan = answers.study.plan
     pairs = [_compared(answers, pair) for pair in plan.pairs] if plan.choice is not None else []
@@ -119,15 +119,15 @@ def analyse(answers: Answers) -> PerceiveResults:
 def _share(values: Sequence[bool]) -> tuple[Estimate, float | None] | None:
     if not values:
         return None
-    return binomial.share_of(sum(values), len(values)), binomial.two_sided(sum(values), len(values))
+    return binomial.exact_share(sum(values), len(values)), binomial.two_sided_p(sum(values), len(values))
 
 
-def _compared(answers: Answers, pair: tuple[str, str]) -> Compared:
+def _compared(answers: Answers, pair: tuple[str, str]) -> ComparedPair:
     rows = [c for c in answers.choices if c.pair == pair]
     every = [c.first for c in answers.all_choices if c.pair == pair]
-    unfiltered = binomial.share_of(sum(every), len(every)) if every else None
+    unfiltered = binomial.exact_share(sum(every), len(every)) if every else None
     if not rows:
-        return Compared(pair, None, unfiltered=unfiltered)
+        return ComparedPair(pair, None, unfiltered=unfiltered)
     k, n = sum(c.first for c in rows), len(rows)
     more = []
     for who in dict.fromkeys(c.participant for c in rows):
@@ -137,27 +137,27 @@ def _compared(answers: Answers, pair: tuple[str, str]) -> Compared:
     people = _share(more)
     early, late = _halves(rows)
     by_item = {
-        i.id: binomial.share_of(sum(mine), len(mine))
+        i.id: binomial.exact_share(sum(mine), len(mine))
         for i in answers.study.plan.items
         if (mine := [c.first for c in rows if c.item == i.id])
     }
-    return Compared(
+    return ComparedPair(
         pair,
-        binomial.share_of(k, n),
-        binomial.two_sided(k, n),
+        binomial.exact_share(k, n),
+        binomial.two_sided_p(k, n),
         people[0] if people is not None else None,
         people[1] if people is not None else None,
-        modelled(rows),
+        model_choices(rows),
         by_item=by_item,
         halves=None
         if not early or not late
-        else (binomial.share_of(sum(early), len(early)), binomial.share_of(sum(late), len(late))),
+        else (binomial.exact_share(sum(early), len(early)), binomial.exact_share(sum(late), len(late))),
         halves_p=binomial.fisher(sum(early), len(early), sum(late), len(late)),
         unfiltered=unfiltered,
     )
 
 
-def modelled(rows: Sequence[Chosen]) -> Crossed | None:
+def model_choices(rows: Sequence[RaterChoice]) -> Crossed | None:
     """Return the mixed model of choices: a preference, what the left side gains, people and items."""
     if len(rows) < 4:
         return None
@@ -165,12 +165,12 @@ def modelled(rows: Sequence[Chosen]) -> Crossed | None:
     effects: dict[str, Sequence[float]] = {"preference": [1.0] * len(rows)}
     if len(set(side)) > 1:
         effects["side"] = side
-    return crossed.fit(
+    return crossed.fit_crossed(
         [float(c.first) for c in rows], effects, [c.participant for c in rows], [c.item for c in rows]
     )
 
 
-def _halves(rows: Sequence[Chosen]) -> tuple[list[bool], list[bool]]:
+def _halves(rows: Sequence[RaterChoice]) -> tuple[list[bool], list[bool]]:
     """Return the choices of the first half of each person's session, and of the second."""
     last: dict[str, int] = {}
     for c in rows:
@@ -179,7 +179,7 @@ def _halves(rows: Sequence[Chosen]) -> tuple[list[bool], list[bool]]:
     return early, [c.first for c in rows if 2 * c.place >= last[c.participant]]
 
 
-def _verdict(found: Compared, together: float | None, smallest: float | None) -> Verdict:
+def _verdict(found: ComparedPair, together: float | None, smallest: float | None) -> Verdict:
     best = found.best
     if best is None:
         return "no answers"
@@ -219,7 +219,7 @@ def _difference(question: str, pair: tuple[str, str], rows: Sequence[Rated]) -> 
     gaps = [by[w, i, pair[0]] - by[w, i, pair[1]] for w, i in both]
     if len(gaps) <= MOST_ROWS:
         groups = {"participants": [w for w, _ in both], "items": [i for _, i in both]}
-        found = stats_mixed.fit(gaps, {"difference": [1.0] * len(gaps)}, groups)
+        found = stats_mixed.fit_mixed(gaps, {"difference": [1.0] * len(gaps)}, groups)
         if found is not None:
             e, df = found.effects["difference"], found.df["difference"]
             return RatedPair(question, pair, e, "mixed model", _p_of(e, df), deviations=found.deviations)
@@ -254,7 +254,7 @@ def _means(answers: Answers) -> dict[str, dict[str, Estimate]]:
 # --- words
 
 
-def _cautions(answers: Answers, pairs: Sequence[Compared], lefts: Sequence[bool]) -> list[str]:
+def _cautions(answers: Answers, pairs: Sequence[ComparedPair], lefts: Sequence[bool]) -> list[str]:
     out = []
     people, items = len(answers.counting), len(answers.study.plan.items)
     if not people:

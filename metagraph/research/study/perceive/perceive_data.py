@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from statistics import median
 
 from metagraph.errors import FileError
-from metagraph.research.study.logs.log import Log, read
-from metagraph.research.study.logs.withdrawal import deleted
-from metagraph.research.study.perceive.answers import answered, given
+from metagraph.research.study.logs.log import StudyLog, read_log
+from metagraph.research.study.logs.withdrawal import read_deleted
+from metagraph.research.study.perceive.answers import is_answer, list_answers
 from metagraph.research.study.perceive.design import Trial
 from metagraph.research.study.perceive.folder import Perceived
 
@@ -17,7 +17,7 @@ SIMULATED = "simulated"  # a file beside the answers that says that nobody gave 
 
 
 @dataclass(frozen=True)
-class Person:
+class Rater:
     """standing: how far they came. missed: of `told` checks. seconds: median time of a decision after the
     last video's end. why: why they do not count, "" for those who do.
     """
@@ -33,7 +33,7 @@ class Person:
 
 
 @dataclass(frozen=True)
-class Chosen:
+class RaterChoice:
     """A choice. pair: as the plan names it; first: whether its first condition was chosen; left: whether that
     one was on the left. place: 0, 1, 2 ... among the person's choices.
     """
@@ -70,11 +70,11 @@ class Answers:
     """
 
     study: Perceived
-    people: tuple[Person, ...] = ()
-    choices: tuple[Chosen, ...] = ()
+    people: tuple[Rater, ...] = ()
+    choices: tuple[RaterChoice, ...] = ()
     ratings: tuple[Rated, ...] = ()
     same: tuple[bool, ...] = ()
-    all_choices: tuple[Chosen, ...] = ()
+    all_choices: tuple[RaterChoice, ...] = ()
     odd: tuple[str, ...] = ()
     simulated: bool = False
 
@@ -87,7 +87,7 @@ class Answers:
 class _Read:
     """What one person's log says."""
 
-    choices: list[Chosen] = field(default_factory=list)
+    choices: list[RaterChoice] = field(default_factory=list)
     ratings: list[Rated] = field(default_factory=list)
     same: list[bool] = field(default_factory=list)
     told: int = 0
@@ -97,11 +97,11 @@ class _Read:
     answered: int = 0
 
 
-def collect(study: Perceived) -> Answers:
+def collect_answers(study: Perceived) -> Answers:
     """Return everybody's answers. A log that cannot be read leaves its person out and is told. Raises
     FileError where the study itself is damaged.
     """
-    gone = deleted(study)
+    gone = read_deleted(study)
     people, odd = [], study.differences()
     every: list[_Read] = []
     counted: list[_Read] = []
@@ -109,13 +109,13 @@ def collect(study: Perceived) -> Answers:
         path = study.log(who)
         if who in gone or not path.is_file():
             standing = "deleted" if who in gone else "not begun"
-            people.append(Person(who, standing, 0, 0, 0, 0, None, standing))
+            people.append(Rater(who, standing, 0, 0, 0, 0, None, standing))
             continue
         try:
-            log = read(path)
+            log = read_log(path)
         except FileError as error:
             odd.append(str(error))
-            people.append(Person(who, "not readable", 0, 0, 0, 0, None, "not readable"))
+            people.append(Rater(who, "not readable", 0, 0, 0, 0, None, "not readable"))
             continue
         odd += [f"{who}: {words}" for words in log.problems]
         standing = log.standing
@@ -129,7 +129,7 @@ def collect(study: Perceived) -> Answers:
         if middle is not None and middle < HASTY and not why:
             odd.append(f"{who} decided within {middle:.2f} s of a video's end, in the middle; they count.")
         people.append(
-            Person(who, standing, found.answered, found.told, found.missed, found.replays, middle, why)
+            Rater(who, standing, found.answered, found.told, found.missed, found.replays, middle, why)
         )
     return Answers(
         study,
@@ -150,9 +150,9 @@ def _why(study: Perceived, standing: str, found: _Read) -> str:
     return "missed checks" if found.missed > study.plan.checks.allow else ""
 
 
-def _read(study: Perceived, trials: tuple[Trial, ...], log: Log) -> _Read:
+def _read(study: Perceived, trials: tuple[Trial, ...], log: StudyLog) -> _Read:
     out = _Read()
-    answers = given(list(log.events))
+    answers = list_answers(list(log.events))
     pairs = {frozenset(p): p for p in study.plan.pairs}
     places = {"choice": 0, "rating": 0}
     for trial in trials:
@@ -161,7 +161,7 @@ def _read(study: Perceived, trials: tuple[Trial, ...], log: Log) -> _Read:
         place = places.get(trial.kind, 0)
         if trial.kind in places:
             places[trial.kind] += 1
-        if event is None or not answered(study, bool(trial.right), value):
+        if event is None or not is_answer(study, bool(trial.right), value):
             continue
         out.answered += 1
         seconds, replays = _number(event.get("seconds")), int(_number(event.get("replays")))
@@ -178,7 +178,7 @@ def _read(study: Perceived, trials: tuple[Trial, ...], log: Log) -> _Read:
             pair = pairs[frozenset((trial.a, trial.b))]
             chosen = trial.a if value == "left" else trial.b
             out.choices.append(
-                Chosen(
+                RaterChoice(
                     log.participant,
                     pair,
                     trial.item,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from metagraph.common.svg import dot, line, svg, text
+from metagraph.common.svg import svg_dot, svg_drawing, svg_line, svg_text
 from metagraph.research.study.perceive.perceive_analysis import PerceiveResults
 from metagraph.research.study.reports import plots
 from metagraph.research.study.reports.plots_flow import flow
@@ -14,7 +14,7 @@ MOST_ROWS = 60  # of one drawing
 LETTERS = 38  # of a name beside a row
 
 
-def figures(results: PerceiveResults) -> dict[str, tuple[str, str]]:
+def draw_perceive_figures(results: PerceiveResults) -> dict[str, tuple[str, str]]:
     """Return name -> drawing and caption."""
     plan = results.answers.study.plan
     out = {"participants": (_flow(results), "From all codes that were made to all who count.")}
@@ -25,14 +25,14 @@ def figures(results: PerceiveResults) -> dict[str, tuple[str, str]]:
     ]
     if rows:
         out["choices"] = (
-            shares(rows, "share of choices for the first of the two"),
+            draw_shares(rows, "share of choices for the first of the two"),
             "Shares of all people and items together, with 95 % intervals; the line is no preference.",
         )
     for n, c in enumerate(results.pairs):
         if c.by_item and len(c.by_item) > 1:
             names = " / ".join(plan.name(x) for x in c.pair)
             out[f"items-{n + 1}"] = (
-                shares([*c.by_item.items()][:MOST_ROWS], f"{names}, by item"),
+                draw_shares([*c.by_item.items()][:MOST_ROWS], f"{names}, by item"),
                 f"{names}: shares by item, with exact 95 % intervals.",
             )
     for question, means in (results.means or {}).items():
@@ -42,8 +42,8 @@ def figures(results: PerceiveResults) -> dict[str, tuple[str, str]]:
         assert asked.scale is not None
         points = asked.scale.points
         out[f"ratings-{question}"] = (
-            plots.means(
-                [(short(plan.name(c)), {"manual": e}) for c, e in means.items()],
+            plots.plot_means(
+                [(shorten_condition(plan.name(c)), {"manual": e}) for c, e in means.items()],
                 float(points[0]),
                 float(points[-1]),
                 f"{points[0]} {asked.scale.left} … {points[-1]} {asked.scale.right}",
@@ -53,11 +53,11 @@ def figures(results: PerceiveResults) -> dict[str, tuple[str, str]]:
     return out
 
 
-def short(name: str) -> str:
+def shorten_condition(name: str) -> str:
     return name if len(name) <= LETTERS else f"{name[: LETTERS - 1]}…"
 
 
-def shares(rows: Sequence[tuple[str, Estimate]], title: str) -> str:
+def draw_shares(rows: Sequence[tuple[str, Estimate]], title: str) -> str:
     """Return shares with their intervals, one below the other, on an axis of 0 to 100 % with a line at 50."""
     row, left, right = 34 if len(rows) < 6 else 24, 270, 500
     bottom = 18 + row * len(rows)
@@ -67,20 +67,20 @@ def shares(rows: Sequence[tuple[str, Estimate]], title: str) -> str:
 
     parts = []
     for t in (0.0, 0.25, 0.5, 0.75, 1.0):
-        parts.append(line(x(t), 12, x(t), bottom, "one" if t == 0.5 else "grid"))
-        parts.append(text(x(t), bottom + 18, f"{t:.0%}", "dim", "middle"))
-    parts.append(text((left + right) / 2, bottom + 38, title, "dim", "middle"))
+        parts.append(svg_line(x(t), 12, x(t), bottom, "one" if t == 0.5 else "grid"))
+        parts.append(svg_text(x(t), bottom + 18, f"{t:.0%}", "dim", "middle"))
+    parts.append(svg_text((left + right) / 2, bottom + 38, title, "dim", "middle"))
     for n, (name, e) in enumerate(rows):
         at = 18 + row * (n + 0.5)
-        parts.append(text(left - 14, at + 4, short(name), "label", "end"))
+        parts.append(svg_text(left - 14, at + 4, shorten_condition(name), "label", "end"))
         words = f"{e.value:.0%}"
         bar = ""
         if e.low is not None and e.high is not None:
-            bar = line(x(e.low), at, x(e.high), at, "wide")
+            bar = svg_line(x(e.low), at, x(e.high), at, "wide")
             words += f"  [{e.low:.0%}, {e.high:.0%}]"
-        parts.append(f"<g class='manual'>{bar}{dot(x(e.value), at, 5)}</g>")
-        parts.append(text(right + 12, at + 4, words, "label", "start"))
-    return svg(bottom + 48, parts, title)
+        parts.append(f"<g class='manual'>{bar}{svg_dot(x(e.value), at, 5)}</g>")
+        parts.append(svg_text(right + 12, at + 4, words, "label", "start"))
+    return svg_drawing(bottom + 48, parts, title)
 
 
 def _flow(results: PerceiveResults) -> str:

@@ -144,7 +144,7 @@ class PerceivePlan(Struct, frozen=True, forbid_unknown_fields=True):
         return self.conditions[condition].title or condition
 
 
-def read_plan(path: str | Path) -> PerceivePlan:
+def read_perceive_plan(path: str | Path) -> PerceivePlan:
     """Read a plan, or the one in a folder. Raises FileError with the line, the cause and the remedy."""
     path = Path(path)
     path = path / FILE if path.is_dir() else path
@@ -152,15 +152,17 @@ def read_plan(path: str | Path) -> PerceivePlan:
         text = read_file(path, TEXT_FILE).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise FileError(path, "is not text", f"byte {error.start}", "Choose a plan of a study.") from None
-    return from_text(text, path)
+    return parse_perceive_plan(text, path)
 
 
-def from_text(text: str, path: Path = Path(FILE)) -> PerceivePlan:
+def parse_perceive_plan(text: str, path: Path = Path(FILE)) -> PerceivePlan:
     """Return the plan of a text. Raises FileError."""
-    return plan_from(text, path, PerceivePlan, "perceive", "no perceptual study", VERSION, faults, _CORRECT)
+    return plan_from(
+        text, path, PerceivePlan, "perceive", "no perceptual study", VERSION, find_perceive_faults, _CORRECT
+    )
 
 
-def faults(plan: PerceivePlan) -> list[tuple[str, str]]:
+def find_perceive_faults(plan: PerceivePlan) -> list[tuple[str, str]]:
     """Return what is wrong that the fields' types do not say: (field, cause)."""
     out = _twice(plan)
     for name, condition in plan.conditions.items():

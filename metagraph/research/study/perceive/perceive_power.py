@@ -46,7 +46,7 @@ class Expected:
         return (low + high) / 2
 
 
-def drawn(
+def draw_study(
     expected: Expected, people: int, items: int, each: int, rng: np.random.Generator
 ) -> tuple[list[float], list[float], list[int], list[int]]:
     """Return one study: choices, sides (-0.5, 0.5), whose, about which item. each: answers of a person."""
@@ -59,7 +59,7 @@ def drawn(
     return chosen.astype(float).tolist(), side.tolist(), who.tolist(), what.tolist()
 
 
-def shown(
+def simulate_power(
     expected: Expected,
     people: int,
     items: int,
@@ -80,22 +80,22 @@ def shown(
     rng = np.random.default_rng(seed)
     hits = 0
     for _ in range(studies):
-        chosen, _, who, what = drawn(expected, people, items, each, rng)
-        found = crossed.fit(chosen, {"preference": [1.0] * len(chosen)}, who, what)
+        chosen, _, who, what = draw_study(expected, people, items, each, rng)
+        found = crossed.fit_crossed(chosen, {"preference": [1.0] * len(chosen)}, who, what)
         if found is None:  # everybody agreed: the exact test is what is left
             k, n = round(sum(chosen)), len(chosen)
-            p, up = binomial.two_sided(k, n) or 1.0, 2 * k > n
+            p, up = binomial.two_sided_p(k, n) or 1.0, 2 * k > n
         else:
             p, up = found.p["preference"], found.effects["preference"].value > 0
         hits += p < alpha and (up == (expected.share > 0.5) or expected.share == 0.5)
-    return binomial.share_of(hits, studies)
+    return binomial.exact_share(hits, studies)
 
 
-def about(expected: Expected, items: int, each: int, chance: float, alpha: float) -> int | None:
+def estimate_people(expected: Expected, items: int, each: int, chance: float, alpha: float) -> int | None:
     """Return about how many people are needed, to begin simulating from: the exact count of answers, more by
     what people and items add to the variance of their mean. None where items alone are too few.
     """
-    answers = binomial.needed(expected.share, chance, alpha)
+    answers = binomial.count_needed_answers(expected.share, chance, alpha)
     if answers is None:
         return None
     p = expected.share
@@ -108,7 +108,7 @@ def about(expected: Expected, items: int, each: int, chance: float, alpha: float
     return max(2, round(single / each / left))
 
 
-def people_needed(
+def count_raters_needed(
     expected: Expected,
     items: int,
     each: int,
@@ -120,20 +120,20 @@ def people_needed(
     """Return the fewest people, among steps of a tenth, with whom simulated studies find a preference often
     enough, and how often they do; (None, what the most people give) where none are enough.
     """
-    n = about(expected, items, each, chance, alpha)
+    n = estimate_people(expected, items, each, chance, alpha)
     people = min(WIDEST, max(4, n if n is not None else WIDEST))
-    found = shown(expected, people, items, each, alpha, studies, seed)
+    found = simulate_power(expected, people, items, each, alpha, studies, seed)
     if found.value >= chance:
         while people > 4:
             fewer = max(4, people - max(1, people // 10))
-            less = shown(expected, fewer, items, each, alpha, studies, seed)
+            less = simulate_power(expected, fewer, items, each, alpha, studies, seed)
             if less.value < chance:
                 break
             people, found = fewer, less
         return people, found
     while people < WIDEST:
         people = min(WIDEST, people + max(1, people // 8))
-        found = shown(expected, people, items, each, alpha, studies, seed)
+        found = simulate_power(expected, people, items, each, alpha, studies, seed)
         if found.value >= chance:
             return people, found
     return None, found

@@ -9,13 +9,13 @@ from pathlib import Path
 
 from metagraph.common.xml_text import escape
 from metagraph.formats.atomic import write_together
-from metagraph.research.study.perceive.perceive_analysis import Compared, PerceiveResults
-from metagraph.research.study.perceive.perceive_figures import figures
-from metagraph.research.study.reports.cells import chance, figure, interval, table, two
+from metagraph.research.study.perceive.perceive_analysis import ComparedPair, PerceiveResults
+from metagraph.research.study.perceive.perceive_figures import draw_perceive_figures
+from metagraph.research.study.reports.cells import chance, figure, format_cells, format_two_digits, interval
 from metagraph.research.study.reports.figure_files import standalone
 from metagraph.research.study.reports.style import STYLE
 from metagraph.research.study.reports.tables import Table
-from metagraph.research.study.reports.tables import table as csv_of
+from metagraph.research.study.reports.tables import format_rows as csv_of
 from metagraph.research.study.statistics.small_samples import Estimate
 
 NAME = "report.html"
@@ -40,18 +40,18 @@ exact test. Sides: all choices of the left one against a half.</dd>
 it with nobody excluded, but without those who withdrew, is told beside.</dd></dl>"""
 
 
-def write_report(results: PerceiveResults, folder: Path) -> list[Path]:
+def write_perceive_report(results: PerceiveResults, folder: Path) -> list[Path]:
     """Write the page, the tables and the figures into a folder; return what was written, the page first.
     Raises FileError.
     """
-    drawn = figures(results)
-    content = {NAME: page(results).encode()}
-    content |= {name: csv_of(*rows).encode() for name, rows in tables(results).items()}
+    drawn = draw_perceive_figures(results)
+    content = {NAME: format_perceive_page(results).encode()}
+    content |= {name: csv_of(*rows).encode() for name, rows in perceive_tables(results).items()}
     content |= {f"figures/{name}.svg": standalone(d).encode() for name, (d, _) in drawn.items()}
     return write_together(folder, content)
 
 
-def summary(results: PerceiveResults) -> list[str]:
+def summarise_perceive(results: PerceiveResults) -> list[str]:
     """Return the findings as sentences."""
     plan, out = results.answers.study.plan, []
     for c in results.pairs:
@@ -68,7 +68,7 @@ def summary(results: PerceiveResults) -> list[str]:
     return out or ["Nobody has answered yet."]
 
 
-def _said(c: Compared, a: str, b: str, smallest: float | None) -> str:
+def _said(c: ComparedPair, a: str, b: str, smallest: float | None) -> str:
     best = c.best
     if best is None:
         return f"{a} and {b}: no answers count."
@@ -95,10 +95,10 @@ def _points(e: Estimate) -> str:
 # --- the page
 
 
-def page(results: PerceiveResults) -> str:
+def format_perceive_page(results: PerceiveResults) -> str:
     """Return the page."""
     plan = results.answers.study.plan
-    drawn = {n: figure(n, d, words, {}) for n, (d, words) in figures(results).items()}
+    drawn = {n: figure(n, d, words, {}) for n, (d, words) in draw_perceive_figures(results).items()}
     parts = [
         f"<h1>{escape(plan.title)}</h1>",
         "<p class='warn'>Nobody took part: these answers were simulated.</p>"
@@ -106,7 +106,8 @@ def page(results: PerceiveResults) -> str:
         else "",
         "<div class='card'>"
         + "".join(
-            f"<p class='{'big' if n == 0 else ''}'>{escape(w)}</p>" for n, w in enumerate(summary(results))
+            f"<p class='{'big' if n == 0 else ''}'>{escape(w)}</p>"
+            for n, w in enumerate(summarise_perceive(results))
         )
         + "</div>",
         _list(results.cautions, "card warn"),
@@ -171,14 +172,14 @@ def _choices(results: PerceiveResults, drawn: Mapping[str, str]) -> str:
         models.append(
             [
                 names,
-                interval(c.model.effects["preference"] if c.model else None, two),
+                interval(c.model.effects["preference"] if c.model else None, format_two_digits),
                 spread,
-                interval(side, two),
+                interval(side, format_two_digits),
             ]
         )
         items.append(drawn.get(f"items-{n + 1}", ""))
     out = "<h2>Choices</h2>" + drawn.get("choices", "")
-    out += table(
+    out += format_cells(
         (
             "first / second",
             "mixed model: share of the first",
@@ -189,10 +190,10 @@ def _choices(results: PerceiveResults, drawn: Mapping[str, str]) -> str:
         ),
         rows,
     )
-    out += table(
+    out += format_cells(
         ("", "people who chose the first more often", "first, second half", "nobody excluded"), people
     )
-    out += table(("mixed model", "log odds", "deviations", "gain of the left side"), models)
+    out += format_cells(("mixed model", "log odds", "deviations", "gain of the left side"), models)
     return out + "<h3>By item</h3>" + "".join(items)
 
 
@@ -212,7 +213,7 @@ def _ratings(results: PerceiveResults, drawn: Mapping[str, str]) -> str:
         ]
         for r in results.rated
     ]
-    return out + table(("question", "pair", "difference, points", "alone", "together", "by"), rows)
+    return out + format_cells(("question", "pair", "difference, points", "alone", "together", "by"), rows)
 
 
 def _sides(results: PerceiveResults) -> str:
@@ -221,7 +222,7 @@ def _sides(results: PerceiveResults) -> str:
         if found is not None:
             e, p = found
             rows.append([name, interval(e, _percent), f"{round(e.value * e.n)} of {e.n}", chance(p)])
-    return "<h2>Sides</h2>" + table(("", "left", "answers", "against a half"), rows) if rows else ""
+    return "<h2>Sides</h2>" + format_cells(("", "left", "answers", "against a half"), rows) if rows else ""
 
 
 def _people(results: PerceiveResults, drawn: Mapping[str, str]) -> str:
@@ -241,7 +242,7 @@ def _people(results: PerceiveResults, drawn: Mapping[str, str]) -> str:
     ]
     columns = ("code", "", "answers", "checks missed", "replays", "median decision", "")
     odd = f"<h3>What is not as it should be</h3>{_list(answers.odd)}" if answers.odd else ""
-    return f"<h2>Who took part</h2>{drawn['participants']}{table(columns, rows) if rows else ''}{odd}"
+    return f"<h2>Who took part</h2>{drawn['participants']}{format_cells(columns, rows) if rows else ''}{odd}"
 
 
 def _claims(results: PerceiveResults) -> str:
@@ -265,7 +266,7 @@ def _claims(results: PerceiveResults) -> str:
 # --- tables
 
 
-def tables(results: PerceiveResults) -> dict[str, Table]:
+def perceive_tables(results: PerceiveResults) -> dict[str, Table]:
     """Return file name -> columns and rows."""
     answers = results.answers
     choices = [

@@ -18,14 +18,14 @@ ROUNDS = 100_000  # half a second in a browser
 NAME = 32  # hexadecimal digits that name a session
 
 
-def sealed(sessions: Mapping[str, Any], salt: str) -> dict[str, Any]:
+def seal_sessions(sessions: Mapping[str, Any], salt: str) -> dict[str, Any]:
     """Return what the page is told of the sessions, given by code: salt, rounds, and name -> sealed session.
     Their order tells nothing either.
     """
     with ThreadPoolExecutor() as pool:  # deriving lets other threads run
         derived = pool.map(lambda code: derive(code, salt), sessions)
         rows = zip(sessions.items(), derived, strict=True)
-        found = {name_of(key): _sealed([code, session], key) for (code, session), key in rows}
+        found = {sealed_name(key): _sealed([code, session], key) for (code, session), key in rows}
     return {"salt": salt, "rounds": ROUNDS, "sealed": dict(sorted(found.items()))}
 
 
@@ -34,12 +34,12 @@ def derive(code: str, salt: str) -> bytes:
     return hashlib.pbkdf2_hmac("sha256", code.strip().lower().encode(), salt.encode(), ROUNDS)
 
 
-def name_of(key: bytes) -> str:
+def sealed_name(key: bytes) -> str:
     """Return what a session is called in the page, which tells nothing of its key."""
     return hashlib.sha256(key + b"name").hexdigest()[:NAME]
 
 
-def turned(content: bytes, key: bytes) -> bytes:
+def seal_content(content: bytes, key: bytes) -> bytes:
     """Return a content sealed, or opened."""
     out = bytearray()
     for n in range(0, len(content), 32):
@@ -49,4 +49,4 @@ def turned(content: bytes, key: bytes) -> bytes:
 
 
 def _sealed(content: Any, key: bytes) -> str:
-    return b64encode(turned(json.dumps(content, separators=(",", ":")).encode(), key)).decode()
+    return b64encode(seal_content(json.dumps(content, separators=(",", ":")).encode(), key)).decode()

@@ -12,13 +12,13 @@ from typing import Any
 
 from metagraph.engines.serve import Quiet, Served
 from metagraph.errors import FileError
-from metagraph.research.study.perceive.answers import SheetError, decode, keep
+from metagraph.research.study.perceive.answers import SheetError, decode_sheet, keep_sheet
 from metagraph.research.study.perceive.folder import Perceived
 
 MOST_POSTED = 512 << 10  # bytes of one request
 
 
-def serve(study: Perceived, port: int = 0, address: str = "127.0.0.1") -> Served:
+def serve_page(study: Perceived, port: int = 0, address: str = "127.0.0.1") -> Served:
     """Serve a study's page until closed. address: of the interface that is listened on. Raises OSError where
     the port is taken or there is no such address.
     """
@@ -64,7 +64,7 @@ class _Answering(Quiet):
         if len(content) < int(length):
             return self._say(HTTPStatus.BAD_REQUEST, "it ended too early")
         try:
-            kept = keep(self.kept_for, decode(content))
+            kept = keep_sheet(self.kept_for, decode_sheet(content))
         except SheetError as error:
             return self._say(HTTPStatus.CONFLICT if error.taken else HTTPStatus.BAD_REQUEST, str(error))
         except FileError as error:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from metagraph.research.study.perceive.answers import PageEvent, Sheet, keep
+from metagraph.research.study.perceive.answers import PageEvent, Sheet, keep_sheet
 from metagraph.research.study.perceive.binomial import logistic
 from metagraph.research.study.perceive.design import Trial, design
 from metagraph.research.study.perceive.folder import Perceived, write_folder
@@ -50,7 +50,7 @@ class Raters:
             raise ValueError("log odds lie between -20 and 20")
 
 
-def simulate(study: Perceived, raters: Raters) -> int:
+def simulate_raters(study: Perceived, raters: Raters) -> int:
     """Answer a study as raters would, through the same door as real answers; return how many did. Raises
     ValueError for conditions there are not.
     """
@@ -88,7 +88,7 @@ def simulate(study: Perceived, raters: Raters) -> int:
             )
         if not stops:
             events.append(PageEvent(len(events), "end"))
-        keep(study, Sheet(1, study.key.design, who, run, tuple(events)))
+        keep_sheet(study, Sheet(1, study.key.design, who, run, tuple(events)))
     return len(study.key.sessions)
 
 
@@ -127,5 +127,5 @@ def write_simulated(folder: Path, plan: PerceivePlan, text: bytes, secret: str, 
     """Write a study without videos and answer it. text: the plan's file. Raises ValueError, FileError."""
     study = write_folder(folder, plan, text, design(plan, secret))
     (folder / SIMULATED).write_text("Nobody gave these answers.\n", encoding="utf-8")
-    simulate(study, raters)
+    simulate_raters(study, raters)
     return study

@@ -19,15 +19,15 @@ from metagraph.common.budgets import LOG_FILE
 from metagraph.common.files import read_file
 from metagraph.errors import FileError
 from metagraph.formats.atomic import append_line, write_atomically
-from metagraph.formats.project.kernel_lock import alone
-from metagraph.research.study.plan.drawn_orders import LOG, drawn
+from metagraph.formats.project.kernel_lock import wait_for_turn
+from metagraph.research.study.plan.drawn_orders import LOG, read_drawn_orders
 from metagraph.research.study.plan.order import williams
 from metagraph.research.study.study_plan import Study
 
 SECRET = "allocation.secret"
 
 
-def prepare(study: Study) -> str:
+def prepare_allocation(study: Study) -> str:
     """Make the secret, unless there is one; return its digest, to be made known before anybody begins."""
     return commitment(make_secret(study.folder))
 
@@ -37,7 +37,7 @@ def make_secret(folder: Path) -> str:
     path = folder / SECRET
     if not path.is_file():
         folder.mkdir(parents=True, exist_ok=True)
-        with alone(folder / f".{SECRET}.lock"):
+        with wait_for_turn(folder / f".{SECRET}.lock"):
             if not path.is_file():
                 write_atomically(path, (secrets.token_hex(32) + "\n").encode())
                 with suppress(OSError):
@@ -65,7 +65,7 @@ def drawer(secret: str) -> Callable[..., int]:
     return draw
 
 
-def numbers(secret: str, orders: int, most: int = 2) -> Iterator[int]:
+def draw_order_numbers(secret: str, orders: int, most: int = 2) -> Iterator[int]:
     """Yield the numbers of orders as they are drawn: 0, 1, 2 ... shuffled within blocks of one or two
     rounds of all orders, how many that is drawn, too, so that the last of a block cannot be foreseen.
     most: rounds of a block; 1 where nobody sees who comes next anyway.
@@ -95,11 +95,11 @@ def allocate(study: Study, participant: str) -> int:
             "order",
             "Run 'metagraph study plan' with --allocate, and keep the digest it tells.",
         )
-    with alone(study.folder / f".{LOG}.lock"):
-        known = drawn(study.folder)
+    with wait_for_turn(study.folder / f".{LOG}.lock"):
+        known = read_drawn_orders(study.folder)
         if participant in known:
             return known[participant]
-        source = numbers(read_secret(study.folder), orders(study))
+        source = draw_order_numbers(read_secret(study.folder), orders(study))
         number = next(n for place, n in enumerate(source) if place == len(known))
         note = {
             "place": len(known),
@@ -130,11 +130,11 @@ def append_durably(path: Path, note: dict[str, Any], where: str = "") -> None:
 def problems(study: Study) -> list[str]:
     """Return in words where the log of the allocation is not what the secret gives."""
     try:
-        source = numbers(read_secret(study.folder), orders(study))
+        source = draw_order_numbers(read_secret(study.folder), orders(study))
     except FileError:
         return ["the secret of the allocation is not there: nobody can see whether it was followed"]
     out = []
-    for (who, number), expected in zip(drawn(study.folder).items(), source, strict=False):
+    for (who, number), expected in zip(read_drawn_orders(study.folder).items(), source, strict=False):
         if number != expected:
             out.append(f"{who} has order {number}, but the secret gives {expected}")
     return out

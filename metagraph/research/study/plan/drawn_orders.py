@@ -14,7 +14,7 @@ from metagraph.common.files import read_file
 LOG = "allocation.jsonl"
 
 
-def drawn(folder: Path) -> dict[str, int]:
+def read_drawn_orders(folder: Path) -> dict[str, int]:
     """Return participant -> the number of the order that was drawn; damaged lines are left out."""
     path = folder / LOG
     if not path.is_file():

@@ -8,7 +8,7 @@ from metagraph.research.study.plan.study_fields import Plan
 from metagraph.research.study.questionnaires import BUILT_IN, Item, Scale
 
 
-def faults(plan: Plan) -> list[tuple[str, str]]:
+def find_plan_faults(plan: Plan) -> list[tuple[str, str]]:
     """Return what is wrong that the fields' types do not say: (field, cause)."""
     out: list[tuple[str, str]] = []
     for field, names in (

@@ -28,7 +28,7 @@ ABSENT = "absent"
 TEXTS = ("consent", "instructions", "tasks", "training", "questions", "order", "thanks")
 
 
-def manifest(study: Study) -> dict[str, str]:
+def study_manifest(study: Study) -> dict[str, str]:
     """Return name -> SHA-256 of everything a participant works with: the plan's texts, among them the wording
     of questionnaires that are built in, and by their paths from the study file the references, their
     characters, and all clips. What is not there is `absent`.
@@ -87,20 +87,20 @@ def seal(digests: Mapping[str, str]) -> str:
     return hashlib.sha256(json.dumps(dict(sorted(digests.items()))).encode()).hexdigest()
 
 
-def changed(before: Mapping[str, str], after: Mapping[str, str]) -> list[str]:
+def find_changed_names(before: Mapping[str, str], after: Mapping[str, str]) -> list[str]:
     """Return the names of what is not the same, in the order of `before`; what both miss is the same."""
     return [n for n in dict.fromkeys((*before, *after)) if before.get(n, ABSENT) != after.get(n, ABSENT)]
 
 
-def freeze(study: Study, force: bool = False) -> Path:
+def freeze_files(study: Study, force: bool = False) -> Path:
     """Write what the study is made of beside it; return the file. Raises FileError where it is frozen already
     and something has changed since, unless forced.
     """
-    digests = manifest(study)
+    digests = study_manifest(study)
     path = study.folder / LOCK
     earlier: list[dict[str, object]] = []
     if path.is_file():
-        differ = changed(frozen(study) or {}, digests) if not force else []
+        differ = find_changed_names(frozen(study) or {}, digests) if not force else []
         if differ:
             raise FileError(
                 path,
@@ -146,20 +146,22 @@ def frozen(study: Study) -> dict[str, str] | None:
         ) from None
 
 
-def differences(study: Study, logs: Mapping[str, Mapping[str, str] | None], clips: bool = True) -> list[str]:
+def describe_study_differences(
+    study: Study, logs: Mapping[str, Mapping[str, str] | None], clips: bool = True
+) -> list[str]:
     """Return in words what people worked with that is not what lies there now. logs: participant -> what the
     log says it was, None where it says nothing. clips: read them, too.
     """
-    now = manifest(study)
+    now = study_manifest(study)
     out: list[str] = []
     others: dict[str, list[str]] = {}
     for who, before in logs.items():
-        for name in changed(before, now) if before is not None else ():
+        for name in find_changed_names(before, now) if before is not None else ():
             if clips or now.get(name) != ABSENT:
                 others.setdefault(name, []).append(who)
     references = {_relative(study, p) for t in study.plan.tasks if (p := study.reference(t.id)) is not None}
     for name, people in others.items():
-        some = "everybody" if len(people) == len(logs) and len(people) > 1 else listed(people)
+        some = "everybody" if len(people) == len(logs) and len(people) > 1 else list_people(people)
         if name in TEXTS:
             out.append(f"{some}: what the study file says of {name} is not what it was then.")
             continue
@@ -170,12 +172,12 @@ def differences(study: Study, logs: Mapping[str, Mapping[str, str] | None], clip
     silent = [who for who, before in logs.items() if before is None]
     if silent:
         out.append(
-            f"{listed(silent)}: {'the log does' if len(silent) == 1 else 'their logs do'} not say which "
+            f"{list_people(silent)}: {'the log does' if len(silent) == 1 else 'their logs do'} not say which "
             "references and clips were worked with; whether they were changed since is not known."
         )
     return out
 
 
-def listed(people: list[str]) -> str:
+def list_people(people: list[str]) -> str:
     """Return names in a sentence, of many only the first."""
     return ", ".join(people[:6]) + (f" and {len(people) - 6} more" if len(people) > 6 else "")

@@ -39,8 +39,8 @@ def latin(
     Within a participant the order of the tasks goes on from one condition to the next, so that two
     participants in a row already have each of two tasks as often first in each condition.
     """
-    tried = tuple(shuffled(conditions, seed))
-    worked = tuple(shuffled(tasks, seed ^ 0x5BD1E995))
+    tried = tuple(shuffle_by_seed(conditions, seed))
+    worked = tuple(shuffle_by_seed(tasks, seed ^ 0x5BD1E995))
     rows, orders = williams(len(tried)), williams(len(worked))
     blocks = [tried[x] for x in rows[number % len(rows)]]
     turn = number // len(rows)
@@ -50,7 +50,7 @@ def latin(
     )
 
 
-def shuffled(items: Sequence[T], seed: int) -> list[T]:
+def shuffle_by_seed(items: Sequence[T], seed: int) -> list[T]:
     """Return the items in an order that depends on the seed alone, by 32-bit integers: the same on every
     machine and version.
     """

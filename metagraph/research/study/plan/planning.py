@@ -55,7 +55,7 @@ class SampleSize:
     equivalent: int | None
 
 
-def assumed(ratio: float, spread: float) -> Assumed:
+def assume_without_pilot(ratio: float, spread: float) -> Assumed:
     """Return what is assumed without a pilot. Raises ValueError."""
     return Assumed(ratio, spread, "assumed", spread)
 
@@ -95,10 +95,10 @@ def sample_size(
     spread, share = found.worst, alpha / max(1, families)
     bound = log(smallest)
     return SampleSize(
-        stats.people_needed(log(found.ratio) / spread, chance, share),
-        stats.people_needed(bound / spread, chance, share),
+        stats.count_pairs_needed(log(found.ratio) / spread, chance, share),
+        stats.count_pairs_needed(bound / spread, chance, share),
         _fewest(lambda n: precision_chance(n, spread, log(within), alpha) >= chance),
-        _fewest(lambda n: equivalence_power(n, 0.0, spread, -bound, bound, alpha) >= chance),
+        _fewest(lambda n: ratio_equivalence_power(n, 0.0, spread, -bound, bound, alpha) >= chance),
     )
 
 
@@ -133,7 +133,7 @@ def precision_chance(n: int, spread: float, half: float, alpha: float = 0.05) ->
 # --- equivalence
 
 
-def equivalence_power(
+def ratio_equivalence_power(
     n: int,
     effect: float,
     spread: float,

@@ -21,7 +21,7 @@ from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.research.study.analysis.results import TITLES
 from metagraph.research.study.logs.log import wall_time
-from metagraph.research.study.plan.freeze import manifest, seal
+from metagraph.research.study.plan.freeze import seal, study_manifest
 from metagraph.research.study.plan.planning import Assumed, SampleSize
 from metagraph.research.study.scores.tasks import AWAY
 from metagraph.research.study.study_plan import Study
@@ -49,7 +49,7 @@ def preregister(study: Study, aims: Aims, secret: str | None, force: bool = Fals
     change, unless forced.
     """
     folder = study.folder / FOLDER
-    digests = manifest(study)
+    digests = study_manifest(study)
     forms = {
         "osf.md": osf(study, aims, secret, seal(digests)),
         "aspredicted.md": as_predicted(study, aims, secret, seal(digests)),
@@ -97,7 +97,7 @@ def unlike(study: Study) -> list[str]:
         return []
     record = _record(folder / RECORD)
     out = []
-    if record.get("study") != seal(manifest(study)):
+    if record.get("study") != seal(study_manifest(study)):
         out.append("the study is not as it was preregistered")
     forms = record.get("forms")
     for name, told in forms.items() if isinstance(forms, dict) else ():

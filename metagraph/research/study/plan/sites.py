@@ -9,14 +9,16 @@ from dataclasses import replace
 from pathlib import Path
 
 from metagraph.errors import FileError
-from metagraph.research.study.analysis.reading import AnalysisRow, Data, Progress, collect
-from metagraph.research.study.plan.freeze import changed, manifest
+from metagraph.research.study.analysis.reading import AnalysisRow, Data, Progress, collect_study
+from metagraph.research.study.plan.freeze import find_changed_names, study_manifest
 from metagraph.research.study.study_plan import read_study
 
 OWN = frozenset({"order", "consent", "thanks", "instructions"})  # may be each site's own
 
 
-def merge(folders: Sequence[str | Path], jumps: bool = True, progress: Progress | None = None) -> Data:
+def merge_site_data(
+    folders: Sequence[str | Path], jumps: bool = True, progress: Progress | None = None
+) -> Data:
     """Return the data of all folders as one. Raises FileError where one cannot be read, has not the same
     tasks and conditions, or is called as another is; what else differs is told in `missing`.
     """
@@ -40,16 +42,18 @@ def merge(folders: Sequence[str | Path], jumps: bool = True, progress: Progress 
                 "Merge sites of one study.",
             )
     missing: list[str] = []
-    digests = {Path(k).name if "/" in k else k: v for k, v in manifest(first).items()}
+    digests = {Path(k).name if "/" in k else k: v for k, v in study_manifest(first).items()}
     found: list[Data] = []
     for study, name in zip(studies, names, strict=True):
-        mine = {Path(k).name if "/" in k else k: v for k, v in manifest(study).items()}
-        differ = [n for n in changed(digests, mine) if n not in OWN and n not in ("tasks", "training")]
+        mine = {Path(k).name if "/" in k else k: v for k, v in study_manifest(study).items()}
+        differ = [
+            n for n in find_changed_names(digests, mine) if n not in OWN and n not in ("tasks", "training")
+        ]
         if differ:
             missing.append(
                 f"{name}: {', '.join(differ[:5])} {'is' if len(differ) == 1 else 'are'} not {names[0]}'s."
             )
-        found.append(_told_apart(collect(study.folder, jumps, progress), name))
+        found.append(_told_apart(collect_study(study.folder, jumps, progress), name))
     return replace(
         found[0],
         title=first.plan.title,

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from msgspec import Meta, Struct
 
-from metagraph.research.study.machines.klm import Times
+from metagraph.research.study.machines.klm import OperatorTimes
 from metagraph.research.study.plan.order import latin
 from metagraph.research.study.questionnaires import BUILT_IN, Name, Questionnaire, When
 
@@ -88,9 +88,9 @@ class Plan(Struct, frozen=True, forbid_unknown_fields=True):
     lsl: bool = False
 
     @property
-    def times(self) -> Times:
+    def times(self) -> OperatorTimes:
         """Return what the operators take."""
-        return replace(Times(), **self.operators)
+        return replace(OperatorTimes(), **self.operators)
 
     @property
     def ids(self) -> tuple[str, ...]:

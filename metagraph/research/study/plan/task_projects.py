@@ -9,7 +9,7 @@ from pathlib import Path
 
 from metagraph.errors import FileError
 from metagraph.formats.imports import import_files
-from metagraph.formats.recovery import left_journals, recover, retire
+from metagraph.formats.recovery import find_left_journals, recover, retire
 from metagraph.formats.store import Opened, load_motions, read_project, relative, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
@@ -18,7 +18,9 @@ from metagraph.research.study.study_plan import Study
 Progress = Callable[[int, int], None]
 
 
-def make(study: Study, clips: str | tuple[str, ...], name: str, reference: Path | None = None) -> Project:
+def make_task_project(
+    study: Study, clips: str | tuple[str, ...], name: str, reference: Path | None = None
+) -> Project:
     """Return a project of clips, none of them placed; its paths are absolute. Base pose and character are the
     reference's, whose clips are told apart by their files' names. Raises FileError when a clip cannot be
     read: everybody works on the same ones.
@@ -57,7 +59,7 @@ def _same(one: str, other: str) -> bool:
     return Path(one).name == Path(other).name
 
 
-def write(project: Project, path: Path) -> Project:
+def write_task_project(project: Project, path: Path) -> Project:
     """Save a project with absolute paths as a file, whose paths are relative to it; return it as it was
     saved. Raises FileError.
     """
@@ -74,7 +76,7 @@ def reopen(path: Path, progress: Progress | None = None) -> tuple[Opened, int]:
     A journal of an older state of the file has nothing to add: the file was saved after it.
     """
     project, count, used = None, 0, None
-    for journal in left_journals(path):  # the latest counts
+    for journal in find_left_journals(path):  # the latest counts
         with suppress(FileError):
             found = recover(journal, path)
             if found is not None:

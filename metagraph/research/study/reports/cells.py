@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import isfinite
 
 from metagraph.common.xml_text import escape
-from metagraph.research.study.analysis.results import TITLES, Comparison
+from metagraph.research.study.analysis.results import TITLES, ConditionComparison
 from metagraph.research.study.reports.figure_files import standalone
 from metagraph.research.study.reports.plots import seconds
 from metagraph.research.study.statistics.small_samples import Estimate, Test
@@ -15,11 +15,11 @@ from metagraph.research.study.statistics.small_samples import Estimate, Test
 Say = Callable[[float], str]
 
 
-def times(ratio: Estimate) -> str:
+def format_ratio(ratio: Estimate) -> str:
     return f"{ratio.value:.2f} times" if ratio.value < 9.95 else f"{ratio.value:.1f} times"
 
 
-def two(value: float) -> str:
+def format_two_digits(value: float) -> str:
     """Return a number to two digits; what is not bounded as such."""
     return f"{value:.2f}" if isfinite(value) else "not bounded"
 
@@ -31,16 +31,16 @@ def chance(p: float | None) -> str:
     return "p &lt; 0.001" if p < 0.001 else f"p = {p:.3f}"
 
 
-def tested(test: Test) -> str:
+def format_test(test: Test) -> str:
     if test.p is None or test.statistic is None or test.df is None:
         return "too few for a test"
     return f"t({test.df:.4g}) = {test.statistic:.2f}, {chance(test.p)}"
 
 
-def spread(found: Estimate) -> str:
+def format_spread(found: Estimate) -> str:
     if found.low is None or found.high is None:
         return "no interval"
-    return f"95 % interval {two(found.low)} to {two(found.high)}"
+    return f"95 % interval {format_two_digits(found.low)} to {format_two_digits(found.high)}"
 
 
 def interval(found: Estimate | None, words: Say) -> str:
@@ -53,7 +53,7 @@ def interval(found: Estimate | None, words: Say) -> str:
     return f"<b>{words(found.value)}</b> <span class='dim'>{words(found.low)} to {high}</span>"
 
 
-def who(time: Comparison) -> str:
+def who(time: ConditionComparison) -> str:
     people = f"{time.ratio.n} {'person' if time.ratio.n == 1 else 'people'}"
     if time.ratio.low is None:
         return f"no interval, {people}"
@@ -75,7 +75,7 @@ def figure(name: str, drawing: str, caption: str, papers: Mapping[str, bytes]) -
     return f"<figure>{drawing}<figcaption>{escape(caption)}{links}</figcaption></figure>"
 
 
-def table(columns: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+def format_cells(columns: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
     """Return a table; the cells are HTML."""
     head = "".join(f"<th>{c}</th>" for c in columns)
     body = "".join("<tr>" + "".join(f"<td>{c}</td>" for c in row) + "</tr>" for row in rows)
@@ -85,7 +85,7 @@ def table(columns: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
 # --- for a paper
 
 
-def apa(time: Comparison) -> str:
+def apa(time: ConditionComparison) -> str:
     """Return the result as a sentence in the form of the American Psychological Association (7th edition),
     HTML.
     """
@@ -101,9 +101,11 @@ def apa(time: Comparison) -> str:
     parts = []
     if time.test.p is not None and time.test.statistic is not None and time.test.df is not None:
         parts.append(f"<i>t</i>({time.test.df:.4g}) = {time.test.statistic:.2f}, {apa_chance(time.test.p)}")
-    parts.append(f"ratio = {time.ratio.value:.2f}{_apa_range(time.ratio, two)}")
+    parts.append(f"ratio = {time.ratio.value:.2f}{_apa_range(time.ratio, format_two_digits)}")
     if time.effect is not None:
-        parts.append(f"<i>d</i><sub>z</sub> = {time.effect.value:.2f}{_apa_range(time.effect, two)}")
+        parts.append(
+            f"<i>d</i><sub>z</sub> = {time.effect.value:.2f}{_apa_range(time.effect, format_two_digits)}"
+        )
     return f"{said}{', '.join(parts)}, <i>N</i> = {time.ratio.n}."
 
 
@@ -121,7 +123,7 @@ def _apa_range(found: Estimate, words: Say) -> str:
 # --- many alike
 
 
-def gathered(missing: Sequence[str]) -> list[str]:
+def gather_missing(missing: Sequence[str]) -> list[str]:
     """Return what is missing in few sentences: what is said of many is said once, with who they are."""
     about: dict[str, list[str]] = {}
     for words in missing:

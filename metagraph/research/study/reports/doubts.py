@@ -5,7 +5,7 @@ from __future__ import annotations
 from metagraph.common.xml_text import escape
 from metagraph.research.study.analysis.results import TITLES, Results
 from metagraph.research.study.reports import plots
-from metagraph.research.study.reports.cells import gathered, interval, table, two
+from metagraph.research.study.reports.cells import format_cells, format_two_digits, gather_missing, interval
 from metagraph.research.study.reports.plots import seconds
 from metagraph.research.study.reports.plots_flow import flow
 from metagraph.research.study.statistics.sensitivity import BY_HAND, PRACTICE, SECOND
@@ -48,7 +48,7 @@ def flow_figure(results: Results) -> str | None:
     return flow([("Planned", len(data.people), left), ("Took part", len(began), {})], arms)
 
 
-def otherwise_figure(results: Results) -> str | None:
+def draw_alternatives(results: Results) -> str | None:
     """Return the ratio by every way as a drawing."""
     found, time = results.sensitivity, results.time
     if found is None or time is None or not found.ways:
@@ -56,7 +56,7 @@ def otherwise_figure(results: Results) -> str | None:
     return plots.ratios([("as reported", time.ratio), *((w.name, w.ratio) for w in found.ways)])
 
 
-def otherwise(results: Results, drawing: str) -> str:
+def describe_alternatives(results: Results, drawing: str) -> str:
     """Return what the ratio hangs on. drawing: the figure, whole."""
     found, time = results.sensitivity, results.time
     if found is None or time is None:
@@ -70,8 +70,8 @@ def otherwise(results: Results, drawing: str) -> str:
             "<p>No task, and nobody's ratio, is far from the others', and none is longer than its limit.</p>"
         )
     out += drawing
-    rows = [[escape(w.name), interval(w.ratio, two), escape(w.how)] for w in found.ways]
-    out += table(("", "ratio, 95 % interval", "how"), rows)
+    rows = [[escape(w.name), interval(w.ratio, format_two_digits), escape(w.how)] for w in found.ways]
+    out += format_cells(("", "ratio, 95 % interval", "how"), rows)
     if found.correct:
         said = [
             f"{TITLES[c]} {right} of {n}" for c, (right, n) in sorted(found.correct.items(), reverse=True)
@@ -85,11 +85,13 @@ def otherwise(results: Results, drawing: str) -> str:
             PRACTICE: "practice, slope of log seconds over log clips",
         }
         body = [
-            [names[k], interval(e if k == PRACTICE else e.exp(), two), f"{model.df[k]:.1f}"]
+            [names[k], interval(e if k == PRACTICE else e.exp(), format_two_digits), f"{model.df[k]:.1f}"]
             for k, e in model.effects.items()
             if k in names
         ]
-        out += "<h3>The mixed model</h3>" + table(("", "estimate, 95 % interval", "degrees of freedom"), body)
+        out += "<h3>The mixed model</h3>" + format_cells(
+            ("", "estimate, 95 % interval", "degrees of freedom"), body
+        )
         spreads = ", ".join(f"{escape(k)} {v:.2f}" for k, v in model.deviations.items())
         out += f"<p>Standard deviations of logs: {spreads}; {model.n} tasks."
         out += (
@@ -101,7 +103,7 @@ def otherwise(results: Results, drawing: str) -> str:
     return out
 
 
-def gaps_told(results: Results) -> str:
+def describe_gaps(results: Results) -> str:
     """Return how much time no figure counts."""
     if not results.vanished:
         return ""
@@ -123,10 +125,10 @@ def gaps_told(results: Results) -> str:
         "above."
     )
     head = ("", "gaps", "a task, mean", "of all time", "longest", "of it while the preview played")
-    return f"<h3>Time that is not counted</h3><p>{words}</p>{table(head, rows)}"
+    return f"<h3>Time that is not counted</h3><p>{words}</p>{format_cells(head, rows)}"
 
 
-def missing_told(results: Results, drawing: str) -> str:
+def describe_missing_data(results: Results, drawing: str) -> str:
     """Return what is there, and what is not."""
     data = results.data
     begun = len({r.run.participant for r in data.rows})
@@ -135,13 +137,13 @@ def missing_told(results: Results, drawing: str) -> str:
         f"{begun} of {len(data.participants)} people have begun; {done} of {len(data.rows)} tasks they "
         "began were brought to an end."
     )
-    items = "".join(f"<li>{escape(text)}</li>" for text in gathered(data.missing))
+    items = "".join(f"<li>{escape(text)}</li>" for text in gather_missing(data.missing))
     return f"<h2>Who took part, and what is missing</h2><p>{words}</p>{drawing}" + (
         f"<ul class='warn'>{items}</ul>" if items else "<p>Nothing is missing.</p>"
     )
 
 
-def others_told(results: Results) -> str:
+def describe_other_conditions(results: Results) -> str:
     """Return further conditions beside the meta-graph."""
     if not results.others:
         return ""
@@ -149,22 +151,22 @@ def others_told(results: Results) -> str:
         [
             escape(TITLES[c.pair[0]]),
             interval(c.means[c.pair[0]], seconds),
-            interval(c.ratio, two),
+            interval(c.ratio, format_two_digits),
             str(c.ratio.n),
         ]
         for c in results.others
     ]
-    return "<h3>Other conditions</h3>" + table(
+    return "<h3>Other conditions</h3>" + format_cells(
         ("beside the meta-graph", "time", "ratio, 95 % interval", "people"), rows
     )
 
 
-def sites_told(results: Results) -> str:
+def describe_sites(results: Results) -> str:
     """Return the ratio at each site, where there are several."""
     if len(results.by_site) < 2:
         return ""
-    rows = [[escape(s), interval(e, two), str(e.n)] for s, e in results.by_site.items()]
-    return "<h3>Sites</h3>" + table(("", "ratio, 95 % interval", "people"), rows)
+    rows = [[escape(s), interval(e, format_two_digits), str(e.n)] for s, e in results.by_site.items()]
+    return "<h3>Sites</h3>" + format_cells(("", "ratio, 95 % interval", "people"), rows)
 
 
 VERDICTS = {
@@ -175,12 +177,13 @@ VERDICTS = {
 }
 
 
-def equivalence_told(results: Results) -> str:
+def describe_equivalence(results: Results) -> str:
     """Return what the smallest ratio that matters says of the ratio."""
     found = results.equivalence
     if found is None or found.interval.low is None or found.interval.high is None:
         return ""
+    low, high = format_two_digits(found.interval.low), format_two_digits(found.interval.high)
     return (
         f"<p>The smallest ratio that matters was set to {found.smallest:g}. With a 90 % interval of "
-        f"{two(found.interval.low)} to {two(found.interval.high)}, {VERDICTS[found.verdict]}.</p>"
+        f"{low} to {high}, {VERDICTS[found.verdict]}.</p>"
     )

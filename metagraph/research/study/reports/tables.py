@@ -18,21 +18,21 @@ from metagraph.research.study.statistics.small_samples import Estimate
 MISSING = "n/a"  # as BIDS writes it
 
 
-def tables(results: Results) -> dict[str, str]:
+def study_tables(results: Results) -> dict[str, str]:
     """Return file name -> content."""
     data = results.data
     return {
-        "participants.csv": table(*participants(results)),
-        "tasks.csv": table(*tasks(data)),
-        "clips.csv": table(*clips(data)),
-        "mistakes.csv": table(*mistakes(data)),
-        "questionnaires.csv": table(*questionnaires(data)),
-        "estimates.csv": table(*estimates(results)),
-        "spent.csv": table(*spent(data)),
+        "participants.csv": format_rows(*participants(results)),
+        "tasks.csv": format_rows(*tasks(data)),
+        "clips.csv": format_rows(*clips(data)),
+        "mistakes.csv": format_rows(*mistakes(data)),
+        "questionnaires.csv": format_rows(*questionnaires(data)),
+        "estimates.csv": format_rows(*estimates(results)),
+        "spent.csv": format_rows(*tabulate_spent(data)),
     }
 
 
-def table(columns: Sequence[str], rows: Iterable[Sequence[Any]], separator: str = ",") -> str:
+def format_rows(columns: Sequence[str], rows: Iterable[Sequence[Any]], separator: str = ",") -> str:
     """Return rows as text; None is written as MISSING, numbers to six digits at most."""
     return csv_text([columns, *([cell(v) for v in row] for row in rows)], separator)
 
@@ -243,7 +243,7 @@ def estimates(results: Results) -> Table:
     return ("sort", "name", "value", "low", "high", "n", "title"), rows
 
 
-def spent(data: Data) -> Table:
+def tabulate_spent(data: Data) -> Table:
     """What the time of each task went into."""
     rows: list[tuple[Any, ...]] = [
         (r.run.participant, r.run.condition, r.run.task, use, seconds)

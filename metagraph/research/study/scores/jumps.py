@@ -17,10 +17,10 @@ from metagraph.graph import anatomy
 from metagraph.graph.model import Action, Layer, Project
 from metagraph.motion.clip import Clip
 from metagraph.research.study.machines.normal_machine import NormalMachine, NormalState, clip_names
-from metagraph.research.study.scores.machines import Mistake, Score, named
-from metagraph.suggest.jumps.compatibility import MOST_FRAMES, shown
+from metagraph.research.study.scores.machines import Mistake, Score, name_some
+from metagraph.suggest.jumps.compatibility import MOST_FRAMES, visible_difference
 from metagraph.suggest.jumps.found import Measured
-from metagraph.suggest.tracks import RATE, rig_of, track_of, velocity_of
+from metagraph.suggest.tracks import RATE, joint_track, track_rig, velocity_of
 
 Array = NDArray[Any]
 Frames = tuple[Array, Array]  # positions and velocities `[G, J, 3]`
@@ -45,9 +45,8 @@ def with_jumps(found: Score, attempt: Mapping[Layer, NormalMachine], reference: 
                 by.setdefault(source, []).append((target, cost))
         for source, jumps in by.items():
             worst = max(cost for _, cost in jumps)
-            words = (
-                f"{source} jumps to {named([t for t, _ in jumps])}: up to {worst:.1f} times what is usual."
-            )
+            targets = name_some([t for t, _ in jumps])
+            words = f"{source} jumps to {targets}: up to {worst:.1f} times what is usual."
             mistakes.append(Mistake("jump", layer, source, len(jumps), words))
     return found.with_jumps(count, mistakes)
 
@@ -87,7 +86,7 @@ class _Judge:
             # A loop is left and entered where it fits best; what may be left at any time, at no moment in
             # particular.
             cost = float(far.min()) if source.loop or leave is not None else float(np.median(far.min(axis=1)))
-            out[a, b] = float(shown(cost, c.blend))
+            out[a, b] = float(visible_difference(cost, c.blend))
         return out
 
     def _far(self, left: Frames, entered: Frames, moved: Array) -> Array:
@@ -108,7 +107,7 @@ class _Judge:
         motion = self.motions.get(state.clip)
         if motion is None:
             return None
-        track = track_of(rig_of(motion, self.measured.roles), motion)
+        track = joint_track(track_rig(motion, self.measured.roles), motion)
         last = len(track) - 1
         first, final = (min(round(t * RATE), last) for t in (state.start, state.end))
         chosen = (
@@ -133,8 +132,8 @@ class _Judge:
                 joints=state.joints,
                 joint_weights=state.joint_weights,
             )
-            moved = anatomy.mask(self.project, action)
-            rig = rig_of(next(iter(self.motions.values())), self.measured.roles)
+            moved = anatomy.action_mask(self.project, action)
+            rig = track_rig(next(iter(self.motions.values())), self.measured.roles)
             ones = np.ones(len(rig.joints))
             self._weights[key] = ones if moved is None else moved[rig.keep[rig.joints]] * ones
         return self._weights[key]

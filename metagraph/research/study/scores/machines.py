@@ -104,7 +104,7 @@ def score(
     mistakes: list[Mistake] = []
     for layer in (x for x in LAYERS if x in reference or x in attempt):
         want = reference.get(layer) or NormalMachine(layer, {}, {}, {})
-        got = aligned(attempt.get(layer) or NormalMachine(layer, {}, {}, {}), want)
+        got = align_machine(attempt.get(layer) or NormalMachine(layer, {}, {}, {}), want)
         both = want.connections.keys() & got.connections.keys()
         less, more = want.connections.keys() - both, got.connections.keys() - both
         right, missing, extra = right + len(both), missing + len(less), extra + len(more)
@@ -115,7 +115,7 @@ def score(
             if (want.states[p[0]].kind == "stance") != (want.states[p[1]].kind == "stance")
         }
         essential, essential_right = essential + len(rests), essential_right + len(rests & both)
-        stances = matched_stances(got, want)
+        stances = match_stances(got, want)
         states += len(want.states)
         told = _told_by_links(got, want, less, more) if got.derived else frozenset()
         for key, mine in want.states.items():
@@ -134,7 +134,7 @@ def score(
     )
 
 
-def equivalent(
+def are_equivalent(
     a: Mapping[Layer, NormalMachine], b: Mapping[Layer, NormalMachine], tolerance: float = TOLERANCE
 ) -> bool:
     """Return whether two machines are the same but for the names and the order of what is in them."""
@@ -144,7 +144,7 @@ def equivalent(
 # --- which is which
 
 
-def matched_stances(got: NormalMachine, want: NormalMachine) -> dict[str, str]:
+def match_stances(got: NormalMachine, want: NormalMachine) -> dict[str, str]:
     """Return stance of the one -> stance of the other: those that share most loops, then most actions, come
     together first.
     """
@@ -165,7 +165,7 @@ def matched_stances(got: NormalMachine, want: NormalMachine) -> dict[str, str]:
     return out
 
 
-def aligned(got: NormalMachine, want: NormalMachine) -> NormalMachine:
+def align_machine(got: NormalMachine, want: NormalMachine) -> NormalMachine:
     """Return a machine with its several uses of one clip numbered as the other has them: those that are used
     alike are the same.
     """
@@ -364,12 +364,12 @@ def _listed(what: Literal["missing", "extra"], layer: Layer, pairs: Iterable[Pai
         by.setdefault(source, []).append(target)
     verb = "does not lead to" if what == "missing" else "should not lead to"
     return [
-        Mistake(what, layer, source, len(targets), f"{source} {verb} {named(targets)}.")
+        Mistake(what, layer, source, len(targets), f"{source} {verb} {name_some(targets)}.")
         for source, targets in by.items()
     ]
 
 
-def named(names: list[str]) -> str:
+def name_some(names: list[str]) -> str:
     """Return names in a sentence, of many only the first and how many more."""
     shown = names if len(names) <= NAMED else [*names[: NAMED - 1], f"{len(names) - NAMED + 1} more"]
     return shown[0] if len(shown) == 1 else f"{', '.join(shown[:-1])} and {shown[-1]}"

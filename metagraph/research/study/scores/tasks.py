@@ -65,7 +65,7 @@ class TaskRun:
 
 
 @dataclass(frozen=True)
-class Answer:
+class ItemAnswer:
     """What was answered to an item last. condition, task: what the questionnaire was about, None for the
     whole study.
     """
@@ -83,7 +83,7 @@ def task_runs(participant: str, events: Sequence[Event]) -> list[TaskRun]:
     """Return the tasks that were begun, in their order."""
     out: list[TaskRun] = []
     tally: _Tally | None = None
-    for event, seconds, why in steps(events):
+    for event, seconds, why in list_event_steps(events):
         if tally is not None:
             tally.add(event, seconds, why)
         if event["type"] == "phase":
@@ -97,9 +97,9 @@ def task_runs(participant: str, events: Sequence[Event]) -> list[TaskRun]:
     return [*out, tally.run()] if tally is not None else out
 
 
-def answers(participant: str, events: Sequence[Event]) -> list[Answer]:
+def last_answers(participant: str, events: Sequence[Event]) -> list[ItemAnswer]:
     """Return the answers to questionnaires; of several to one item the last."""
-    out: dict[tuple[Any, ...], Answer] = {}
+    out: dict[tuple[Any, ...], ItemAnswer] = {}
     phase: Event = {}
     for e in events:
         if e["type"] == "phase":
@@ -108,13 +108,15 @@ def answers(participant: str, events: Sequence[Event]) -> list[Answer]:
             index = _index(phase)
             questionnaire, item = str(e.get("questionnaire")), str(e.get("item"))
             about = phase.get("condition"), phase.get("task")
-            out[index, questionnaire, item] = Answer(
+            out[index, questionnaire, item] = ItemAnswer(
                 participant, questionnaire, item, e.get("value"), *about, index
             )
     return list(out.values())
 
 
-def steps(events: Sequence[Event]) -> Iterator[tuple[Event, float, Literal["active", "paused", "away"]]]:
+def list_event_steps(
+    events: Sequence[Event],
+) -> Iterator[tuple[Event, float, Literal["active", "paused", "away"]]]:
     """Yield each event with the seconds since the one before and what they were; between two runs there are
     none.
     """

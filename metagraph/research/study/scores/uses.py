@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from metagraph.research.study.logs.gaps import place_of
-from metagraph.research.study.scores.tasks import Event, steps
+from metagraph.research.study.scores.tasks import Event, list_event_steps
 
 USES = (
     "dragging",
@@ -46,7 +46,7 @@ def uses(events: Sequence[Event]) -> dict[int, dict[str, float]]:
     out: dict[int, dict[str, float]] = {}
     task: int | None = None
     loose = held = 0.0  # seconds that no event has told the use of, and those of drags among them
-    for event, seconds, why in steps(events):
+    for event, seconds, why in list_event_steps(events):
         if task is not None:
             loose += seconds if why == "active" else 0.0
             on = _use(event)

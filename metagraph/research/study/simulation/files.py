@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.bvh.file import write_bvh
-from metagraph.formats.clips import digest, read_clips
+from metagraph.formats.clips import digest, read_clip_file
 from metagraph.formats.store import save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Layer, Project
@@ -24,11 +24,11 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 from metagraph.research.study.logs.log import wall_time
 from metagraph.research.study.machines.klm import USUAL
-from metagraph.research.study.plan.freeze import manifest
+from metagraph.research.study.plan.freeze import study_manifest
 from metagraph.research.study.questionnaires import SUS, TLX
-from metagraph.research.study.simulation.people import Simulated, SimulatedWork, Truth, simulated
-from metagraph.research.study.simulation.work import drawn, slipped
-from metagraph.research.study.sitting import Phase, phases
+from metagraph.research.study.simulation.people import Simulated, SimulatedWork, Truth, simulate_participants
+from metagraph.research.study.simulation.work import draw_every_connection, make_slips
+from metagraph.research.study.sitting import Phase, list_phases
 from metagraph.research.study.study_plan import FILE, Study, read_study
 
 Array = NDArray[Any]
@@ -74,12 +74,12 @@ def write_study(folder: Path, truth: Truth) -> Study:
     write_atomically(folder / FILE, _plan(truth).encode())
     study = read_study(folder)
     right = {
-        (task, c): p if c == "meta" else drawn(p)
+        (task, c): p if c == "meta" else draw_every_connection(p)
         for task, p in references.items()
         for c in ("meta", "manual")
     }
-    digests = manifest(study)
-    for number, person in enumerate(simulated(truth, {t: clips_of(t) for t in TASKS})):
+    digests = study_manifest(study)
+    for number, person in enumerate(simulate_participants(truth, {t: clips_of(t) for t in TASKS})):
         _Sitting(study, person, right, truth, number).write(digests)
     return study
 
@@ -145,7 +145,7 @@ def _reference(folder: Path, task: str) -> Project:
     """Return the right answer, its paths relative to the study's folder."""
     paths = [folder / "clips" / f"{n}.bvh" for n in clips_of(task)]
     project = edits.add_clips(
-        Project(task), [(f"clips/{p.name}", 0, digest(p), read_clips(p)[0]) for p in paths]
+        Project(task), [(f"clips/{p.name}", 0, digest(p), read_clip_file(p)[0]) for p in paths]
     )
     ids = {e.name: e.id for e in project.clips.values()}
     for stance in TASKS[task]:
@@ -153,12 +153,12 @@ def _reference(folder: Path, task: str) -> Project:
     stances = {s.name: s.id for s in project.graphs[LAYER].stances.values()}
     for stance, ident in stances.items():
         for name, kind, _ in GESTURES[stance]:
-            project = edits.place(
+            project = edits.place_clips(
                 project, [ids[f"{stance}_{name}"]], LAYER, "gesture" if kind == "gesture" else "fidget", ident
             )
         for other in stances:
             if other != stance:
-                project = edits.place(
+                project = edits.place_clips(
                     project, [ids[f"{stance}_to_{other}"]], LAYER, "transition", ident, stances[other]
                 )
     return project
@@ -209,7 +209,7 @@ class _Sitting:
             simulated=True,
         )
         self.add("frozen", digests=digests)
-        for phase in phases(self.study, self.person.participant):
+        for phase in list_phases(self.study, self.person.participant):
             self.add("phase", 1.0, state="begin", **phase.fields)
             if phase.name == "task":
                 self._work(phase, works[phase.condition or "", phase.task or ""])
@@ -227,7 +227,7 @@ class _Sitting:
         for clip, seconds in work.seconds.items():
             self._clip(clip, seconds, work.condition)
         folder = self.study.data(self.person.participant)
-        project = slipped(
+        project = make_slips(
             self.right[work.task, work.condition], work.condition == "manual", work.slips, self.rng
         )
         save_project(project, folder / phase.file, self.study.folder / FILE)

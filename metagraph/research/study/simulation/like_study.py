@@ -21,12 +21,12 @@ from metagraph.formats.atomic import write_atomically
 from metagraph.formats.clips import digest
 from metagraph.formats.store import read_project, save_project
 from metagraph.graph.model import Project
-from metagraph.research.study.plan.freeze import manifest
+from metagraph.research.study.plan.freeze import study_manifest
 from metagraph.research.study.questionnaires import SUS, TLX, TLX_PAIRS, TLX_SCALES
 from metagraph.research.study.simulation.files import _Sitting
 from metagraph.research.study.simulation.people import Simulated, SimulatedWork, Truth
-from metagraph.research.study.simulation.work import drawn, slipped
-from metagraph.research.study.sitting import Phase, phases
+from metagraph.research.study.simulation.work import draw_every_connection, make_slips
+from metagraph.research.study.sitting import Phase, list_phases
 from metagraph.research.study.study_plan import FILE, Study, read_study
 
 
@@ -48,8 +48,8 @@ def write_like(study: Study, folder: Path, truth: Truth) -> Study:
             if path is not None
             else Project(task.id)
         )
-        right[task.id, "meta"], right[task.id, "manual"] = project, drawn(project)
-    digests = manifest(made)
+        right[task.id, "meta"], right[task.id, "manual"] = project, draw_every_connection(project)
+    digests = study_manifest(made)
     for number, person in enumerate(_people(made, truth)):
         _LikeSitting(made, person, right, truth, number).write(digests)
     return made
@@ -128,7 +128,7 @@ class _LikeSitting(_Sitting):
         about: dict[str, Any] = {"version": "", "machine": {}, "simulated": True}
         self.add("begin", participant=self.person.participant, study=self.study.digest, **about)
         self.add("frozen", digests=dict(digests))
-        for phase in phases(self.study, self.person.participant):
+        for phase in list_phases(self.study, self.person.participant):
             why = "done"
             self.add("phase", 1.0, state="begin", **phase.fields)
             if phase.name == "task":
@@ -152,7 +152,7 @@ class _LikeSitting(_Sitting):
             self._clip(clip, seconds, work.condition)
         path = self.study.data(self.person.participant) / phase.file
         by_hand = work.condition == "manual"
-        project = slipped(self.right[work.task, work.condition], by_hand, work.slips, self.rng)
+        project = make_slips(self.right[work.task, work.condition], by_hand, work.slips, self.rng)
         save_project(project, path, self.study.folder / FILE)
         about: dict[str, Any] = {"condition": work.condition, "task": work.task}
         self.add("artefact", path=phase.file, digest=digest(path), why="done", **about)

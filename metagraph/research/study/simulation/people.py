@@ -14,7 +14,7 @@ from math import exp, log
 
 import numpy as np
 
-from metagraph.research.study.analysis.reading import AnalysisRow, Data, Rating
+from metagraph.research.study.analysis.reading import AnalysisRow, Data, StudyRating
 from metagraph.research.study.plan.order import latin
 from metagraph.research.study.scores.tasks import SPENT, TaskRun
 
@@ -82,7 +82,7 @@ class Simulated:
     tlx: Mapping[str, float]
 
 
-def simulated(truth: Truth, tasks: Mapping[str, tuple[str, ...]]) -> Iterator[Simulated]:
+def simulate_participants(truth: Truth, tasks: Mapping[str, tuple[str, ...]]) -> Iterator[Simulated]:
     """Yield the participants. tasks: id -> its clips."""
     width = max(2, len(str(truth.participants)))
     for number in range(truth.participants):
@@ -121,11 +121,11 @@ def _steps(value: float, step: float) -> float:
     return min(max(round(value / step), 0), round(100 / step)) * step
 
 
-def numbers(truth: Truth, tasks: Mapping[str, tuple[str, ...]]) -> Data:
+def simulate_times(truth: Truth, tasks: Mapping[str, tuple[str, ...]]) -> Data:
     """Return the data of simulated participants without any files: times and ratings, no mistakes."""
     rows: list[AnalysisRow] = []
-    ratings: list[Rating] = []
-    for person in simulated(truth, tasks):
+    ratings: list[StudyRating] = []
+    for person in simulate_participants(truth, tasks):
         began = person.works[0].condition
         for index, work in enumerate(person.works):
             total = sum(work.seconds.values())
@@ -148,7 +148,7 @@ def numbers(truth: Truth, tasks: Mapping[str, tuple[str, ...]]) -> Data:
             )
             rows.append(AnalysisRow(run, 1 if work.condition == began else 2, len(work.seconds), 0.0))
         for name, scores in (("SUS", person.sus), ("NASA-TLX, raw", person.tlx)):
-            ratings += [Rating(person.participant, name, c, value) for c, value in scores.items()]
+            ratings += [StudyRating(person.participant, name, c, value) for c, value in scores.items()]
     people = tuple(dict.fromkeys(r.run.participant for r in rows))
     return Data(
         "Simulated", CONDITIONS, {t: t for t in tasks}, people, tuple(rows), tuple(ratings), simulated=True

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from metagraph.graph import edits, ids
-from metagraph.graph.expand import connections
+from metagraph.graph.expand import list_connections
 from metagraph.graph.manual import edits as manual_edits
 from metagraph.graph.manual.machine import Condition, Link, Manual, State
 from metagraph.graph.model import LAYERS, Action, Project
@@ -18,7 +18,7 @@ from metagraph.graph.model import LAYERS, Action, Project
 WIDE, HIGH, COLUMNS = 216.0, 88.0, 6  # how states lie in the editor
 
 
-def drawn(project: Project) -> Project:
+def draw_every_connection(project: Project) -> Project:
     """Return the project with a link drawn by hand for every connection its meta-graph stands for, and
     without the meta-graph's actions.
     """
@@ -44,7 +44,7 @@ def drawn(project: Project) -> Project:
             for n, a in enumerate(actions.values())
         }
         links: dict[str, Link] = {}
-        for c in connections(project, project.graphs[layer]):
+        for c in list_connections(project, project.graphs[layer]):
             ident = ids.new_id(out, "l", layer, c.source, c.target, more=links)
             leave = c.leave
             if leave is not None and leave >= project.span(actions[c.source])[1]:
@@ -67,7 +67,7 @@ def _condition(source: Action, target: Action) -> Condition:
 # --- slips
 
 
-def slipped(project: Project, manual: bool, slips: int, rng: np.random.Generator) -> Project:
+def make_slips(project: Project, manual: bool, slips: int, rng: np.random.Generator) -> Project:
     """Return the project with some slips: by hand links that were forgotten or lead elsewhere, in a
     meta-graph clips on the wrong node or stance, in both times that are off.
     """
@@ -83,7 +83,7 @@ def _slip_by_hand(project: Project, rng: np.random.Generator) -> Project:
     link = _any(list(machine.links.values()), rng)
     sort = int(rng.integers(4))
     if sort < 2:
-        return manual_edits.remove(project, links=[link.id])
+        return manual_edits.remove_states(project, links=[link.id])
     if sort == 2:
         target = _any(list(machine.states), rng)
         return project.with_manual(

@@ -20,7 +20,7 @@ _ByTask = Mapping[str, AnalysisRow]
 
 
 @dataclass(frozen=True, slots=True)
-class Person:
+class ParticipantTimes:
     """What one participant took, seconds, geometric mean over the tasks that count. above_first: began with
     ABOVE. above_open, below_open: the time was cut short, by the time limit, so that it would have been
     longer.
@@ -39,7 +39,7 @@ class Person:
 
 
 @dataclass(frozen=True)
-class Comparison:
+class ConditionComparison:
     """Seconds of ABOVE beside BELOW. unit: what they are seconds of. pair: above and below. paired:
     everybody who counts did both; then people are they. means: geometric, by condition. effect: d_z;
     raw_effect: uncorrected. left_out: who does not count here.
@@ -51,7 +51,7 @@ class Comparison:
     means: Mapping[str, Estimate]
     ratio: Estimate
     test: Test
-    people: tuple[Person, ...] = ()
+    people: tuple[ParticipantTimes, ...] = ()
     effect: Estimate | None = None
     raw_effect: float | None = None
     order: PeriodOrder | None = None
@@ -64,9 +64,9 @@ class Comparison:
         return [log(p.ratio) for p in self.people]
 
 
-def compare(
+def compare_conditions(
     rows: Sequence[AnalysisRow], unit: Unit | None = None, pair: tuple[str, str] = PAIR
-) -> Comparison | None:
+) -> ConditionComparison | None:
     """Return the comparison of two conditions; None where one of them was never done. unit: as the study is
     planned; None as most people did: one person with other tasks in each condition does not change it for
     the others.
@@ -92,7 +92,7 @@ def compare(
     effect = stats.effect_size(log_a, log_b)
     raw = effect.value / stats.correction(len(people) - 1) if effect is not None else None
     began = {first: [(p.above, p.below) for p in people if p.above_first is first] for first in (True, False)}
-    cautions = stats.cautions(ratio, raw)
+    cautions = stats.ratio_cautions(ratio, raw)
     if unlike:
         cautions.append(
             f"{_names(unlike)} finished other tasks in the one condition than in the other and "
@@ -117,7 +117,7 @@ def compare(
             "Fewer than 2 people began with one of the conditions, so practice cannot be told from the "
             "condition."
         )
-    return Comparison(
+    return ConditionComparison(
         unit,
         True,
         pair,
@@ -133,11 +133,13 @@ def compare(
     )
 
 
-def _person(name: str, conditions: Mapping[str, _ByTask], unit: Unit, pair: tuple[str, str]) -> Person:
+def _person(
+    name: str, conditions: Mapping[str, _ByTask], unit: Unit, pair: tuple[str, str]
+) -> ParticipantTimes:
     tasks = conditions[pair[0]].keys() & conditions[pair[1]].keys() if unit == "task" else None
     first = min((r for c in conditions.values() for r in c.values()), key=lambda r: r.run.index)
     above, below = ([r for t, r in conditions[c].items() if tasks is None or t in tasks] for c in pair)
-    return Person(
+    return ParticipantTimes(
         name,
         mean_seconds(above, unit),
         mean_seconds(below, unit),
@@ -155,7 +157,7 @@ def mean_seconds(rows: Sequence[AnalysisRow], unit: Unit) -> float:
 
 def _unpaired(
     by: Mapping[str, Mapping[str, _ByTask]], unit: Unit | None, pair: tuple[str, str]
-) -> Comparison | None:
+) -> ConditionComparison | None:
     above, below = pair
     groups = {c: {p: found[c] for p, found in by.items() if c in found} for c in pair}
     if not all(groups.values()):
@@ -191,7 +193,7 @@ def _unpaired(
     if left_out:
         words.append(f"{_names(left_out)} did no task that the others did, too, and does not count here.")
     means = {c: stats.geometric_mean(values) for c, values in took.items()}
-    return Comparison(
+    return ConditionComparison(
         unit, False, pair, means, ratio, test, cautions=tuple(words), left_out=tuple(dict.fromkeys(left_out))
     )
 

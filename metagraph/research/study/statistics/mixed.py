@@ -38,7 +38,7 @@ class Mixed:
     n: int
 
 
-def fit(
+def fit_mixed(
     y: Sequence[float],
     effects: Mapping[str, Sequence[float]],
     groups: Mapping[str, Sequence[object]],

@@ -13,11 +13,11 @@ from math import isinf, log
 import numpy as np
 
 from metagraph.research.study.analysis.reading import AnalysisRow
-from metagraph.research.study.logs.gaps import LIMITS, seconds_within
+from metagraph.research.study.logs.gaps import LIMITS, seconds_by_limit
 from metagraph.research.study.scores.tasks import AWAY
 from metagraph.research.study.statistics import small_samples as stats
-from metagraph.research.study.statistics.comparison import Comparison, compare
-from metagraph.research.study.statistics.mixed import Mixed, fit
+from metagraph.research.study.statistics.comparison import ConditionComparison, compare_conditions
+from metagraph.research.study.statistics.mixed import Mixed, fit_mixed
 from metagraph.research.study.statistics.robust import censored_mean, hodges_lehmann, leave_one_out, odd_ones
 from metagraph.research.study.statistics.small_samples import Estimate
 
@@ -46,7 +46,7 @@ class Sensitivity:
 
 
 def sensitivity(
-    rows: Sequence[AnalysisRow], found: Comparison, sites: Mapping[str, str] | None = None
+    rows: Sequence[AnalysisRow], found: ConditionComparison, sites: Mapping[str, str] | None = None
 ) -> Sensitivity:
     """Return what the ratio hangs on. rows: the tasks that were done. sites: participant -> where."""
     done = [r for r in rows if r.run.condition in found.pair]
@@ -55,7 +55,11 @@ def sensitivity(
     if found.paired:
         ways += _robust(found)
     for limit in LIMITS:
-        other = compare([_within(r, limit) for r in done], found.unit, found.pair) if limit != AWAY else None
+        other = (
+            compare_conditions([_within(r, limit) for r in done], found.unit, found.pair)
+            if limit != AWAY
+            else None
+        )
         if other is not None:
             name = "no gap taken off" if isinf(limit) else f"gaps of more than {limit:g} s off"
             ways.append(
@@ -85,11 +89,11 @@ def sensitivity(
 
 
 def _within(row: AnalysisRow, limit: float) -> AnalysisRow:
-    seconds = max(1e-3, seconds_within(row.run.seconds, row.gaps, limit))
+    seconds = max(1e-3, seconds_by_limit(row.run.seconds, row.gaps, limit))
     return replace(row, run=replace(row.run, seconds=seconds))
 
 
-def _odd(rows: Sequence[AnalysisRow], found: Comparison) -> list[str]:
+def _odd(rows: Sequence[AnalysisRow], found: ConditionComparison) -> list[str]:
     """Return in words what is unlike the rest."""
     out = []
     for r in rows:
@@ -122,7 +126,7 @@ def _who(row: AnalysisRow) -> str:
     return f"{row.run.participant}, {row.run.task} ({row.run.condition})"
 
 
-def _robust(found: Comparison) -> list[Otherwise]:
+def _robust(found: ConditionComparison) -> list[Otherwise]:
     logs, people = found.logs, found.people
     out = []
     if len(logs) >= 2:
@@ -151,7 +155,7 @@ def _bounded(known: Sequence[tuple[float, bool, bool]]) -> Estimate | None:
     return censored_mean(exact, above, below)
 
 
-def _censored(found: Comparison) -> list[Otherwise]:
+def _censored(found: ConditionComparison) -> list[Otherwise]:
     known = [(log(p.ratio), p.above_open, p.below_open) for p in found.people]
     if not any(a or b for _, a, b in known):
         return []
@@ -162,14 +166,14 @@ def _censored(found: Comparison) -> list[Otherwise]:
     return [Otherwise("time-outs as censored", estimate.exp(), how)]
 
 
-def _to_correct(rows: Sequence[AnalysisRow], found: Comparison) -> list[Otherwise]:
+def _to_correct(rows: Sequence[AnalysisRow], found: ConditionComparison) -> list[Otherwise]:
     """Return the ratio of times to a machine without a mistake; where there were some it took at least the
     time that was worked.
     """
     scored = [r for r in rows if r.score is not None]
     if not scored or all(r.correct for r in scored):
         return []
-    again = compare(scored, found.unit, found.pair)
+    again = compare_conditions(scored, found.unit, found.pair)
     if again is None or not again.paired:
         return []
     wrong = {(r.run.participant, r.run.condition) for r in scored if not r.correct or r.run.timed_out}
@@ -191,7 +195,9 @@ def _to_correct(rows: Sequence[AnalysisRow], found: Comparison) -> list[Otherwis
 BY_HAND, SECOND, PRACTICE = "by hand", "second sitting", "practice"
 
 
-def mixed_model(rows: Sequence[AnalysisRow], found: Comparison, sites: Mapping[str, str]) -> Mixed | None:
+def mixed_model(
+    rows: Sequence[AnalysisRow], found: ConditionComparison, sites: Mapping[str, str]
+) -> Mixed | None:
     """Return a model of log seconds of each task by condition, sitting, practice (the mean log of the clips'
     numbers within the condition) and task; people, and people within a condition, deviate, and so do sites
     where there are several. None where the rows do not allow it.
@@ -217,7 +223,7 @@ def mixed_model(rows: Sequence[AnalysisRow], found: Comparison, sites: Mapping[s
         where = [sites.get(w, "") for w in who]
         ratios = [f"{s} {r.run.condition}" for s, r in zip(where, there, strict=True)]
         groups |= {"sites": [*where], "sites' ratios": [*ratios]}
-    model = fit([log(r.run.seconds) for r in there], effects, groups)
+    model = fit_mixed([log(r.run.seconds) for r in there], effects, groups)
     return model if model is not None and BY_HAND in model.effects else None
 
 

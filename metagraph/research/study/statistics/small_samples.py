@@ -142,7 +142,7 @@ def correction(df: float) -> float:
     return exp(lgamma(df / 2) - lgamma((df - 1) / 2)) / sqrt(df / 2)
 
 
-def power(n: int, effect: float, alpha: float = 0.05) -> float:
+def paired_power(n: int, effect: float, alpha: float = 0.05) -> float:
     """Return how likely a paired t test of n pairs finds an effect d_z."""
     if n < 2:
         return 0.0
@@ -151,20 +151,20 @@ def power(n: int, effect: float, alpha: float = 0.05) -> float:
     return 1 - t_noncentral(edge, n - 1, shift) + t_noncentral(-edge, n - 1, shift)
 
 
-def people_needed(effect: float, wanted: float = 0.8, alpha: float = 0.05) -> int | None:
+def count_pairs_needed(effect: float, wanted: float = 0.8, alpha: float = 0.05) -> int | None:
     """Return how many pairs a paired t test needs to find an effect d_z that likely; None beyond
     MOST_PEOPLE.
     """
     if not isfinite(effect) or effect == 0:
         return None if effect == 0 else 2
     low, high = 1, 2
-    while power(high, effect, alpha) < wanted:
+    while paired_power(high, effect, alpha) < wanted:
         low, high = high, 2 * high
         if low >= MOST_PEOPLE:
             return None
     while high - low > 1:
         middle = (low + high) // 2
-        low, high = (low, middle) if power(middle, effect, alpha) >= wanted else (middle, high)
+        low, high = (low, middle) if paired_power(middle, effect, alpha) >= wanted else (middle, high)
     return high
 
 
@@ -244,7 +244,7 @@ def order_effects(
 # --- words
 
 
-def cautions(found: Estimate, effect: float | None) -> list[str]:
+def ratio_cautions(found: Estimate, effect: float | None) -> list[str]:
     """Return what a ratio of n pairs does not allow to say. effect: its d_z, uncorrected, None where it is
     not known.
     """
@@ -259,7 +259,7 @@ def cautions(found: Estimate, effect: float | None) -> list[str]:
         )
     if found.holds(1.0):
         words = "The interval of the ratio includes 1: these people do not show that either way is faster."
-        needed = people_needed(effect) if effect is not None else None
+        needed = count_pairs_needed(effect) if effect is not None else None
         if needed is not None and needed > n:
             words += (
                 f" If the effect is as large as it was here, about {needed} people give an 80 % chance "

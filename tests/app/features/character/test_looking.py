@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QApplication
 
 from app.features.character.looking import SIDES
 from metagraph.graph import anatomy
-from preview.camera import Camera
+from preview.camera import OrbitCamera
 
 KEYPAD = Qt.KeyboardModifier.KeypadModifier
 CONTROL = Qt.KeyboardModifier.ControlModifier
@@ -60,7 +60,7 @@ def test_both_hands_fill_the_picture(toys):
     whole = panel.view.camera.distance
     drive.do("see_hands")
     project, (_, _, places) = panel.performance.shown.project, panel.drawn
-    roles = anatomy.roles(project)
+    roles = anatomy.project_roles(project)
     hands = [places[roles[f"{side}_hand"]] for side in ("left", "right") if f"{side}_hand" in roles]
     assert hands and panel.view.camera.distance < whole
     seen = panel.view.camera.project(hands, panel.view.width() / panel.view.height())
@@ -83,7 +83,7 @@ def test_flat_and_back_what_is_at_the_target_stays_as_large(toys):
 
 @pytest.mark.parametrize("distance", [0.3, 1.0, 4.2, 30.0])
 def test_a_flat_camera_goes_back_to_where_it_was_as_far_as_it_may_go_away(distance):
-    camera = Camera(distance=distance)
+    camera = OrbitCamera(distance=distance)
     flat = camera.flattened()
     assert flat.flat and flat.deepened().distance == pytest.approx(
         distance, rel=1e-6 if distance < 15 else 0.5
@@ -115,7 +115,7 @@ def test_trails_go_through_the_hands_and_are_drawn_over_the_character(toys):
     now = panel.session.transport.seconds
     n = int(np.abs(times - now).argmin())
     assert abs(times[n] - now) <= 0.02
-    roles = anatomy.roles(panel.performance.shown.project)
+    roles = anatomy.project_roles(panel.performance.shown.project)
     assert np.linalg.norm(places[n, 0] - panel.drawn[2][roles[known[0]]]) < 0.05
     assert panel.view.grab().toImage() != plain
     panel.session.transport.seek(now + 1.0)

@@ -9,7 +9,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
-from app.features.character.foot_marks import FootState, runs, slide_words
+from app.features.character.foot_marks import FootState, describe_slide, find_foot_states
 from app.stage.watch import Watch
 from metagraph.playback.posing.contacts import goals_at
 from metagraph.playback.posing.foot_slides import RATE
@@ -54,11 +54,11 @@ def test_feet_are_marked_by_a_key_and_one_that_slides_says_how_fast_and_when(sho
     assert drive.shell.actions["feet"].isChecked() and feet.line.isVisible()
     drive.wait(lambda: "mm/s" in feet.line.accessibleDescription())
     seen = feet.seen(None)
-    words = slide_words(seen)
+    words = describe_slide(seen)
     assert words.startswith("⚠") and any(f" {n} mm/s at 0:0" in words for n in (30, 31, 32))
     n = int(np.abs(seen.times - 2.0).argmin())
     assert seen.sliding()[n].any() and seen.states[n, 0] == FootState.HELD
-    first, *_ = [run for run in runs(seen, 0) if run[3]]
+    first, *_ = [run for run in find_foot_states(seen, 0) if run[3]]
     assert 0.7 < first[0] < 1.3, "it says from when on"
     plain = drive.preview.view.grab().toImage()
     drive.key(Qt.Key.Key_G, Qt.KeyboardModifier.ShiftModifier)

@@ -19,32 +19,32 @@ from app.features.compatibility.matrix_table import (
     Cell,
     MatrixModel,
     Rows,
+    describe_cell,
+    describe_half_cell,
     draw_half,
-    grade,
-    told,
-    words_of,
+    grade_jump,
 )
 from app.look.theme import DARK, LIGHT
-from app.stage.compatibility_state import extended
+from app.stage.compatibility_state import extend_matrix
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 from metagraph.suggest.jumps.compatibility import Matrix
 
 
 def test_half_a_mark_says_how_far_off_it_is():
-    assert [grade(c) for c in (0, 1, 1.01, 2.0, 2.01, 1e9, inf)] == [0, 0, 1, 1, 2, 2, 3]
-    assert words_of(0.6, 1.24, "leaves").startswith("leaves at 1.24 s: 0.6 ")
-    assert words_of(1.8, 0.0, "enters").startswith("enters at 0.00 s: 1.8 times ")
+    assert [grade_jump(c) for c in (0, 1, 1.01, 2.0, 2.01, 1e9, inf)] == [0, 0, 1, 1, 2, 2, 3]
+    assert describe_half_cell(0.6, 1.24, "leaves").startswith("leaves at 1.24 s: 0.6 ")
+    assert describe_half_cell(1.8, 0.0, "enters").startswith("enters at 0.00 s: 1.8 times ")
     assert (
-        "does not hide it" in words_of(4.0, 0.0, "enters")
-        and words_of(inf, 0.0, "enters") == "enters: nothing to compare"
+        "does not hide it" in describe_half_cell(4.0, 0.0, "enters")
+        and describe_half_cell(inf, 0.0, "enters") == "enters: nothing to compare"
     )
 
 
 def test_a_cell_is_told_with_what_it_is_placed_as():
     cell = Cell(0.2, 3.0, 0.1, 1.2, ("gesture", "fidget"))
-    assert told(cell, "wave", "idle").split("\n")[0] == "wave  ·  idle"
-    assert told(cell, "wave", "idle").endswith("placed here as gesture and fidget")
+    assert describe_cell(cell, "wave", "idle").split("\n")[0] == "wave  ·  idle"
+    assert describe_cell(cell, "wave", "idle").endswith("placed here as gesture and fidget")
 
 
 @pytest.mark.parametrize("look", [DARK, LIGHT], ids=lambda t: t.name)
@@ -87,7 +87,7 @@ def test_rows_are_searched_narrowed_and_sorted_by_fit(toy, qtbot):
     qtbot.addWidget(parent)
     project = edits.add_clips(toy.project(), [("free.glb", 0, "", toy.clip("free wave", 1.0, 1.4))])
     model = MatrixModel(parent)
-    model.show_rows(Rows.of(project, extended(project, "arms", None)))
+    model.show_rows(Rows.of(project, extend_matrix(project, "arms", None)))
     proxy = model
     assert proxy.rowCount() == len(project.clips)
     proxy.narrow("wave", "all")
@@ -121,16 +121,18 @@ def test_only_new_clips_are_compared_again(toy, monkeypatch):
     from metagraph.suggest.jumps import compatibility
 
     project = toy.project()
-    first = extended(project, "arms", None)
+    first = extend_matrix(project, "arms", None)
     asked = []
-    real = compatibility.matrix
+    real = compatibility.compatibility_matrix
     monkeypatch.setattr(
-        compatibility, "matrix", lambda *a, **k: (asked.append(list(k["clips"])), real(*a, **k))[1]
+        compatibility,
+        "compatibility_matrix",
+        lambda *a, **k: (asked.append(list(k["clips"])), real(*a, **k))[1],
     )
     more = edits.add_clips(project, [("free.glb", 0, "", toy.clip("free", 1.0, 1.4))])
     clip = {e.name: e.id for e in more.clips.values()}
     fewer = edits.remove_clips(more, [clip["rest long"]])
-    second = extended(fewer, "arms", first)
+    second = extend_matrix(fewer, "arms", first)
     assert asked == [[clip["free"]]]
     assert second.clips == tuple(fewer.clips) and second.enter_cost.shape == (len(fewer.clips), 3)
     row, old = second.clips.index(clip["up beat"]), first.clips.index(clip["up beat"])

@@ -38,9 +38,9 @@ class Talk:
 
     def at(self, seconds: float, side: int = 0, row: str = "segments") -> tuple[Any, QPoint]:
         """A place on the lanes."""
-        from app.features.conversation.segment_lanes import lanes
+        from app.features.conversation.segment_lanes import place_segment_lanes
 
-        lane = getattr(lanes(self.view.width(), self.view.height())[side], row)
+        lane = getattr(place_segment_lanes(self.view.width(), self.view.height())[side], row)
         return self.view, QPoint(round(self.view.scale().x(seconds)), round(lane.center().y()))
 
     def read(self) -> None:

@@ -91,7 +91,7 @@ def test_sound_dropped_on_the_panel_opens_the_dialog(talk: Any) -> None:
 
 
 def test_a_click_on_a_name_shows_that_ones_plan_and_marks_it_and_leaves_the_rest_as_it_is(talk: Any) -> None:
-    from app.features.conversation.segment_lanes import lanes
+    from app.features.conversation.segment_lanes import place_segment_lanes
 
     drive, view = talk.drive, talk.view
     talk.editing.select({(0, 2)})
@@ -99,12 +99,12 @@ def test_a_click_on_a_name_shows_that_ones_plan_and_marks_it_and_leaves_the_rest
     view.look_at(3.0)
 
     def mark(side: int) -> str:
-        lane = lanes(view.width(), view.height())[side]
+        lane = place_segment_lanes(view.width(), view.height())[side]
         return view.grab().toImage().pixelColor(4, round(lane.wave.center().y())).name()
 
     marked, plain = mark(0), mark(1)
     assert marked != plain
-    name = QPoint(30, round(lanes(view.width(), view.height())[1].wave.top()) + 10)
+    name = QPoint(30, round(place_segment_lanes(view.width(), view.height())[1].wave.top()) + 10)
     assert "Click to see" in view.tip(name.toPointF())
     drive.click((view, name))
     assert drive.session.onstage.side == 1

@@ -13,7 +13,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog, QToolButton
 
-from app.features.conversation.conversation_commands import converse
+from app.features.conversation.conversation_commands import ask_for_conversation
 from app.features.conversation.conversation_dialog import ImportDialog
 from app.features.conversation.sides_dialog import SidesDialog
 from metagraph.formats.store import save_project
@@ -95,7 +95,7 @@ def test_a_project_that_moves_its_own_side_is_this_project(talk: Any, tmp_path: 
 
 def test_a_dialog_goes_with_the_project_it_is_about(talk: Any) -> None:
     dialog = opened(talk)
-    converse(talk.drive.shell, (talk.audio, talk.words))
+    ask_for_conversation(talk.drive.shell, (talk.audio, talk.words))
     reading = next(d for d in talk.drive.window.findChildren(ImportDialog) if d.isVisible())
     talk.drive.document.load(Project("other"), None)
     assert not dialog.isVisible()

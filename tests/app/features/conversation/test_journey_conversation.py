@@ -12,9 +12,9 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog
 
-from app.features.conversation.conversation_commands import converse
+from app.features.conversation.conversation_commands import ask_for_conversation
 from app.features.conversation.conversation_dialog import ImportDialog
-from app.features.conversation.conversation_settings import RatesDialog
+from app.features.conversation.conversation_settings import SideRatesDialog
 from app.features.conversation.sides_dialog import SidesDialog
 from app.features.conversation.word_lists import WordsDialog
 from metagraph.formats.conversations.files import read_conversation
@@ -68,11 +68,12 @@ def test_two_who_talk_are_dropped_edited_saved_reopened_and_exported(
     session.transport.set_playing(False)
     drive.pause(100)
 
-    from app.features.conversation.segment_lanes import lanes
+    from app.features.conversation.segment_lanes import place_segment_lanes
 
     def at(seconds: float) -> tuple[Any, QPoint]:
         return view, QPoint(
-            round(view.scale().x(seconds)), round(lanes(view.width(), view.height())[0].segments.center().y())
+            round(view.scale().x(seconds)),
+            round(place_segment_lanes(view.width(), view.height())[0].segments.center().y()),
         )
 
     first, second = imported.sides[0].segments[:2]
@@ -132,7 +133,7 @@ def test_two_who_talk_are_dropped_edited_saved_reopened_and_exported(
 def test_a_failed_read_says_why_and_keeps_the_dialog(drive: Any, tmp_path: Path) -> None:
     loud = np.random.default_rng(1).standard_normal((16000, 9)) * 0.1
     soundfile.write(str(tmp_path / "three.wav"), loud, 16000)
-    converse(drive.shell, (tmp_path / "three.wav",))
+    ask_for_conversation(drive.shell, (tmp_path / "three.wav",))
     dialog = dialog_of(drive)
     wait_read(drive, dialog)
     assert "9 channels" in dialog.notes.text()
@@ -149,7 +150,7 @@ def test_many_notes_leave_the_names_as_high_as_they_are(drive: Any, tmp_path: Pa
     words.write_text(
         "1\n00:00:01,000 --> 00:00:05,000\nhello there you\n\n2\n00:00:03,000 --> 00:00:06,000\nand over it\n"
     )
-    converse(drive.shell, (audio, words))
+    ask_for_conversation(drive.shell, (audio, words))
     dialog = dialog_of(drive)
     wait_read(drive, dialog)
     assert dialog.notes.text().count("⚠") >= 4
@@ -161,7 +162,7 @@ def test_many_notes_leave_the_names_as_high_as_they_are(drive: Any, tmp_path: Pa
 
 def test_reading_can_be_stopped_and_taken_up_again(drive: Any, tmp_path: Path) -> None:
     audio, words = make_conversation(tmp_path)
-    converse(drive.shell, (audio,))
+    ask_for_conversation(drive.shell, (audio,))
     dialog = dialog_of(drive)
     assert dialog.transcripts == (words,), "words that lie beside a sound are found"
     QTest.mouseClick(dialog.stop, Qt.MouseButton.LeftButton)
@@ -189,7 +190,7 @@ def test_a_single_sound_of_one_channel_is_a_line_of_dialogue(drive: Any, tmp_pat
 def test_rates_lists_names_and_the_stage(talk: Any) -> None:
     drive = talk.drive
     drive.actions["rates"].trigger()
-    dialog = drive.window.findChild(RatesDialog)
+    dialog = drive.window.findChild(SideRatesDialog)
     assert not dialog.delivered.isVisible()  # nobody moves
     dialog.take(1, type(talk.conversation.sides[1].rates)(clause=0.62, response=0.53, hesitation=0.35))
     QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)

@@ -13,7 +13,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from app.features.conversation.conversation_dialog import ImportDialog
-from app.features.conversation.conversation_settings import RatesDialog
+from app.features.conversation.conversation_settings import SideRatesDialog
 from app.features.render.render_dialog import RenderDialog
 from app.project.files import SAMPLE
 from metagraph.graph.requests import Blink, Gesture, Play
@@ -46,13 +46,13 @@ def test_dropped_seen_heard_and_written(drive: Any, tmp_path: Path) -> None:
     assert nods >= 2
     drive.wait(lambda: "75 % and 75 % were asked for" in drive.conversation.title.words)
     drive.actions["rates"].trigger()
-    rates = drive.window.findChild(RatesDialog)
+    rates = drive.window.findChild(SideRatesDialog)
     assert rates.delivered.isVisible() and rates.delivered.text().count("asked 75 %, drawn") == 2
     rates.fields[0]["clause"].setValue(0)
     QTest.mouseClick(rates.go, Qt.MouseButton.LeftButton)
     drive.wait(lambda: "0 % and" in drive.conversation.title.words)
     drive.actions["rates"].trigger()
-    rates = next(d for d in drive.window.findChildren(RatesDialog) if d.isVisible())
+    rates = next(d for d in drive.window.findChildren(SideRatesDialog) if d.isVisible())
     rates.blinks.setCurrentIndex(1)
     QTest.mouseClick(rates.go, Qt.MouseButton.LeftButton)
     drive.wait(lambda: any(isinstance(a, Blink) for a in drive.performance.shown.asks))

@@ -13,12 +13,12 @@ from PySide6.QtTest import QTest
 from app.features.conversation.conversation_dialog import ImportDialog
 from app.features.conversation.word_lists import WordsDialog, language_name
 from metagraph.graph.conversation.model import lists_of
-from metagraph.speech.language_packs import languages
+from metagraph.speech.language_packs import list_language_packs
 from tests.speech import talk as maker
 from tests.speech.dialogues import TALKS, spoken
 
 pytestmark = pytest.mark.window
-DE, EN = languages()["de"], languages()["en"]
+DE, EN = list_language_packs()["de"], list_language_packs()["en"]
 
 
 def write(folder: Path, text: str, voice: str) -> tuple[Path, Path]:
@@ -110,7 +110,7 @@ def test_two_who_speak_different_languages_have_lists_each(drive: Any, tmp_path:
     assert [box.currentData() for _, box, _ in words.rows] == ["de", "en"]
     words.apart.setChecked(False)
     choose(words.rows[0][1], "fr")
-    assert words.lists.lists()[0] == languages()["fr"].responses
+    assert words.lists.lists()[0] == list_language_packs()["fr"].responses
     choose(words.rows[0][1], "auto")  # of both together: the more is said in
     assert words.rows[0][1].currentData() in ("de", "en")
     choose(words.rows[0][1], "de")

@@ -9,8 +9,8 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMenu
 
-from app.features.conversation.partner_menu import partner_menu
-from app.features.conversation.segment_lanes import lanes
+from app.features.conversation.partner_menu import make_partner_menu
+from app.features.conversation.segment_lanes import place_segment_lanes
 from app.widgets.lane_geometry import LEFT
 from metagraph.graph.conversation.edits import add_conversation
 from metagraph.graph.conversation.model import Conversation, Segment, Side
@@ -47,7 +47,7 @@ def choices(menu: QMenu) -> dict[str, dict[str, object]]:
 
 def test_what_lies_beside_the_project_is_offered_and_what_is_so_is_checked(two):
     drive, ident = two
-    found = choices(partner_menu(drive.conversation, drive.document, ident, 0))
+    found = choices(make_partner_menu(drive.conversation, drive.document, ident, 0))
     assert list(found["Character"])[1:] == ["ada", "ben"]
     assert list(found["Body language, moved by"]) == ["This project", "other"]
     assert list(found["Voice"]) == ["No sound", "talk.wav, left", "talk.wav, right", "solo.wav"]
@@ -59,7 +59,7 @@ def test_two_clicks_change_who_is_seen_and_heard(two):
     drive, ident = two
     drive.show("conversation")
     view = drive.conversation.view
-    lane = lanes(view.width(), view.height(), 2)[1]
+    lane = place_segment_lanes(view.width(), view.height(), 2)[1]
     QTest.mouseClick(view, Qt.MouseButton.LeftButton, pos=QPoint(LEFT - 11, round(lane.wave.top()) + 11))
     menu = QApplication.activePopupWidget()
     assert isinstance(menu, QMenu) and drive.session.onstage.side == 1
@@ -67,7 +67,7 @@ def test_two_clicks_change_who_is_seen_and_heard(two):
     menu.close()
     side = lambda: drive.document.project.conversations[ident].sides[1]  # noqa: E731
     assert (side().audio, side().channel) == ("solo.wav", None)
-    choices(partner_menu(view, drive.document, ident, 1))["Character"]["ben"].trigger()
+    choices(make_partner_menu(view, drive.document, ident, 1))["Character"]["ben"].trigger()
     assert side().character == "ben.glb"
     drive.document.undo()
     drive.document.undo()

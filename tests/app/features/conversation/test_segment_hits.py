@@ -10,13 +10,26 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PySide6.QtCore import QPointF
 
-from app.features.conversation.segment_hits import SegmentHit, hit_at, pitch_maxima, snapped, word_edges
-from app.features.conversation.segment_lanes import farthest, lanes, least, pitch_y, visible, words_in
-from app.widgets.lane_geometry import LEFT, RULER, Scale
+from app.features.conversation.segment_hits import (
+    SegmentHit,
+    find_segment_hit,
+    pitch_maxima,
+    snap_time,
+    word_edges,
+)
+from app.features.conversation.segment_lanes import (
+    find_visible_segments,
+    find_words_between,
+    least_lane_height,
+    least_scale,
+    pitch_y,
+    place_segment_lanes,
+)
+from app.widgets.lane_geometry import LEFT, RULER, LaneScale
 from metagraph.graph.conversation.model import Conversation, Segment, Side, Word
 
 SIZE = (1000.0, 240.0)
-SCALE = Scale(0.0, 100.0)
+SCALE = LaneScale(0.0, 100.0)
 TALK = Conversation(
     name="talk",
     length=20.0,
@@ -34,13 +47,13 @@ TALK = Conversation(
 
 
 def at(seconds: float, side: int = 0, row: str = "segments") -> SegmentHit:
-    lane = getattr(lanes(*SIZE)[side], row)
-    return hit_at(TALK, SCALE, SIZE, QPointF(SCALE.x(seconds), lane.center().y()))
+    lane = getattr(place_segment_lanes(*SIZE)[side], row)
+    return find_segment_hit(TALK, SCALE, SIZE, QPointF(SCALE.x(seconds), lane.center().y()))
 
 
-@pytest.mark.parametrize("height", [least(2), 240, 500, 1200])
+@pytest.mark.parametrize("height", [least_lane_height(2), 240, 500, 1200])
 def test_lanes_follow_each_other_and_fit(height: float) -> None:
-    first, second = lanes(1000, height)
+    first, second = place_segment_lanes(1000, height)
     rows = [r for lane in (first, second) for r in (lane.wave, lane.words, lane.segments)]
     assert rows[0].top() == RULER
     assert all(a.bottom() <= b.top() + 0.01 for a, b in pairwise(rows))
@@ -50,8 +63,8 @@ def test_lanes_follow_each_other_and_fit(height: float) -> None:
 
 @pytest.mark.parametrize("sides", range(2, 9))
 def test_lanes_of_all_who_talk_lie_under_each_other_in_the_height_they_need(sides: int) -> None:
-    places = lanes(1000, least(sides), sides)
-    assert len(places) == sides and places[-1].whole.bottom() <= least(sides)
+    places = place_segment_lanes(1000, least_lane_height(sides), sides)
+    assert len(places) == sides and places[-1].whole.bottom() <= least_lane_height(sides)
     for above, below in pairwise(places):
         assert above.whole.bottom() < below.whole.top()
     assert all(lane.segments.height() >= 15 and lane.wave.height() >= 15 for lane in places)
@@ -84,17 +97,19 @@ def test_only_clauses_have_a_stress_to_take_hold_of() -> None:
 
 
 def test_names_and_the_ruler_are_no_segments() -> None:
-    lane = lanes(*SIZE)[1]
-    assert hit_at(TALK, SCALE, SIZE, QPointF(LEFT - 5, lane.segments.center().y())) == SegmentHit("title", 1)
-    assert hit_at(TALK, SCALE, SIZE, QPointF(LEFT + 50, 4)).part == "ruler"
-    assert hit_at(TALK, SCALE, SIZE, QPointF(3, 4)).part == "nothing"
+    lane = place_segment_lanes(*SIZE)[1]
+    assert find_segment_hit(TALK, SCALE, SIZE, QPointF(LEFT - 5, lane.segments.center().y())) == SegmentHit(
+        "title", 1
+    )
+    assert find_segment_hit(TALK, SCALE, SIZE, QPointF(LEFT + 50, 4)).part == "ruler"
+    assert find_segment_hit(TALK, SCALE, SIZE, QPointF(3, 4)).part == "nothing"
 
 
 @given(st.floats(-5, 25), st.floats(0, 25))
 def test_what_is_in_sight_is_what_a_look_at_all_finds(begin: float, length: float) -> None:
     segments = TALK.sides[0].segments
     wanted = [n for n, s in enumerate(segments) if s.end >= begin and s.start <= begin + length]
-    assert list(visible(segments, begin, begin + length)) == wanted
+    assert list(find_visible_segments(segments, begin, begin + length)) == wanted
 
 
 def test_the_word_that_reaches_into_sight_is_there() -> None:
@@ -103,12 +118,12 @@ def test_the_word_that_reaches_into_sight_is_there() -> None:
         Word(text="b", start=2.0, end=3.0),
         Word(text="c", start=9.0, end=9.5),
     )
-    assert [w.text for w in words_in(words, 1.0, 2.5)] == ["a", "b"]
-    assert words_in((), 0.0, 1.0) == ()
+    assert [w.text for w in find_words_between(words, 1.0, 2.5)] == ["a", "b"]
+    assert find_words_between((), 0.0, 1.0) == ()
 
 
 def test_pitch_stands_higher_the_higher_it_is_and_stays_in_its_lane() -> None:
-    wave = lanes(*SIZE)[0].wave
+    wave = place_segment_lanes(*SIZE)[0].wave
     ys = [float(pitch_y(h, wave)) for h in (10, 80, 160, 320, 5000)]
     assert ys == sorted(ys, reverse=True)
     assert wave.top() <= ys[-1] <= ys[0] <= wave.bottom()
@@ -116,18 +131,18 @@ def test_pitch_stands_higher_the_higher_it_is_and_stays_in_its_lane() -> None:
 
 
 def test_all_of_it_can_be_seen_at_once() -> None:
-    each = farthest(1000, 1800.0)
-    assert Scale(0, each).x(1800.0) <= 1000
-    assert farthest(1000, 10.0) == 2.0
+    each = least_scale(1000, 1800.0)
+    assert LaneScale(0, each).x(1800.0) <= 1000
+    assert least_scale(1000, 10.0) == 2.0
 
 
 def test_a_time_is_caught_only_near_and_only_when_wanted() -> None:
     words = (Word(text="a", start=1.0, end=1.4), Word(text="b", start=1.4, end=2.0))
     marks = word_edges(words, 1.5)
-    assert snapped(1.44, marks, SCALE) == 1.4
-    assert snapped(1.44, marks, SCALE, on=False) == 1.44
-    assert snapped(1.7, marks, SCALE) == 1.7
-    assert snapped(1.7, [], SCALE) == 1.7
+    assert snap_time(1.44, marks, SCALE) == 1.4
+    assert snap_time(1.44, marks, SCALE, on=False) == 1.44
+    assert snap_time(1.7, marks, SCALE) == 1.7
+    assert snap_time(1.7, [], SCALE) == 1.7
 
 
 def test_the_tops_of_a_pitch_are_found_with_gaps_ends_and_even_stretches() -> None:

@@ -11,7 +11,7 @@ from app.features.conversation import sound_reading
 from app.features.conversation.sound_reading import SideSound, Sounds
 from app.project.document import Document
 from app.project.jobs import Jobs
-from app.stage.session import Session
+from app.stage.session import StageSession
 from app.widgets.waveforms import Envelope
 from metagraph.graph.conversation import edits as conversation_edits
 from metagraph.graph.conversation.model import Conversation, Side
@@ -27,7 +27,7 @@ def sounds(qapp, tmp_path):
     both = np.stack([0.3 * np.sin(2 * np.pi * hertz * times) for hertz in (120, 210)], 1)
     soundfile.write(tmp_path / "talk.wav", both, rate)
     document, jobs = Document(), Jobs()
-    session = Session(document)
+    session = StageSession(document)
     made = Sounds(document, session, jobs)
     sides = tuple(Side(name=str(n), audio=str(tmp_path / "talk.wav"), channel=n) for n in (0, 1))
     talk = Conversation(name="talk", length=3.0, sides=sides)

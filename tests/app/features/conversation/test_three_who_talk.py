@@ -9,8 +9,8 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from app.features.conversation.conversation_dialog import ImportDialog
-from app.features.conversation.conversation_settings import RatesDialog
-from app.features.conversation.segment_lanes import lanes
+from app.features.conversation.conversation_settings import SideRatesDialog
+from app.features.conversation.segment_lanes import place_segment_lanes
 from app.features.conversation.sides_dialog import SidesDialog
 from app.features.conversation.word_lists import WordsDialog
 from metagraph.graph.conversation import edits as conversation_edits
@@ -68,7 +68,7 @@ def test_three_are_dropped_put_in_order_and_one_left_out(drive: Any, tmp_path: P
 def test_each_has_a_lane_a_name_and_a_plan_of_its_own(drive: Any) -> None:
     put_on(drive, three())
     view, panel = drive.conversation.view, drive.conversation
-    places = lanes(view.width(), view.height(), 3)
+    places = place_segment_lanes(view.width(), view.height(), 3)
     assert view.minimumHeight() <= view.height() and places[2].whole.bottom() <= view.height()
     drive.wait(lambda: "Ann, Ben and Cleo" in panel.title.words)
     drive.wait(lambda: not faults(panel))  # once its parts have found their places
@@ -90,7 +90,7 @@ def test_whom_a_segment_is_said_to_is_told_chosen_and_undone(drive: Any) -> None
     view, editing = drive.conversation.view, drive.conversation.editing
 
     def tip() -> str:
-        lane = lanes(view.width(), view.height(), 3)[0]
+        lane = place_segment_lanes(view.width(), view.height(), 3)[0]
         return str(view.tip(QPoint(round(view.scale().x(1.5)), round(lane.segments.center().y())).toPointF()))
 
     assert tip().endswith("To Ben, as it seems"), "he answers"
@@ -136,7 +136,7 @@ def test_names_rates_places_and_lists_of_each_are_set(drive: Any) -> None:
     dialog_of(drive, SidesDialog).accept()
     assert now() is before, "what is not touched stays as it is"
     drive.actions["rates"].trigger()
-    rates = dialog_of(drive, RatesDialog)
+    rates = dialog_of(drive, SideRatesDialog)
     assert not faults(rates)
     rates.take(2, Rates(clause=0.2))
     rates.accept()

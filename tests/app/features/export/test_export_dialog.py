@@ -144,7 +144,7 @@ def test_a_web_page_is_opened_in_the_browser_and_all_else_as_a_folder(toys, tmp_
 
     opened_urls = []
     monkeypatch.setattr(panel.QDesktopServices, "openUrl", opened_urls.append)
-    monkeypatch.setattr(web, "at_hand", lambda: False)
+    monkeypatch.setattr(web, "is_three_at_hand", lambda: False)
     drive = toys
     dialog = opened(drive)
     for name, words in (("web", "Open in browser"), ("bml", "Open folder")):
@@ -170,7 +170,7 @@ def test_a_web_page_is_opened_in_the_browser_and_all_else_as_a_folder(toys, tmp_
 def test_each_target_has_a_folder_of_its_own_and_its_own_result(toys, tmp_path, monkeypatch):
     from metagraph.engines.targets import web
 
-    monkeypatch.setattr(web, "at_hand", lambda: False)
+    monkeypatch.setattr(web, "is_three_at_hand", lambda: False)
     drive = toys
     drive.document.save(tmp_path / "toy.metagraph.yaml")
     dialog = opened(drive)

@@ -8,7 +8,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
-from app.features.files.versions_dialog import VersionsDialog, found_versions
+from app.features.files.versions_dialog import VersionsDialog, find_versions
 from app.project.version_count import version_count
 from metagraph.formats.gltf.writer import write_glb
 from metagraph.formats.project.versions import earlier_versions, version_path
@@ -79,7 +79,7 @@ def test_return_opens_the_chosen_one_as_a_copy_that_replaces_nothing(
 
 def test_one_that_cannot_be_read_says_why_and_is_not_opened(drive, path: Path) -> None:
     version_path(path, 1).write_text("- no project")
-    found = found_versions(path, drive.document.project)
+    found = find_versions(path, drive.document.project)
     dialog = VersionsDialog(path.name, found, lambda _: pytest.fail("it cannot be opened"), drive.window)
     assert rows(dialog.versions)[0].endswith("Cannot be read") and not dialog.go.isEnabled()
     assert rows(dialog.changes)[0].startswith(f"{path.name}.1")

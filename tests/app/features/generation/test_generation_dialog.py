@@ -121,12 +121,12 @@ def test_takes_are_made_cut_and_dropped_on_the_graph_in_one_step(shown, tmp_path
     press(use.cut_button)
     drive.wait(lambda: not use.busy, 120)
     if not use.table.pieces:  # a model that learned nothing need not come back to anything
-        from app.features.generation.generation_jobs import Piece
-        from metagraph.generation.performing import on_project
+        from app.features.generation.generation_jobs import GeneratedPiece
+        from metagraph.generation.performing import as_project_clip
 
-        clip, _ = on_project(drive.document.project, moving(2.0))
+        clip, _ = as_project_clip(drive.document.project, moving(2.0))
         assert "Nothing can be cut" in dialog.said.text()
-        made = [Piece(clip.renamed(f"tiny 1_{n:02d}"), "gesture", "both", 0.7) for n in (1, 2, 3)]
+        made = [GeneratedPiece(clip.renamed(f"tiny 1_{n:02d}"), "gesture", "both", 0.7) for n in (1, 2, 3)]
         use._of = ("tiny", 1)
         use.table.show_pieces(made)
     count = use.table.rowCount()
@@ -245,7 +245,7 @@ def training(shown, tmp_path):
     learn.begin = begin
     learn.look_through([takes(tmp_path / "takes")])
     drive.wait(lambda: not learn.busy and learn.table.rowCount() > 0, 60)
-    if learn_page.missing():
+    if learn_page.describe_missing_training():
         pytest.skip("torch is not installed")
     learn.name.setText("mine")
     press(learn.train)

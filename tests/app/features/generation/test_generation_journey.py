@@ -20,7 +20,7 @@ from metagraph.formats.gltf.reader import read_gltf_clips
 from metagraph.formats.store import absolute, open_project, save_project
 from metagraph.generation.features import RATE
 from metagraph.generation.stored import Model, read_card, write_model
-from metagraph.generation.train_process import missing
+from metagraph.generation.train_process import find_missing_tools
 from metagraph.graph import edits
 from metagraph.graph.conversation.model import Conversation, Segment, Side
 from metagraph.graph.model import Project
@@ -71,7 +71,7 @@ def test_from_training_to_an_export_that_says_what_was_generated(drive, tmp_path
     path = tmp_path / "copy.metagraph.yaml"
     save_project(replace(few(), conversations={"v9000": speech(tmp_path)}), path)
     write_mover(tmp_path / "mover.mgmodel")
-    if missing() is None:
+    if find_missing_tools() is None:
         from tests.generation.training.planting import cut_short
 
         cut_short(tmp_path / "models", "learned", 10)
@@ -81,7 +81,7 @@ def test_from_training_to_an_export_that_says_what_was_generated(drive, tmp_path
     dialog = drive.window.findChild(GenerationDialog)
 
     # Train: where torch is there, one that was cut short is gone on with.
-    if missing() is None:
+    if find_missing_tools() is None:
         QTest.mouseClick(
             dialog.tabs.tabBar(), Qt.MouseButton.LeftButton, pos=dialog.tabs.tabBar().tabRect(1).center()
         )

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 from PySide6.QtCore import QMimeData, QUrl
 
-from app.features.graph.graph_drops import drop_at, perform
+from app.features.graph.graph_drops import drop_at, perform_drop
 from app.features.graph.graph_layout import GraphHit
 from app.project.load import Load
-from app.widgets.mime import load_of, mime
+from app.widgets.mime import load_of, make_mime
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 
@@ -50,7 +50,7 @@ def test_a_drop_of_clips_says_what_it_will_do_and_does_it(toy, project, hit, cou
     assert drop.possible
     assert all(piece in drop.words for piece in words.split("|"))
     assert (drop.kind, drop.stance, drop.end) == (kind, ids[stance], ids[end])
-    after = perform(project, "arms", drop, load)
+    after = perform_drop(project, "arms", drop, load)
     made = [a for a in after.actions() if project.action(a.id) is None]
     assert [a.clip for a in made] == list(load.clips)
     assert {(a.kind, a.end_stance) for a in made} == {(kind, ids[end])}
@@ -118,7 +118,7 @@ def test_actions_move_between_nodes_and_keep_what_was_set(toy, project):
     load = Load(actions=(beat,))
     drop = drop_at(project, "arms", rest, up, NODE["fidget"], load)
     assert "fidget" in drop.words and "*rest*" in drop.words
-    after = perform(project, "arms", drop, load).action(beat)
+    after = perform_drop(project, "arms", drop, load).action(beat)
     assert (after.kind, after.tags, after.likelihood) == ("fidget", ("positive",), 2.0)
 
 
@@ -129,7 +129,7 @@ def test_actions_dropped_on_a_chip_move_there_and_stay_what_they_are(toy, projec
     drop = drop_at(project, "arms", toy.id(project, "rest"), up, GraphHit("chip", up), load)
     assert drop.possible
     assert drop.words == "move 2 actions to *up*"
-    after = perform(project, "arms", drop, load)
+    after = perform_drop(project, "arms", drop, load)
     assert [(after.action(i).kind, after.action(i).stance) for i in load.actions] == [
         ("gesture", up),
         ("fidget", up),
@@ -173,8 +173,8 @@ def test_an_action_makes_no_new_stance_but_its_clip_can(toy, project):
 
 
 def test_what_is_dragged_survives_the_clipboards_bytes():
-    assert load_of(mime(clips=["c1", "c2"])) == Load(clips=("c1", "c2"))
-    assert load_of(mime(actions=["a1"])) == Load(actions=("a1",))
+    assert load_of(make_mime(clips=["c1", "c2"])) == Load(clips=("c1", "c2"))
+    assert load_of(make_mime(actions=["a1"])) == Load(actions=("a1",))
     assert not load_of(QMimeData())
 
 

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from PySide6.QtCore import QPointF, QRectF, QSizeF
 
-from app.features.graph.graph_layout import arrange, bar_part, hole, likelihood_at
+from app.features.graph.graph_layout import bar_part, describe_hole, lay_out_canvas, likelihood_at
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 
@@ -36,10 +36,10 @@ def crowded(toy):
         project = edits.add_stance(project, "arms", f"a stance with a long name {n}")
     rest, up = toy.id(project, "rest"), toy.id(project, "up")
     for _ in range(40):
-        project = edits.place(project, clips, "arms", "gesture", rest)
-    project = edits.place(project, clips, "arms", "fidget", rest)
+        project = edits.place_clips(project, clips, "arms", "gesture", rest)
+    project = edits.place_clips(project, clips, "arms", "fidget", rest)
     for _ in range(4):
-        project = edits.place(project, clips, "arms", "transition", rest, up)
+        project = edits.place_clips(project, clips, "arms", "transition", rest, up)
     return project
 
 
@@ -71,7 +71,7 @@ def check(layout) -> None:
 
 
 def test_an_empty_project_has_a_card_three_nodes_and_a_plus():
-    layout = arrange(Project(), "arms", None, QSizeF(900, 700))
+    layout = lay_out_canvas(Project(), "arms", None, QSizeF(900, 700))
     assert list(layout.nodes) == ["gesture", "fidget", "transition"]
     assert [chip.stance for chip in layout.chips] == [None]
     assert layout.hit(layout.card.center()).area == "card"
@@ -84,26 +84,26 @@ def test_an_empty_project_has_a_card_three_nodes_and_a_plus():
 def test_nothing_overlaps_at_any_size(toy, crowded, size):
     for project in (Project(), toy.project()):
         stance = next(iter(project.graphs["arms"].stances), None)
-        check(arrange(project, "arms", stance, QSizeF(*size)))
+        check(lay_out_canvas(project, "arms", stance, QSizeF(*size)))
 
 
 @pytest.mark.parametrize("size", [s for s in SIZES if s[1] >= 700])
 def test_many_stances_and_actions_still_fit(toy, crowded, size):
     for stance in crowded.graphs["arms"].stances:
-        check(arrange(crowded, "arms", stance, QSizeF(*size)))
+        check(lay_out_canvas(crowded, "arms", stance, QSizeF(*size)))
 
 
 @settings(max_examples=80, deadline=None)
 @given(width=st.floats(1, 5000), height=st.floats(1, 4000))
 def test_nothing_overlaps_at_sizes_nobody_thought_of(toy, width, height):
     project = toy.project()
-    check(arrange(project, "arms", toy.id(project, "rest"), QSizeF(width, height)))
+    check(lay_out_canvas(project, "arms", toy.id(project, "rest"), QSizeF(width, height)))
 
 
 @pytest.mark.parametrize("size", SIZES)
 def test_what_is_drawn_is_what_is_hit(toy, size):
     project = toy.project()
-    layout = arrange(project, "arms", toy.id(project, "rest"), QSizeF(*size))
+    layout = lay_out_canvas(project, "arms", toy.id(project, "rest"), QSizeF(*size))
     for chip in layout.chips:
         hit = layout.hit(chip.rect.center())
         assert (hit.area, hit.ident) == (("chip", chip.stance) if chip.stance else ("add", None))
@@ -131,16 +131,16 @@ def test_what_is_drawn_is_what_is_hit(toy, size):
 def test_every_row_can_be_scrolled_into_sight_and_no_further(crowded, toy):
     stance = toy.id(crowded, "rest")
     size = QSizeF(900, 700)
-    first = arrange(crowded, "arms", stance, size)
+    first = lay_out_canvas(crowded, "arms", stance, size)
     for kind, node in first.nodes.items():
         seen = set()
         for scroll in range(node.most + 1):
             seen |= {
                 row.action.id
-                for row in arrange(crowded, "arms", stance, size, {kind: scroll}).nodes[kind].rows
+                for row in lay_out_canvas(crowded, "arms", stance, size, {kind: scroll}).nodes[kind].rows
             }
         assert seen == {a.id for a in crowded.graphs["arms"].of(stance, kind)}
-        far = arrange(crowded, "arms", stance, size, {kind: 10**6}).nodes[kind]
+        far = lay_out_canvas(crowded, "arms", stance, size, {kind: 10**6}).nodes[kind]
         assert far.scroll == far.most
         assert far.rows, "scrolled to the end, the last rows are in sight"
         assert far.rows[-1].action is crowded.graphs["arms"].of(stance, kind)[-1]
@@ -151,21 +151,21 @@ def test_the_worst_hole_is_named_first(toy):
     clip = next(iter(project.clips))
     project = edits.add_stance(project, "arms", "one")
     one = toy.id(project, "one")
-    assert hole(project, "arms", one) == "no loop"
-    project = edits.place(project, [clip], "arms", "stance", one)
-    assert hole(project, "arms", one) == "no gestures"
-    project = edits.place(project, [clip], "arms", "gesture", one)
-    assert hole(project, "arms", one) == "no fidgets"
-    project = edits.place(project, [clip], "arms", "fidget", one)
-    assert hole(project, "arms", one) == ""
+    assert describe_hole(project, "arms", one) == "no loop"
+    project = edits.place_clips(project, [clip], "arms", "stance", one)
+    assert describe_hole(project, "arms", one) == "no gestures"
+    project = edits.place_clips(project, [clip], "arms", "gesture", one)
+    assert describe_hole(project, "arms", one) == "no fidgets"
+    project = edits.place_clips(project, [clip], "arms", "fidget", one)
+    assert describe_hole(project, "arms", one) == ""
     project = edits.add_stance(project, "arms", "two", [clip])
-    assert hole(project, "arms", one) == "no way out"
+    assert describe_hole(project, "arms", one) == "no way out"
 
 
 @pytest.mark.parametrize("wide", [232, 300, 460])
 def test_in_a_narrow_room_no_chip_is_wider_than_it_and_names_go_before_what_is_missing(toy, wide):
     project = edits.add_stance(toy.project(), "arms", "sits on a chair with arms crossed")
-    layout = arrange(project, "arms", toy.id(project, "rest"), QSizeF(wide, 1400))
+    layout = lay_out_canvas(project, "arms", toy.id(project, "rest"), QSizeF(wide, 1400))
     for chip in layout.chips:
         assert chip.rect.right() <= layout.size.width() - 10
         assert not chip.words or len(f"{chip.name}{chip.words}") * 7 < chip.rect.width()
@@ -173,14 +173,16 @@ def test_in_a_narrow_room_no_chip_is_wider_than_it_and_names_go_before_what_is_m
 
 def test_chips_count_what_their_stance_holds(toy):
     project = toy.project()
-    chips = {c.name: c for c in arrange(project, "arms", toy.id(project, "rest"), QSizeF(1200, 800)).chips}
+    chips = {
+        c.name: c for c in lay_out_canvas(project, "arms", toy.id(project, "rest"), QSizeF(1200, 800)).chips
+    }
     assert chips["rest"].count == 4 + 2 + 1
     assert chips["far"].words == "no gestures"
 
 
 def test_a_bar_shows_what_is_set_on_it(toy):
     project = toy.project()
-    row = arrange(project, "arms", toy.id(project, "rest"), QSizeF(1200, 800)).nodes["gesture"].rows[0]
+    row = lay_out_canvas(project, "arms", toy.id(project, "rest"), QSizeF(1200, 800)).nodes["gesture"].rows[0]
     values = [n / 10 for n in range(1, 31)]
     for value in values:
         x = row.bar.left() + bar_part(value) * row.bar.width()
@@ -196,7 +198,7 @@ def test_a_bar_shows_what_is_set_on_it(toy):
 def test_ten_thousand_actions_lay_out_only_what_is_in_sight(toy):
     project = toy.project()
     rest, clips = toy.id(project, "rest"), [next(iter(project.clips))] * 10_000
-    project = edits.place(project, clips, "arms", "gesture", rest)
-    node = arrange(project, "arms", rest, QSizeF(1200, 800)).nodes["gesture"]
+    project = edits.place_clips(project, clips, "arms", "gesture", rest)
+    node = lay_out_canvas(project, "arms", rest, QSizeF(1200, 800)).nodes["gesture"]
     assert node.count == 10_004
     assert 0 < len(node.rows) < 60

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from PySide6.QtCore import QPointF, Qt
 
-from app.features.graph.graph_drops import drop_at, perform
+from app.features.graph.graph_drops import drop_at, perform_drop
 from app.features.graph.graph_layout import GraphHit
 from app.project.load import Load
 from metagraph.graph import edits
@@ -25,7 +25,7 @@ def many(toys, toy):
     toys.document.edit("Add", lambda p: edits.add_clips(p, loaded))
     known = {e.name: e.id for e in toys.document.project.clips.values()}
     clips = [known[f"g{n}"] for n in range(3)]
-    toys.document.edit("Place", lambda p: edits.place(p, clips, "arms", "gesture", stance))
+    toys.document.edit("Place", lambda p: edits.place_clips(p, clips, "arms", "gesture", stance))
     toys.session.place.set_stance(stance)
     toys.stance = stance
     toys.ids = {a.name: a.id for a in toys.document.project.graphs["arms"].of(stance, "gesture")}
@@ -82,7 +82,11 @@ def test_what_a_drop_in_its_own_node_would_do_is_said(many):
         assert not at(hit, g0).possible, "it is there already"
     assert not at(GraphHit("node", None, "fidget"), g0).reorder, "another node takes it"
     drop = at(GraphHit("row", g0, "gesture"), g2, g1)
-    assert names(perform(project, "arms", drop, Load(actions=(g2, g1))), stance)[-3:] == ["g1", "g2", "g0"]
+    assert names(perform_drop(project, "arms", drop, Load(actions=(g2, g1))), stance)[-3:] == [
+        "g1",
+        "g2",
+        "g0",
+    ]
 
 
 def test_the_row_under_the_pointer_says_before_or_behind(many):

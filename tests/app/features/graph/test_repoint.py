@@ -6,7 +6,7 @@ import pytest
 from PySide6.QtCore import QPoint, QPointF, QSizeF, Qt
 from PySide6.QtTest import QTest
 
-from app.features.graph.graph_layout import GraphHit, arrange
+from app.features.graph.graph_layout import GraphHit, lay_out_canvas
 from app.features.graph.repoint import repoint_at
 from metagraph.graph import edits
 from metagraph.graph.model import Project
@@ -36,7 +36,7 @@ def test_what_letting_go_does_is_said(toy):
 
 def test_only_transitions_have_an_arrow_to_drag(toy):
     project = toy.project()
-    layout = arrange(project, "arms", toy.id(project, "rest"), QSizeF(1000, 800))
+    layout = lay_out_canvas(project, "arms", toy.id(project, "rest"), QSizeF(1000, 800))
     for node in layout.nodes.values():
         for row in node.rows:
             at = QPointF(row.rect.left() + 8, row.rect.center().y())
@@ -72,7 +72,7 @@ def test_an_arrow_dragged_onto_a_stance_ends_there_in_one_step(toys):
 @pytest.mark.gl
 def test_all_selected_transitions_follow_and_a_stance_that_cannot_be_the_end_is_refused(toys):
     drive = toys
-    project = edits.place(
+    project = edits.place_clips(
         drive.document.project,
         [drive.action("up to far").clip],
         "arms",

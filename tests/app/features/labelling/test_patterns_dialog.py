@@ -12,12 +12,20 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QComboBox, QFileDialog, QMessageBox, QPushButton
 
-from app.features.labelling.pattern_table import LEARNED, MINE, NOBODY, PatternRow, changed, rows_of, without
+from app.features.labelling.pattern_table import (
+    LEARNED,
+    MINE,
+    NOBODY,
+    PatternRow,
+    change_pattern,
+    list_pattern_rows,
+    remove_pattern,
+)
 from app.features.labelling.patterns_dialog import PatternsDialog
 from app.project.document import Document
 from app.project.learned import Learned
-from app.stage.session import Session
-from metagraph.suggest.words.names import Patterns, learn
+from app.stage.session import StageSession
+from metagraph.suggest.words.names import Patterns, learn_correction
 from tests.thorough import some
 
 NAMES = ["idle_arms_wobble", "idle_arms_shrug", "idle_arms"]
@@ -26,7 +34,7 @@ NAMES = ["idle_arms_wobble", "idle_arms_shrug", "idle_arms"]
 @pytest.fixture
 def dialog(qapp: object, qtbot: object) -> PatternsDialog:
     document = Document()
-    made = PatternsDialog(document, Session(document), Learned())
+    made = PatternsDialog(document, StageSession(document), Learned())
     qtbot.addWidget(made)  # type: ignore[attr-defined]
     made.show()
     QTest.qWaitForWindowExposed(made)
@@ -45,10 +53,10 @@ def selected(dialog: PatternsDialog) -> list[tuple[str, ...]]:
 
 
 def test_rows_are_own_ones_learned_ones_and_what_is_built_in_and_unchanged() -> None:
-    patterns = learn(
+    patterns = learn_correction(
         Patterns().with_pattern("kinds", "nod", "fidget"), "idle_arms_wobble", "kind", "gesture", NAMES
     )
-    rows = rows_of(patterns)
+    rows = list_pattern_rows(patterns)
     assert (
         PatternRow(MINE, "kinds", "nod", "fidget") in rows
         and PatternRow(LEARNED, "kind", "wobble", "gesture", 1) in rows
@@ -57,19 +65,25 @@ def test_rows_are_own_ones_learned_ones_and_what_is_built_in_and_unchanged() -> 
 
 
 def test_removing_gives_back_forgets_or_takes_away() -> None:
-    patterns = learn(
+    patterns = learn_correction(
         Patterns().with_pattern("kinds", "nod", "fidget"), "idle_arms_wobble", "kind", "gesture", NAMES
     )
-    patterns = learn(patterns, "idle_arms_wobble", "kind", "fidget", NAMES)
-    assert without(patterns, PatternRow(MINE, "kinds", "nod", "fidget")).meanings["kinds"]["nod"] == "gesture"
-    assert "wave" not in without(patterns, PatternRow(NOBODY, "kinds", "wave", "gesture")).meanings["kinds"]
-    assert without(patterns, PatternRow(LEARNED, "kind", "wobble", "fidget", 1)).learned == {
+    patterns = learn_correction(patterns, "idle_arms_wobble", "kind", "fidget", NAMES)
+    assert (
+        remove_pattern(patterns, PatternRow(MINE, "kinds", "nod", "fidget")).meanings["kinds"]["nod"]
+        == "gesture"
+    )
+    assert (
+        "wave"
+        not in remove_pattern(patterns, PatternRow(NOBODY, "kinds", "wave", "gesture")).meanings["kinds"]
+    )
+    assert remove_pattern(patterns, PatternRow(LEARNED, "kind", "wobble", "fidget", 1)).learned == {
         "kind": {"wobble": {"gesture": 1}}
     }
-    assert changed(
+    assert change_pattern(
         patterns, PatternRow(LEARNED, "kind", "wobble", "fidget", 1), "wobble", "gesture"
     ).learned == {"kind": {"wobble": {"gesture": 2}}}
-    renamed = changed(patterns, PatternRow(MINE, "kinds", "nod", "fidget"), "noddle", "fidget")
+    renamed = change_pattern(patterns, PatternRow(MINE, "kinds", "nod", "fidget"), "noddle", "fidget")
     assert renamed.meanings["kinds"]["nod"] == "gesture" and renamed.meanings["kinds"]["noddle"] == "fidget"
 
 

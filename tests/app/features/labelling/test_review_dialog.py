@@ -14,8 +14,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QInputDialog
 
 from metagraph.formats.store import open_project
-from metagraph.research.study.machines.klm import predicted
-from metagraph.suggest.jumps.bridges import missing
+from metagraph.research.study.machines.klm import predict_seconds
+from metagraph.suggest.jumps.bridges import find_missing_bridges
 from metagraph.suggest.review import DECIDING
 from tests.label_zoo.catalogue import named
 
@@ -157,10 +157,10 @@ def test_the_practice_project_is_labelled_with_the_keyboard_alone(practice, trut
         assert (project.stance(action.end_stance).name if action.end_stance else None) == wanted["end_stance"]
     drive.settle()
     assert not [p for p in drive.problems.problems if p.severity == "error"]
-    seconds = predicted(hands)
+    seconds = predict_seconds(hands)
     record_property("operators", dict(hands))
     record_property("seconds_a_clip", seconds / len(truth))
-    every = predicted({"M": 152, "K": 152, "R": watched(project)})
+    every = predict_seconds({"M": 152, "K": 152, "R": watched(project)})
     print(
         f"\n{looked} looked at, {corrected} corrected; {dict(hands)}; predicted {seconds:.0f} s, "
         f"{seconds / len(truth):.2f} s a clip;"
@@ -428,11 +428,11 @@ def test_a_stance_that_a_clip_leads_to_which_is_not_placed_yet_is_not_told(toys)
     rest = [c for c, p in found.items() if p.kind.value == "transition"]
     dialog.work.place([c for c in found if c not in rest], "All but transitions", None)
     drive.wait(lambda: bool(dialog.work.parted))
-    now = missing(drive.document.project)
+    now = find_missing_bridges(drive.document.project)
     assert rest and len(dialog.work.parted) < len(now) and set(dialog.work.parted) < set(now)
     dialog.work.place(rest, "The rest", None)
     drive.settle()
-    assert list(dialog.work.parted) == missing(drive.document.project)
+    assert list(dialog.work.parted) == find_missing_bridges(drive.document.project)
     dialog.close()
 
 
@@ -451,7 +451,7 @@ def test_stances_no_clip_leads_to_are_told_after_all_were_accepted_and_bridged_w
     count, placed = drive.document.undo_stack.count(), len(list(drive.document.project.actions()))
     QTest.mouseClick(dialog.queue.bridge, Qt.MouseButton.LeftButton)
     assert drive.document.undo_stack.count() == count + 1
-    assert missing(drive.document.project) == []
+    assert find_missing_bridges(drive.document.project) == []
     drive.wait(lambda: not dialog.queue.bridge.isVisible())
     assert dialog.queue.parted.text() == "1 transition made by blending."
     assert "blended in" in dialog.queue.parted.toolTip()
@@ -460,7 +460,7 @@ def test_stances_no_clip_leads_to_are_told_after_all_were_accepted_and_bridged_w
     drive.wait(dialog.queue.bridge.isVisible)
     press(dialog, K.Key_B)
     drive.wait(lambda: not dialog.queue.bridge.isVisible())
-    assert missing(drive.document.project) == []
+    assert find_missing_bridges(drive.document.project) == []
     press(dialog, K.Key_Backspace, K.Key_Backspace)
     drive.wait(lambda: not dialog.queue.parted.isVisible())
     dialog.close()
@@ -514,11 +514,11 @@ def test_all_clips_are_watched_through_a_correction_holds_and_they_are_accepted_
 def test_clips_that_are_taken_for_the_same_are_watched_beside_each_other(practice):
     from itertools import groupby
 
-    from app.features.labelling.review_watch import ordered
+    from app.features.labelling.review_watch import order_similar
 
     dialog = begun(practice)
     review = dialog.review
-    order = ordered(review, dialog.work.waiting())
+    order = order_similar(review, dialog.work.waiting())
     signs = [(review.value(c, "layer"), review.value(c, "stance"), review.value(c, "kind")) for c in order]
     assert len(list(groupby(signs))) == len(set(signs)) < 152 and sorted(order) == sorted(
         dialog.work.waiting()

@@ -8,10 +8,10 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QFont, QFontMetrics
 
-from app.features.library.clip_card import two_lines
+from app.features.library.clip_card import break_in_two_lines
 from app.features.library.clip_facts import ClipFacts
 from app.features.library.clip_filter import Filter
-from app.features.library.clip_rows import changed_rows as _changed_rows
+from app.features.library.clip_rows import find_changed_rows as _changed_rows
 from metagraph.graph import edits
 
 
@@ -73,7 +73,7 @@ def metrics(qapp):
 )
 def test_a_name_fits_in_at_most_two_lines(metrics, name):
     for width in (40, 90, 108, 300):
-        lines = two_lines(name, metrics, width)
+        lines = break_in_two_lines(name, metrics, width)
         assert 1 <= len(lines) <= 2
         assert all(metrics.horizontalAdvance(line) <= width for line in lines)
         place = 0
@@ -82,7 +82,7 @@ def test_a_name_fits_in_at_most_two_lines(metrics, name):
 
 
 def test_a_long_name_breaks_after_a_separator_and_keeps_its_end(metrics):
-    first, second = two_lines("arms_crossed__point_you_rt_01", metrics, 100)
+    first, second = break_in_two_lines("arms_crossed__point_you_rt_01", metrics, 100)
     assert first.endswith("_")
     assert second.endswith("01")
 

@@ -10,12 +10,12 @@ from PySide6.QtWidgets import QApplication, QInputDialog
 
 from app.features.library.clip_badges import FILLS, INK
 from app.features.library.clip_columns import COLUMNS
-from app.features.library.clip_filter import Filter, from_text
+from app.features.library.clip_filter import Filter, filter_from_text
 from app.features.library.clip_header import PLACES
 from app.features.library.clip_rows import ENTRY
 from app.features.library.clip_sizes import SIZES, picture_of
 from app.features.library.library_settings import LibrarySettings
-from app.project.reveal import how
+from app.project.reveal import reveal_command
 from metagraph.graph.clip_mark import ClipMark
 from metagraph.graph.editing.marks import mark, mark_of
 from metagraph.graph.problem import Problem
@@ -218,7 +218,7 @@ def test_a_clip_that_is_placed_goes_to_its_group_and_stays_selected(toys, toy, p
     toys.session.selection.select_clips((clip,))
     assert titles(panel)[-1] == "Not placed yet"
     stance = toys.action("rest beat lf").stance
-    toys.document.edit("Place", lambda p: edits.place(p, [clip], "arms", "gesture", stance))
+    toys.document.edit("Place", lambda p: edits.place_clips(p, [clip], "arms", "gesture", stance))
     assert "Not placed yet" not in titles(panel)
     assert [i.data(ENTRY).id for i in panel.list.selectedIndexes()] == [clip]
 
@@ -327,7 +327,7 @@ def test_a_filter_is_kept_under_a_name_chosen_again_and_deleted(toys, panel, mon
     [Filter(), Filter("a | b", False, "arms", "gesture", "red", 2, True, True, True), Filter(labelled=True)],
 )
 def test_a_filter_survives_being_written(rule):
-    assert from_text(rule.as_text()) == rule
+    assert filter_from_text(rule.as_text()) == rule
 
 
 @pytest.mark.parametrize(
@@ -335,7 +335,7 @@ def test_a_filter_survives_being_written(rule):
     ["", "[]", "{", '{"stars": 9}', '{"kind": "x"}', '{"text": 3}', '{"favourite": 1}', '{"color": []}'],
 )
 def test_a_broken_filter_is_none(text):
-    assert from_text(text) is None
+    assert filter_from_text(text) is None
 
 
 # --- going through a picture
@@ -374,9 +374,9 @@ def test_the_pointer_goes_through_a_clip_and_leaves_it_as_it_was(toys, panel, mo
 def test_a_file_is_shown_in_its_folder_as_each_system_does():
     from pathlib import Path
 
-    assert how(Path("/a/b.bvh"), "darwin") == ("open", ["-R", "/a/b.bvh"])
-    assert how(Path("/a/b.bvh"), "win32")[0] == "explorer"
-    assert how(Path("/a/b.bvh"), "linux") is None
+    assert reveal_command(Path("/a/b.bvh"), "darwin") == ("open", ["-R", "/a/b.bvh"])
+    assert reveal_command(Path("/a/b.bvh"), "win32")[0] == "explorer"
+    assert reveal_command(Path("/a/b.bvh"), "linux") is None
 
 
 def test_reveal_opens_the_folder_of_a_file_or_the_nearest_there_is(monkeypatch, tmp_path):

@@ -9,14 +9,14 @@ from PySide6.QtWidgets import QToolButton
 
 from app.features.life.life_panel import LifePanel
 from app.project.document import Document
-from app.stage.session import Session
+from app.stage.session import StageSession
 from metagraph.graph.life import DIALS, MANNER_DIALS, MANNERS, Life
 
 
 @pytest.fixture
 def panel(qapp, qtbot):
     document = Document()
-    out = LifePanel(document, Session(document))
+    out = LifePanel(document, StageSession(document))
     qtbot.addWidget(out)
     yield out
     document.close_journal()

@@ -18,7 +18,7 @@ def test_every_state_is_drawn_once_and_inside(toy, sample, area):
     many = toy.project()
     for n in range(8):
         many = edits.add_stance(many, "arms", f"more {n}", list(many.clips)[:1])
-    many = edits.place(many, list(many.clips) * 8, "arms", "gesture", toy.id(many, "far"))
+    many = edits.place_clips(many, list(many.clips) * 8, "arms", "gesture", toy.id(many, "far"))
     graphs = [toy.project().graphs["arms"], many.graphs["arms"], *sample.graphs.values()]
     for graph in graphs:
         found = places(graph, rect)

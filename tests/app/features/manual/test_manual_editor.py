@@ -12,7 +12,7 @@ from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMenu
 
-from metagraph.engines.export import schema_text
+from metagraph.engines.export import export_schema_text
 from metagraph.engines.reading import read_export
 from metagraph.formats.store import open_project, save_project
 from metagraph.graph import edits
@@ -211,7 +211,9 @@ def test_clips_are_dropped_links_are_dragged_and_all_of_it_plays_is_undone_saved
     drive.wait(lambda: dialog.open_button.isEnabled(), 60)
     dialog.reject()
     written = next((tmp_path / "out").glob("*.json"))
-    jsonschema.Draft202012Validator(json.loads(schema_text())).validate(json.loads(written.read_bytes()))
+    jsonschema.Draft202012Validator(json.loads(export_schema_text())).validate(
+        json.loads(written.read_bytes())
+    )
     kinds = {a.name: a.kind for a in read_export(written).actions()}
     assert kinds == {
         "rest loop": "stance",
@@ -319,11 +321,11 @@ def test_the_view_pans_and_zooms_and_shows_all_again(drawn: Hand) -> None:
 
 
 def test_the_menu_draws_a_link_from_click_to_click_and_escape_gives_it_up(drawn: Hand) -> None:
-    from app.features.manual.manual_commands import fill
+    from app.features.manual.manual_commands import fill_canvas_menu
 
     def menu(hit: ManualHit) -> QMenu:
         out = QMenu(drawn.canvas)
-        fill(out, drawn.canvas, hit)
+        fill_canvas_menu(out, drawn.canvas, hit)
         return out
 
     from app.features.manual.manual_scene import ManualHit

@@ -123,8 +123,8 @@ def test_links_are_selected_by_their_ends_changed_together_and_pasted_for_other_
     select(hand, "rest wave rt")
     hand.drive.document.edit(
         "x",
-        lambda p: manual_edits.remove(
-            p, links=manual_groups.links_of(hand.machine, [hand.id("rest wave rt")])
+        lambda p: manual_edits.remove_states(
+            p, links=manual_groups.find_links(hand.machine, [hand.id("rest wave rt")])
         ),
     )
     hand.key(Qt.Key.Key_V, CONTROL)
@@ -152,7 +152,7 @@ def test_a_table_is_imported_pasted_and_copied_and_its_bad_rows_are_told(hand: H
     assert not hand.machine.links
     QApplication.clipboard().setText("from\tto\nrest loop\tup beat\n")
     menu = QMenu()
-    manual_commands.fill(
+    manual_commands.fill_canvas_menu(
         menu, hand.canvas, hand.canvas.scene().hit(hand.canvas.view.back(hand.canvas.at), 1.0)
     )
     QApplication.clipboard().setText("hello")
@@ -170,10 +170,10 @@ def test_the_menu_of_an_alias_takes_in_what_was_selected(hand: Hand) -> None:
     select(hand, "rest long", "up beat")
     menu = QMenu()
     box = hand.canvas.scene().nodes[ident]
-    manual_commands.fill(menu, hand.canvas, hand.canvas.scene().hit(box.center(), 1.0))
+    manual_commands.fill_canvas_menu(menu, hand.canvas, hand.canvas.scene().hit(box.center(), 1.0))
     hand.drive.pick(menu, "Add 2 selected states")
     assert len(hand.machine.aliases[ident].states) == 3 and chosen(hand) == (ident,)
-    assert "stands for rest loop" in manual_commands.tip(
+    assert "stands for rest loop" in manual_commands.describe_canvas_hit(
         hand.canvas, hand.canvas.scene().hit(box.center(), 1.0)
     )
     hand.key(Qt.Key.Key_Delete)
@@ -183,7 +183,7 @@ def test_the_menu_of_an_alias_takes_in_what_was_selected(hand: Hand) -> None:
 def test_arranging_puts_aliases_beside_what_they_stand_for(hand: Hand) -> None:
     ident = alias(hand, "rest loop", "rest long")
     hand.drive.drag(edge_of(hand, ident), hand.middle("up beat"), lambda: bool(hand.machine.links))
-    manual_commands.arrange(hand.canvas)
+    manual_commands.arrange_canvas(hand.canvas)
     made = hand.machine.aliases[ident]
     assert made.x < min(s.x for s in hand.machine.states.values())
     assert len({(r.x(), r.y()) for r in hand.canvas.scene().nodes.values()}) == 6

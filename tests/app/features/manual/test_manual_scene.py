@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPointF, QRectF, QSizeF
 
-from app.features.manual.arranging import arranged
+from app.features.manual.arranging import arrange_nodes
 from app.features.manual.manual_scene import (
     ANY_NODE,
     LOOP,
@@ -15,7 +15,7 @@ from app.features.manual.manual_scene import (
     ManualHit,
     ManualScene,
     ManualView,
-    fitted,
+    fit_view,
 )
 from metagraph.graph.manual.machine import ANY, Link, Manual, State
 
@@ -118,8 +118,8 @@ def test_zooming_leaves_what_is_under_the_mouse_where_it_is() -> None:
 
 def test_fitting_shows_all_and_never_enlarges() -> None:
     rect, size = QRectF(-500, 200, 4000, 900), QSizeF(900, 600)
-    assert fitted(rect, size).rect(size).contains(rect)
-    assert fitted(QRectF(0, 0, 10, 10), size).scale == 1.0
+    assert fit_view(rect, size).rect(size).contains(rect)
+    assert fit_view(QRectF(0, 0, 10, 10), size).scale == 1.0
 
 
 # --- automatic layout
@@ -131,11 +131,11 @@ def overlaps(places: dict[str, tuple[float, float]]) -> int:
 
 
 def test_an_empty_machine_is_arranged() -> None:
-    assert set(arranged(Manual("arms"))) == {ANY}
+    assert set(arrange_nodes(Manual("arms"))) == {ANY}
 
 
 def test_states_stand_in_columns_from_the_start_on() -> None:
-    places = arranged(machine(dict.fromkeys("dcba", (0.0, 0.0)), "a>b", "b>c", "c>a", "c>d", start="a"))
+    places = arrange_nodes(machine(dict.fromkeys("dcba", (0.0, 0.0)), "a>b", "b>c", "c>a", "c>d", start="a"))
     assert places["a"][0] < places["b"][0] < places["c"][0] < places["d"][0]
 
 
@@ -146,7 +146,7 @@ def test_no_two_nodes_overlap_however_many_there_are() -> None:
         + [f"{n}>n0" for n in names[1:100]]
         + ["n3>n120", "n140>n141", "n141>n140"]
     )
-    places = arranged(machine(dict.fromkeys(names, (0.0, 0.0)), *links))
+    places = arrange_nodes(machine(dict.fromkeys(names, (0.0, 0.0)), *links))
     assert overlaps(dict(places)) == 0
     assert len(places) == 153
     wide = max(x for x, _ in places.values()) - min(x for x, _ in places.values())
@@ -156,7 +156,7 @@ def test_no_two_nodes_overlap_however_many_there_are() -> None:
 
 def test_arrows_cross_less_than_in_the_order_of_placing() -> None:
     links = ["s>a", "s>b", "s>c", "a>f", "b>e", "c>d"]
-    places = arranged(machine(dict.fromkeys("sabcdef", (0.0, 0.0)), *links))
+    places = arrange_nodes(machine(dict.fromkeys("sabcdef", (0.0, 0.0)), *links))
     order = {i: places[i][1] for i in "abcdef"}
     assert [order["a"] < order["b"], order["b"] < order["c"]] == [
         order["f"] < order["e"],
@@ -165,10 +165,10 @@ def test_arrows_cross_less_than_in_the_order_of_placing() -> None:
 
 
 def test_what_cannot_be_reached_stands_after_all_else() -> None:
-    places = arranged(machine(dict.fromkeys("abxy", (0.0, 0.0)), "a>b", "x>y"))
+    places = arrange_nodes(machine(dict.fromkeys("abxy", (0.0, 0.0)), "a>b", "x>y"))
     assert places["b"][0] < places["x"][0] < places["y"][0]
 
 
 def test_a_link_from_any_state_brings_its_target_near_the_start() -> None:
-    places = arranged(machine(dict.fromkeys("abx", (0.0, 0.0)), "a>b", f"{ANY}>x"))
+    places = arrange_nodes(machine(dict.fromkeys("abx", (0.0, 0.0)), "a>b", f"{ANY}>x"))
     assert places["x"][0] == places["b"][0]

@@ -10,16 +10,22 @@ from app.features.models.annotation_dialog import (
     REMEMBERED,
     SAMPLE,
     AnnotateDialog,
-    keep,
     meaning_entries,
     meaning_words,
-    recall,
+    recall_roles,
+    remember_roles,
 )
-from app.project.annotation_reading import begin
+from app.project.annotation_reading import begin_reading
 from app.project.document import Document
-from app.stage.session import Session
+from app.stage.session import StageSession
 from metagraph.formats.elan import read_elan
-from metagraph.playback.learning.annotation import MEANINGS, Annotation, Interval, Tier, is_meaning
+from metagraph.playback.learning.annotation import (
+    MEANINGS,
+    Annotation,
+    AnnotationInterval,
+    AnnotationTier,
+    is_meaning,
+)
 
 
 @pytest.fixture
@@ -33,12 +39,12 @@ def document(monkeypatch, tmp_path):
 @pytest.fixture
 def open_dialog(document, qtbot):
     def inner(annotation: Annotation, name: str = "talk.eaf") -> AnnotateDialog:
-        session = Session(document)
-        reading = begin(
+        session = StageSession(document)
+        reading = begin_reading(
             annotation,
             document.project.tiers,
-            recall("tiers"),
-            labels=(document.project.labels, recall("labels")),
+            recall_roles("tiers"),
+            labels=(document.project.labels, recall_roles("labels")),
         )
         dialog = AnnotateDialog(document, session, reading, name)
         dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose, False)  # the test looks at it afterwards
@@ -49,8 +55,10 @@ def open_dialog(document, qtbot):
     return inner
 
 
-def tier(name: str, *texts: str, participant: str = "") -> Tier:
-    return Tier(name, tuple(Interval(n, n + 0.5, t) for n, t in enumerate(texts)), participant)
+def tier(name: str, *texts: str, participant: str = "") -> AnnotationTier:
+    return AnnotationTier(
+        name, tuple(AnnotationInterval(n, n + 0.5, t) for n, t in enumerate(texts)), participant
+    )
 
 
 def rows(table) -> list[tuple[str, ...]]:
@@ -94,7 +102,7 @@ def test_cancelling_changes_and_remembers_nothing(open_dialog, document):
     dialog = open_dialog(read_elan(SAMPLE))
     dialog.tiers.chosen.emit(0, "body")
     dialog.reject()
-    assert document.undo_stack.count() == 0 and recall("tiers") == {}
+    assert document.undo_stack.count() == 0 and recall_roles("tiers") == {}
 
 
 def test_nothing_that_is_read_is_said_and_cannot_be_imported(open_dialog):
@@ -147,8 +155,8 @@ def test_corrections_are_remembered_by_the_project_and_for_the_next_one(open_dia
     dialog.tiers.chosen.emit(1, "body")
     dialog.labels.chosen.emit([r[0] for r in rows(dialog.labels)].index("cup"), "fidget")
     dialog.accept()
-    assert document.project.tiers == {"LH": "left arm", "B": "body"} == recall("tiers")
-    assert document.project.labels == {"arms: cup": "fidget"} == recall("labels")
+    assert document.project.tiers == {"LH": "left arm", "B": "body"} == recall_roles("tiers")
+    assert document.project.labels == {"arms: cup": "fidget"} == recall_roles("labels")
     document.undo()
     again = open_dialog(annotation)
     assert rows(again.tiers) == [("LH", "2", "Left arm"), ("B", "1", "Body")], (
@@ -158,15 +166,15 @@ def test_corrections_are_remembered_by_the_project_and_for_the_next_one(open_dia
 
 
 def test_memory_is_bounded_and_nonsense_in_it_is_forgotten():
-    keep("tiers", {f"t{n}": "body" for n in range(REMEMBERED)})
-    keep("tiers", {"new": "arms", "t3": "ignore"})
-    found = recall("tiers")
+    remember_roles("tiers", {f"t{n}": "body" for n in range(REMEMBERED)})
+    remember_roles("tiers", {"new": "arms", "t3": "ignore"})
+    found = recall_roles("tiers")
     assert (
         len(found) == REMEMBERED and found["new"] == "arms" and found["t3"] == "ignore" and "t0" not in found
     )
     for nonsense in ("[1]", "{", "3", '{"a": 3}'):
         QSettings().setValue("annotation/tiers", nonsense)
-        assert all(isinstance(v, str) for v in recall("tiers").values())
+        assert all(isinstance(v, str) for v in recall_roles("tiers").values())
 
 
 def test_of_several_people_it_is_told_who_is_read(open_dialog):

@@ -14,10 +14,10 @@ from app.features.models.heatmap import (
     SIDE,
     HeatMap,
     contrast,
+    describe_matrix_cell,
     grid,
     ink,
     percent,
-    sentence,
     shade,
 )
 from app.look.theme import DARK, LIGHT
@@ -65,7 +65,7 @@ def test_a_cell_is_said_in_a_sentence():
         (tagged, "head", 0, 1, "a gesture", "a positive gesture", "50 %"),
         (tagged, "head", 1, 1, "a positive gesture", "the same", "never"),
     ):
-        words = sentence(model, layer, row, column)
+        words = describe_matrix_cell(model, layer, row, column)
         places = [words.find(piece) for piece in pieces]
         assert -1 not in places and places[0] < places[1], words
 
@@ -146,7 +146,7 @@ def test_arrows_go_from_cell_to_cell_and_signs_change_by_one_percent(heat, qtbot
     for key in (Qt.Key.Key_Left, Qt.Key.Key_Up, Qt.Key.Key_Right, Qt.Key.Key_Down, Qt.Key.Key_Down):
         QTest.keyClick(heat, key)
     assert heat.current == (2, 1)
-    assert heat.said[-1] == sentence(ARMS, "arms", 2, 1)
+    assert heat.said[-1] == describe_matrix_cell(ARMS, "arms", 2, 1)
     QTest.keyClicks(heat, "+-")
     assert heat.edits == [(2, 1, 0.21, False), (2, 1, 0.19, False)]
     for _ in range(20):
@@ -188,7 +188,7 @@ def test_escape_leaves_what_was_typed_and_a_double_click_opens_the_field(heat, q
 
 def test_the_pointer_says_what_it_points_at(heat):
     QTest.mouseMove(heat, at(heat, 0, 3))
-    assert heat.said[-1] == sentence(ARMS, "arms", 0, 3)
+    assert heat.said[-1] == describe_matrix_cell(ARMS, "arms", 0, 3)
     QTest.mouseMove(heat, QPoint(20, round(heat.grid().cell(1, 0).center().y())))
     assert "left fidget" in heat.said[-1] and "1 to 3 s" in heat.said[-1]
     heat.show_model(DEFAULTS["head"], "head", "light", frozenset({1}))

@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QApplication
 
 from app.features.models.meaning_choices import ChoiceTable, MeaningRow
 from app.project.document import Document
-from app.stage.session import Session
+from app.stage.session import StageSession
 
 ENTRIES = [("Left arm", "left", "tells more"), ("Body", "body", ""), ("Ignore", None, "")]
 
@@ -17,7 +17,7 @@ ENTRIES = [("Left arm", "left", "tells more"), ("Body", "body", ""), ("Ignore", 
 @pytest.fixture
 def table(qtbot):
     widget = ChoiceTable(
-        Session(Document()), "Tiers", ("Tier", "Times", "Read as"), 120, lambda row: ENTRIES, None
+        StageSession(Document()), "Tiers", ("Tier", "Times", "Read as"), 120, lambda row: ENTRIES, None
     )
     qtbot.addWidget(widget)
     widget.resize(420, 300)

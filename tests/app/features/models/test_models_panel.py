@@ -10,24 +10,30 @@ import numpy as np
 import pytest
 
 from app.features.models.annotation_dialog import SAMPLE
-from app.features.models.compare_plot import ComparePlot, long_words, often_words, short, verdict
+from app.features.models.compare_plot import (
+    ComparePlot,
+    describe_long,
+    describe_model_fit,
+    describe_often,
+    shorten_state,
+)
 from app.features.models.models_panel import IMPORTED, ModelsPanel
-from app.project.annotation_reading import begin, into
+from app.project.annotation_reading import begin_reading, work_into_project
 from app.project.document import Document
 from app.project.jobs import Jobs
-from app.stage.session import Session
+from app.stage.session import StageSession
 from metagraph.formats.elan import read_elan
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Markov
-from metagraph.playback.learning.compare import compare
-from metagraph.playback.learning.learn import learn, states_of
+from metagraph.playback.learning.compare import compare_model
+from metagraph.playback.learning.learn import learn_model, model_states
 from metagraph.playback.planning.markov import ARMS, DEFAULTS
 from tests.app.painted_text import faults, seen_in
 
 
 @pytest.fixture(scope="module")
 def reading():
-    return begin(read_elan(SAMPLE))
+    return begin_reading(read_elan(SAMPLE))
 
 
 @pytest.fixture
@@ -35,7 +41,7 @@ def panel(qtbot, toy, monkeypatch, tmp_path):
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
     document, jobs = Document(), Jobs()
     document.load(toy.project(), None)
-    widget = ModelsPanel(document, Session(document), jobs)
+    widget = ModelsPanel(document, StageSession(document), jobs)
     qtbot.addWidget(widget)
     widget.resize(1200, 440)
     widget.show()
@@ -151,7 +157,7 @@ def test_another_sample_is_another_minute_of_the_same_model(panel):
 
 
 def test_what_was_learned_is_compared_with_what_was_seen(panel, reading, qtbot):
-    made = into(panel.document.project, reading, LAYERS, True, "talk")
+    made = work_into_project(panel.document.project, reading, LAYERS, True, "talk")
     panel.document.edit("Import annotation", lambda _: made.project)
     panel.show_imported(reading.observed, made.performance)
     assert panel.chooser.currentText() == "talk" and not panel.teach.isVisible()
@@ -187,7 +193,7 @@ def test_what_stands_under_bars_does_not_touch_however_narrow_the_plot(panel, qt
 
 
 def test_what_was_read_but_not_kept_can_be_compared_with_until_another_project_comes(panel, reading, toy):
-    made = into(panel.document.project, reading, ("arms",), False, None)
+    made = work_into_project(panel.document.project, reading, ("arms",), False, None)
     panel.document.edit("Import annotation", lambda _: made.project)
     panel.show_imported(reading.observed, None)
     assert panel.chooser.currentData() == IMPORTED and panel.chooser.currentText() == "the last import"
@@ -216,9 +222,11 @@ def test_both_themes_are_drawn(panel, qtbot):
 
 
 def test_states_are_told_apart_by_short_marks():
-    marks = [short(state, "arms") for state in states_of(ARMS)]
+    marks = [shorten_state(state, "arms") for state in model_states(ARMS)]
     assert marks[:3] == ["▲L", "◆L", "➜L"] and len(set(marks)) == 9
-    assert [short(("both", "gesture", tags), "head") for tags in ("", "positive", "negative", "calm")] == [
+    assert [
+        shorten_state(("both", "gesture", tags), "head") for tags in ("", "positive", "negative", "calm")
+    ] == [
         "▲",
         "▲+",
         "▲−",
@@ -228,21 +236,21 @@ def test_states_are_told_apart_by_short_marks():
 
 def test_figures_are_said_in_words(reading):
     acts = reading.observed["arms"]
-    found = compare(learn("arms", [acts]), [acts])
-    assert often_words(found, 2).startswith("right gesture: seen 28.8 %, made ")
-    assert long_words(found, 2).startswith("right gesture: seen 1.6 s (mostly 0.8 to 2.3), made ")
-    assert long_words(found, 7).startswith("rest between actions: seen ")
-    alone = compare(ARMS, None)
-    assert "in the long run" in often_words(alone, 0) and "seen" not in long_words(alone, 0)
-    assert verdict(alone).startswith("Nothing to compare with yet")
+    found = compare_model(learn_model("arms", [acts]), [acts])
+    assert describe_often(found, 2).startswith("right gesture: seen 28.8 %, made ")
+    assert describe_long(found, 2).startswith("right gesture: seen 1.6 s (mostly 0.8 to 2.3), made ")
+    assert describe_long(found, 7).startswith("rest between actions: seen ")
+    alone = compare_model(ARMS, None)
+    assert "in the long run" in describe_often(alone, 0) and "seen" not in describe_long(alone, 0)
+    assert describe_model_fit(alone).startswith("Nothing to compare with yet")
 
 
 def test_a_model_that_never_makes_what_was_seen_is_found_out(reading, qtbot):
     acts = reading.observed["head"]
     never = Markov("head", (("both", "gesture"), ("both", "transition")), ((1.0, 0.0), (1.0, 0.0)))
-    found = compare(never, [acts])
-    assert verdict(found).startswith("Not as seen: ")
-    plot = ComparePlot(Session(Document()))
+    found = compare_model(never, [acts])
+    assert describe_model_fit(found).startswith("Not as seen: ")
+    plot = ComparePlot(StageSession(Document()))
     qtbot.addWidget(plot)
     plot.show_comparison(found)
     assert not plot.grab().isNull()

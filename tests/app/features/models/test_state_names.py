@@ -9,13 +9,13 @@ import pytest
 from app import translation
 from app.features.models.state_names import a_state, state_name
 from metagraph.graph.words import KINDS, LAYERS, LIMBS
-from metagraph.playback.learning.learn import state_words
+from metagraph.playback.learning.learn import describe_state
 from tests.app.catalogue_texts import catalogue_texts
 
 
 def test_english_names_are_the_domains() -> None:
     for limb, kind, tags, layer in product(LIMBS, KINDS, ("", "positive", "negative big"), LAYERS):
-        assert state_name((limb, kind, tags), layer) == state_words((limb, kind, tags), layer)
+        assert state_name((limb, kind, tags), layer) == describe_state((limb, kind, tags), layer)
 
 
 def test_a_sentence_has_tags_before_and_both_arms_behind() -> None:

@@ -13,7 +13,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
-from app.features.motion_graph.cooccurrence_rates import RatesDialog
+from app.features.motion_graph.cooccurrence_rates import CooccurrenceDialog
 from app.features.motion_graph.motion_graph_dialog import MotionGraphDialog
 from app.features.motion_graph.synthesis_jobs import FOLDER, LEAST, MOST
 from metagraph.formats.store import absolute, open_project, save_project
@@ -204,8 +204,8 @@ def test_what_it_should_have_beside_is_asked_for_and_what_cannot_be_is_told(show
 def test_movements_with_speech_are_counted_and_become_a_sides_rates(shown):
     drive, dialog = shown
     press(dialog.picked.rates_button)
-    drive.wait(lambda: dialog.findChild(RatesDialog) is not None, 60)
-    rates = dialog.findChild(RatesDialog)
+    drive.wait(lambda: dialog.findChild(CooccurrenceDialog) is not None, 60)
+    rates = dialog.findChild(CooccurrenceDialog)
     assert [rates.table.item(row, 2).text() for row in range(5)] == ["1", "1", "1", "0", "0"]
     matched = int(rates.table.item(2, 1).text())
     rates.who.setCurrentIndex(1)

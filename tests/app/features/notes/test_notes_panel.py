@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from PySide6.QtTest import QTest
 
-from app.features.graph.graph_words import tip
+from app.features.graph.graph_words import describe_graph_hit
 from metagraph.graph import edits
 from metagraph.graph.notes import PROJECT
 
@@ -41,7 +41,7 @@ def test_a_note_is_written_on_what_is_selected_and_is_one_step(toys):
     assert panel.text.toPlainText() == "too fast 1 2"
     layout = drive.canvas.layout_now()
     hit = layout.hit(layout.row(gesture.id).rect.center())
-    assert "too fast" in tip(drive.document.project, layout, hit, None, {})
+    assert "too fast" in describe_graph_hit(drive.document.project, layout, hit, None, {})
     drive.docks["notes"].close()
 
 

@@ -12,10 +12,10 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
 from app.features.problems.problems_panel import FIX, breakable
-from app.stage.compatibility_state import judge, merged, told
-from app.stage.fixes import Fix, bridges_for, clips_for
+from app.stage.compatibility_state import describe_jumps, judge_jumps, merge_problems
+from app.stage.fixes import Fix, fix_clips, fix_unreachable
 from metagraph.graph import edits
-from metagraph.graph.check import check
+from metagraph.graph.check import check_project
 from metagraph.graph.expand import reachable
 from metagraph.graph.model import Project
 from metagraph.graph.problem import Problem
@@ -61,16 +61,18 @@ def test_what_is_wrong_and_what_to_do_are_read_whole_at_any_width(toys, toy, wid
 def wide(toy):
     """A wave so wide that it is far from its stance in the middle, cut there."""
     project = edits.add_clips(toy.project(), [("wide.glb", 0, "", toy.clip("wide", 2.4, swing=2.4))])
-    project = edits.place(project, [toy.id(project, "wide")], "arms", "gesture", toy.id(project, "rest"))
+    project = edits.place_clips(
+        project, [toy.id(project, "wide")], "arms", "gesture", toy.id(project, "rest")
+    )
     return edits.update_actions(project, [toy.id(project, "wide")], timing={"end": 1.5, "blend_out": 0.05})
 
 
 def test_an_empty_project_has_no_flags():
-    assert told(Project(), judge(Project())) == {}
+    assert describe_jumps(Project(), judge_jumps(Project())) == {}
 
 
 def test_a_jump_is_told_in_words_with_what_mends_it(toy, wide):
-    flags = {p: fix for p, fix in told(wide, judge(wide)).items() if p.severity == "warning"}
+    flags = {p: fix for p, fix in describe_jumps(wide, judge_jumps(wide)).items() if p.severity == "warning"}
     ((problem, fix),) = flags.items()
     assert problem.message.startswith("'wide' ends ") and problem.message.endswith(
         " times what shows as a jump from 'rest'"
@@ -80,14 +82,16 @@ def test_a_jump_is_told_in_words_with_what_mends_it(toy, wide):
         fix is not None and fix.words.startswith("Use ") and fix.words.removeprefix("Use ") in problem.remedy
     )
     after = fix(wide)
-    assert not [p for p in told(after, judge(after)) if p.severity == "warning"]
+    assert not [p for p in describe_jumps(after, judge_jumps(after)) if p.severity == "warning"]
 
 
 def test_statistics_never_make_an_error_and_too_few_clips_are_a_hint(toy, wide):
-    assert {p.severity for p in told(wide, judge(wide))} <= {"warning", "hint"}
+    assert {p.severity for p in describe_jumps(wide, judge_jumps(wide))} <= {"warning", "hint"}
     few = edits.remove_actions(wide, [a.id for a in wide.actions()][4:])
-    gesture = edits.place(few, [toy.id(few, "wide")], "arms", "gesture", toy.id(few, "rest"))
-    (hint,) = told(edits.remove_actions(gesture, [a.id for a in few.actions()][1:]), judge(few))
+    gesture = edits.place_clips(few, [toy.id(few, "wide")], "arms", "gesture", toy.id(few, "rest"))
+    (hint,) = describe_jumps(
+        edits.remove_actions(gesture, [a.id for a in few.actions()][1:]), judge_jumps(few)
+    )
     assert (hint.severity, hint.code, hint.layer) == (
         "hint",
         "few-clips",
@@ -96,18 +100,18 @@ def test_statistics_never_make_an_error_and_too_few_clips_are_a_hint(toy, wide):
 
 
 def test_the_sample_and_its_neighbours_have_no_false_alarms(sample):
-    assert told(sample, judge(sample)) == {}
+    assert describe_jumps(sample, judge_jumps(sample)) == {}
 
 
 def test_a_judgement_keeps_what_still_holds(toy, wide):
-    first = judge(wide)
+    first = judge_jumps(wide)
     after = edits.update_actions(wide, [toy.id(wide, "rest wave rt")], timing={"end": 1.0})
-    again = judge(after, first)
+    again = judge_jumps(after, first)
     assert again.measured["arms"] is first.measured["arms"]
     assert {a.id for a in again.known["arms"]} == {a.id for a in after.graphs["arms"].actions.values()}
-    gone = judge(edits.remove_actions(wide, [toy.id(wide, "wide")]), first)
+    gone = judge_jumps(edits.remove_actions(wide, [toy.id(wide, "wide")]), first)
     assert gone.measured["arms"] is not first.measured["arms"] and not gone.jumps
-    assert told(edits.remove_actions(wide, [toy.id(wide, "wide")]), first) == {}, (
+    assert describe_jumps(edits.remove_actions(wide, [toy.id(wide, "wide")]), first) == {}, (
         "an action that went is not told of"
     )
 
@@ -123,7 +127,12 @@ def test_a_place_is_told_of_once_and_errors_come_first():
         at("warning", "far-end", "a2"),
         at("hint", "no-gestures", None),
     ]
-    assert merged([*rest, at("error", "trim")], [flag]) == (at("error", "trim"), *rest[1:3], flag, rest[3])
+    assert merge_problems([*rest, at("error", "trim")], [flag]) == (
+        at("error", "trim"),
+        *rest[1:3],
+        flag,
+        rest[3],
+    )
 
 
 @pytest.mark.window
@@ -196,20 +205,22 @@ def parted(toy):
 
 
 def test_a_stance_nothing_leads_to_is_mended_by_blending_and_one_without_a_loop_is_not(toy, parted):
-    fixes = bridges_for(parted, check(parted))
+    fixes = fix_unreachable(parted, check_project(parted))
     assert Counter(p.code for p in fixes) == {"dead-end": 3, "unreachable": 2}
     for problem, fix in fixes.items():
         assert fix.words == "Bridge by blending" and "blended in" in fix.tip
-        assert not [p for p in check(fix(parted)) if (p.code, p.stance) == (problem.code, problem.stance)]
+        assert not [
+            p for p in check_project(fix(parted)) if (p.code, p.stance) == (problem.code, problem.stance)
+        ]
     up = toy.id(parted, "up")
     bare = edits.remove_actions(parted, [a.id for a in parted.graphs["arms"].of(up, "stance")])
-    assert up not in {p.stance for p in bridges_for(bare, check(bare))}
-    assert bridges_for(Project(), check(Project())) == {}
+    assert up not in {p.stance for p in fix_unreachable(bare, check_project(bare))}
+    assert fix_unreachable(Project(), check_project(Project())) == {}
 
 
 def test_what_went_meanwhile_is_mended_no_more(toy, parted):
     up = toy.id(parted, "up")
-    (fix, *_) = [f for p, f in bridges_for(parted, check(parted)).items() if p.stance == up]
+    (fix, *_) = [f for p, f in fix_unreachable(parted, check_project(parted)).items() if p.stance == up]
     gone = edits.remove_stance(parted, up)
     assert fix(gone) is gone
     assert Fix("Use 1.00 s", "a99", {"timing": {"end": 1.0}})(parted) is parted
@@ -268,12 +279,12 @@ def test_a_swapped_clip_is_given_back_or_kept(toy, there):
     wrong = project.with_graph(project.graphs["arms"].with_actions({short: action}))
     if not there:
         wrong = edits.rename_clip(wrong, project.action(short).clip, "another")
-    (problem, fix), *_ = clips_for(wrong, check(wrong)).items()
+    (problem, fix), *_ = fix_clips(wrong, check_project(wrong)).items()
     assert problem.code == "swapped-clip"
     assert fix.words == ("Play 'rest short'" if there else "Keep 'up point'")
     mended = fix(wrong)
-    assert not clips_for(mended, check(mended))
+    assert not fix_clips(mended, check_project(mended))
     assert mended.action(short).clip == (project.action(short).clip if there else action.clip)
     if there:
         kept = fix.instead(wrong)
-        assert not clips_for(kept, check(kept)) and kept.action(short).clip == action.clip
+        assert not fix_clips(kept, check_project(kept)) and kept.action(short).clip == action.clip

@@ -12,11 +12,11 @@ from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from app.stage.compatibility_state import proposed_fields
+from app.stage.compatibility_state import compare_proposed_timing
 from metagraph.common.wording import translate_phrase
 from metagraph.graph import edits
-from metagraph.suggest.jumps.found import Measured, curves
-from metagraph.suggest.jumps.seen_jumps import Seen, far_ends, verdict, words_at
+from metagraph.suggest.jumps.found import Measured, stance_curves
+from metagraph.suggest.jumps.seen_jumps import SeenJumps, describe_ends, far_ends, words_at
 from tests.app.catalogue_texts import catalogue_texts
 
 ROOT = Path(__file__).resolve().parents[4]
@@ -26,13 +26,15 @@ ROOT = Path(__file__).resolve().parents[4]
 def wide(toy):
     """A wave so wide that it is far from its stance in the middle."""
     project = edits.add_clips(toy.project(), [("wide.glb", 0, "", toy.clip("wide", 2.4, swing=2.4))])
-    project = edits.place(project, [toy.id(project, "wide")], "arms", "gesture", toy.id(project, "rest"))
+    project = edits.place_clips(
+        project, [toy.id(project, "wide")], "arms", "gesture", toy.id(project, "rest")
+    )
     return edits.update_actions(project, [toy.id(project, "wide")], timing={"end": 1.5, "blend_out": 0.05})
 
 
 def seen_of(toy, project, name):
     action = next(a for a in project.actions() if a.name == name)
-    return action, Seen(action, curves(project, Measured(project, action.layer), action))
+    return action, SeenJumps(action, stance_curves(project, Measured(project, action.layer), action))
 
 
 def test_a_gesture_fits_at_its_ends_and_not_in_its_middle(toy, wide):
@@ -83,7 +85,7 @@ def test_a_loop_shows_its_seam(toy, wide):
     action, seen = seen_of(toy, wide, "rest loop")
     assert seen.loops and seen.pivot == 0 and seen.snaps("start") == []
     assert words_at(wide, action, seen, 2.0).startswith("At 2.00 s it repeats from here")
-    assert set(proposed_fields(action, seen.proposed, 2.0)) == {"start", "end", "blend_in"}
+    assert set(compare_proposed_timing(action, seen.proposed, 2.0)) == {"start", "end", "blend_in"}
 
 
 @pytest.mark.parametrize(
@@ -97,7 +99,7 @@ def test_a_loop_shows_its_seam(toy, wide):
     ],
 )
 def test_the_verdict_is_one_sentence(costs, words):
-    found = verdict(costs)
+    found = describe_ends(costs)
     assert found == words
     german = catalogue_texts("de")
     said = translate_phrase(found, lambda words: german.get(words.template, words.template))
@@ -105,16 +107,18 @@ def test_the_verdict_is_one_sentence(costs, words):
 
 
 def test_what_the_problems_call_far_is_never_said_to_be_without_a_jump(toy, wide):
-    from metagraph.graph.check import check
+    from metagraph.graph.check import check_project
 
     action = wide.action(toy.id(wide, "wide"))
     far = far_ends(wide, action)
-    told = [p.message for p in check(wide) if p.code in ("far-start", "far-end") and p.action == action.id]
+    told = [
+        p.message for p in check_project(wide) if p.code in ("far-start", "far-end") and p.action == action.id
+    ]
     assert far and len(told) == len(far) and all(any(w[1:] in m for m in told) for w in far.values())
-    words = verdict({"Begins": 0.1, "ends": 0.2}, far)
+    words = describe_ends({"Begins": 0.1, "ends": 0.2}, far)
     assert "cm from stance 'rest'" in words and words[0].isupper()
     far = "Begins 20 cm from stance 'x'"
-    assert verdict({"Begins": 0.1, "ends": 3.0}, {"Begins": far}).startswith(f"{far}, ends 3.0 times ")
+    assert describe_ends({"Begins": 0.1, "ends": 3.0}, {"Begins": far}).startswith(f"{far}, ends 3.0 times ")
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QFormLayout, QWidget
 from app.features.properties.variation_rows import ActionRows, PlannerRows
 from metagraph.graph import edits
 from metagraph.graph.model import Settings
-from metagraph.playback.timing.handles import PHASES, moved, times_of
+from metagraph.playback.timing.handles import PHASES, handle_times, move_handle
 from metagraph.playback.timing.phases import phases
 
 
@@ -86,13 +86,15 @@ def test_the_planners_numbers_are_edits(form):
 def test_a_phases_handle_stays_between_its_neighbours(project, toy):
     action = some(project, toy, "rest long")[0]
     found = phases(project, action)
-    at = times_of(project, action)
+    at = handle_times(project, action)
     assert [at[p] for p in PHASES] == [found.ready, found.stroke_end, found.relax]
-    assert moved(project, action, "ready", -1.0) == {"ready": found.start}
-    assert moved(project, action, "ready", 99.0) == {"ready": round(found.stroke_end, 3)}
-    assert moved(project, action, "relax", 99.0) == {"relax": round(found.end, 3)}
-    assert moved(project, action, "hold", found.relax - 0.01) == {"stroke_end": round(found.relax - 0.01, 3)}
+    assert move_handle(project, action, "ready", -1.0) == {"ready": found.start}
+    assert move_handle(project, action, "ready", 99.0) == {"ready": round(found.stroke_end, 3)}
+    assert move_handle(project, action, "relax", 99.0) == {"relax": round(found.end, 3)}
+    assert move_handle(project, action, "hold", found.relax - 0.01) == {
+        "stroke_end": round(found.relax - 0.01, 3)
+    }
 
 
 def test_what_is_no_gesture_has_no_phases(project, toy):
-    assert all(times_of(project, some(project, toy, "rest scratch")[0])[p] is None for p in PHASES)
+    assert all(handle_times(project, some(project, toy, "rest scratch")[0])[p] is None for p in PHASES)

@@ -12,7 +12,7 @@ from PySide6.QtTest import QTest
 
 from app.project import watching
 from app.project.autosave import state_folder
-from app.project.kept_maps import keep_map, kept_maps
+from app.project.kept_maps import keep_map, read_joint_maps
 from metagraph.motion.joint_map import JointMap, JointPair, fingerprint
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
@@ -102,7 +102,7 @@ def test_they_may_be_left_out_and_the_others_of_the_same_drop_come_in(own, folde
         )
     )
     assert [e.name for e in drive.document.project.clips.values()] == ["rest", "wave", "nod"]
-    assert not kept_maps()
+    assert not read_joint_maps()
 
 
 def test_a_joint_is_corrected_by_hand_and_what_is_missing_is_said(own, folder):
@@ -139,7 +139,7 @@ def test_a_map_of_the_user_is_offered_in_another_project(own, folder):
     mine = dialog.map
     press(dialog.go)
     drive.wait(lambda: len(drive.document.project.clips) == 3)
-    assert list(kept_maps().values()) == [mine]
+    assert list(read_joint_maps().values()) == [mine]
     from metagraph.graph.model import Project
 
     drive.document.load(Project(), None)
@@ -227,15 +227,15 @@ def test_maps_are_kept_latest_last_and_damage_spoils_no_other(qapp):
     def made(n):
         return JointMap(f"s{n}", "t", (JointPair("a", "b", "hips"),))
 
-    assert kept_maps() == {}
+    assert read_joint_maps() == {}
     for n in (1, 2, 1):
         keep_map(made(n))
-    assert [m.source for m in kept_maps().values()] == ["s2", "s1"]
+    assert [m.source for m in read_joint_maps().values()] == ["s2", "s1"]
     place = state_folder() / "joint_maps.json"
     rows = json.loads(place.read_text())
     place.write_text(json.dumps([{"source": 1}, *rows]))
-    assert [m.source for m in kept_maps().values()] == ["s2", "s1"]
+    assert [m.source for m in read_joint_maps().values()] == ["s2", "s1"]
     place.write_text("{ torn")
-    assert kept_maps() == {}
+    assert read_joint_maps() == {}
     keep_map(made(3))
-    assert len(kept_maps()) == 1
+    assert len(read_joint_maps()) == 1

@@ -71,13 +71,13 @@ class Participant:
 @pytest.fixture
 def takes_part(drive, tiny):
     """Begin, or go on with, a participant's sitting."""
-    from app.features.study.study_chooser import begin
+    from app.features.study.study_chooser import begin_sitting
     from metagraph.research.study.study_plan import read_study
 
     guides = []
 
     def start(participant: str = "P01") -> Participant:
-        guide = begin(drive.shell, read_study(tiny), participant)
+        guide = begin_sitting(drive.shell, read_study(tiny), participant)
         assert guide is not None
         guide.over.connect(lambda: guides.remove(guide))
         guides.append(guide)

@@ -23,11 +23,11 @@ from app.shell.actions import Command
 from metagraph.formats.store import open_project, read_project
 from metagraph.graph import edits
 from metagraph.graph.manual import edits as manual_edits
-from metagraph.research.study.analysis.reading import collect
-from metagraph.research.study.logs.log import read
-from metagraph.research.study.logs.withdrawal import withdraw
+from metagraph.research.study.analysis.reading import collect_study
+from metagraph.research.study.logs.log import read_log
+from metagraph.research.study.logs.withdrawal import note_withdrawal
 from metagraph.research.study.questionnaires import sus_score
-from metagraph.research.study.sitting import Sitting, standing
+from metagraph.research.study.sitting import Sitting, describe_standing
 from metagraph.research.study.study_plan import read_study
 from tests.processes import started
 
@@ -52,7 +52,7 @@ def practise(p, editor: str) -> None:
 
 
 def events(tiny: Path, *kinds: str) -> list[dict]:
-    return [e for e in read(tiny.parent / "data" / "P01" / "log.jsonl").events if e["type"] in kinds]
+    return [e for e in read_log(tiny.parent / "data" / "P01" / "log.jsonl").events if e["type"] in kinds]
 
 
 def test_a_whole_sitting(drive, takes_part, tiny, tmp_path):
@@ -144,7 +144,7 @@ def test_a_whole_sitting(drive, takes_part, tiny, tmp_path):
     assert d.learned.on and d.compatibility.on and d.library.search.isEnabled()
 
     # The log, event by event.
-    log = read(tiny.parent / "data" / "P01" / "log.jsonl")
+    log = read_log(tiny.parent / "data" / "P01" / "log.jsonl")
     assert log.complete and not log.problems and not log.torn
     told = [
         " ".join(str(e[k]) for k in ("name", "condition", "task") if k in e)
@@ -213,7 +213,7 @@ def test_a_sitting_that_was_broken_off_goes_on_with_the_work_as_it_was(drive, ta
     p.guide.leave()
     told = [(e["index"], e["state"]) for e in events(tiny, "phase")]
     assert len(set(told)) == len(told)
-    (run,) = read(tiny.parent / "data" / "P01" / "log.jsonl").tasks()
+    (run,) = read_log(tiny.parent / "data" / "P01" / "log.jsonl").tasks()
     assert run.finished and run.edits == 1
 
 
@@ -239,36 +239,36 @@ def test_who_declines_leaves_a_word_and_may_still_agree(drive, takes_part, tiny)
     p.press("I do not take part")
     assert [e["type"] for e in events(tiny, "declined", "phase")] == ["phase", "declined"]
     study = read_study(tiny)
-    assert standing(study, "P01") == "declined"
-    assert any(words.startswith("P01: declined") for words in collect(tiny, jumps=False).missing)
+    assert describe_standing(study, "P01") == "declined"
+    assert any(words.startswith("P01: declined") for words in collect_study(tiny, jumps=False).missing)
     again = Sitting(study, "P01")
     again.begin()
     again.end()
     again.begin()
     again.close()
-    assert read(study.log("P01")).standing == "broken off"
+    assert read_log(study.log("P01")).standing == "broken off"
 
 
 def test_who_withdrew_cannot_go_on(drive, takes_part, tiny, monkeypatch):
-    from app.features.study.study_chooser import begin
+    from app.features.study.study_chooser import begin_sitting
 
     takes_part().guide.leave()
     study = read_study(tiny)
-    assert withdraw(study, "P01") and not withdraw(study, "P01")
+    assert note_withdrawal(study, "P01") and not note_withdrawal(study, "P01")
     told = []
     monkeypatch.setattr(QMessageBox, "warning", lambda *words: told.append(words[2]))
-    assert begin(drive.shell, study, "P01") is None
+    assert begin_sitting(drive.shell, study, "P01") is None
     assert told[0].startswith("P01 withdrew")
 
 
 def test_a_sitting_is_open_once(drive, takes_part, tiny, monkeypatch):
-    from app.features.study.study_chooser import begin
+    from app.features.study.study_chooser import begin_sitting
 
     takes_part()
     told = []
     monkeypatch.setattr(QMessageBox, "warning", lambda *words: told.append(words[2]))
-    assert begin(drive.shell, read_study(tiny), "P01") is None
-    assert begin(drive.shell, read_study(tiny), "nobody") is None
+    assert begin_sitting(drive.shell, read_study(tiny), "P01") is None
+    assert begin_sitting(drive.shell, read_study(tiny), "nobody") is None
     assert "another window" in told[0] and "'nobody'" in told[1]
 
 
@@ -284,12 +284,12 @@ def test_clips_that_cannot_be_read_are_told_and_can_be_tried_again(drive, takes_
 
 
 def test_who_takes_part_is_chosen_from_a_list_that_tells_how_far_each_is(drive, takes_part, tiny):
-    from app.features.study.study_chooser import Chooser, run_study
+    from app.features.study.study_chooser import StudyChooser, run_study
 
     p = takes_part("P02")
     p.guide.leave()
     run_study(drive.shell, tiny)
-    chooser = drive.window.findChild(Chooser)
+    chooser = drive.window.findChild(StudyChooser)
     rows = [chooser.list.item(n).text() for n in range(chooser.list.count())]
     assert rows == [
         "P01    not begun",
@@ -359,17 +359,17 @@ KILLED = """
 import os, sys, random
 from pathlib import Path
 from PySide6.QtCore import QTimer
-from app.main import prepare
-app = prepare()
+from app.main import prepare_application
+app = prepare_application()
 from app.main import make_window
-from app.features.study.study_chooser import begin
+from app.features.study.study_chooser import begin_sitting
 from metagraph.graph import edits
-from metagraph.research.study.sitting import Sitting, standing
+from metagraph.research.study.sitting import Sitting, describe_standing
 from metagraph.research.study.study_plan import read_study
-from metagraph.research.study.logs.withdrawal import withdraw
+from metagraph.research.study.logs.withdrawal import note_withdrawal
 window = make_window()
 window.show()
-guide = begin(window.shell, read_study(Path(sys.argv[1])), "P01")
+guide = begin_sitting(window.shell, read_study(Path(sys.argv[1])), "P01")
 def step():
     if guide._working:
         count = len(window.shell.document.project.graphs["head"].stances)
@@ -406,14 +406,14 @@ def test_a_window_that_is_killed_loses_nothing(tiny, tmp_path, qapp):
             process.send_signal(signal.SIGKILL)
             process.wait(10)
         assert made >= kill
-        found = read(log)
+        found = read_log(log)
         assert not found.problems and [e["n"] for e in found.events] == list(range(len(found.events)))
         assert sum(e["type"] == "edit" for e in found.events) in (made - 1, made, made + 1)
     from metagraph.research.study.plan.task_projects import reopen
 
     project = reopen(next(log.parent.glob("*training*.yaml")))[0].project
     assert len(project.graphs["head"].stances) in (made, made + 1)
-    marks = [(e["index"], e["state"]) for e in read(log).events if e["type"] == "phase"]
+    marks = [(e["index"], e["state"]) for e in read_log(log).events if e["type"] == "phase"]
     assert marks == [(0, "begin"), (0, "end"), (1, "begin"), (1, "end"), (2, "begin")]
 
 

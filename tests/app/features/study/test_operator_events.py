@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from app.features.study.operator_events import Operators
+from app.features.study.operator_events import OperatorEvents
 
 LEFT, RIGHT = 1, 2
 
 
-def count(operators: Operators, now: float = 1000.0) -> dict[str, int]:
+def count(operators: OperatorEvents, now: float = 1000.0) -> dict[str, int]:
     return {k: v for k, v in operators.take(now).operators.items() if v}
 
 
 def test_nothing_is_nothing():
-    assert count(Operators()) == {}
+    assert count(OperatorEvents()) == {}
 
 
 def test_a_key_counts_once_however_many_are_told_of_it():
-    o = Operators()
+    o = OperatorEvents()
     for stamp in (1, 1, 1):
         o.key(65, True, stamp)
     o.key(65, False, 2)
@@ -24,7 +24,7 @@ def test_a_key_counts_once_however_many_are_told_of_it():
 
 
 def test_two_keys_held_and_one_struck_again_are_three():
-    o = Operators()
+    o = OperatorEvents()
     o.key(1, True, 1)
     o.key(2, True, 2)
     o.key(2, False, 3)
@@ -33,14 +33,14 @@ def test_two_keys_held_and_one_struck_again_are_three():
 
 
 def test_a_key_whose_release_went_to_another_program_counts_again():
-    o = Operators()
+    o = OperatorEvents()
     o.key(1, True, 10)
     o.key(1, True, 900)
     assert count(o) == {"K": 2}
 
 
 def test_a_key_that_is_asked_about_and_then_pressed_counts_once():
-    o = Operators()
+    o = OperatorEvents()
     for _ in range(2):
         o.key(1, True, 7, asked=True)
         o.key(1, True, 7, asked=True)
@@ -53,7 +53,7 @@ def test_a_key_that_is_asked_about_and_then_pressed_counts_once():
 
 
 def test_a_click_where_the_pointer_is_is_two_buttons():
-    o = Operators()
+    o = OperatorEvents()
     o.move((5, 5), False, 0.0)
     for _ in range(2):  # the window is told, then the widget
         o.press(LEFT, (5, 5), 1.0)
@@ -63,7 +63,7 @@ def test_a_click_where_the_pointer_is_is_two_buttons():
 
 
 def test_going_somewhere_and_clicking_is_a_pointing_and_two_buttons():
-    o = Operators()
+    o = OperatorEvents()
     o.move((0, 0), False, 0.0)
     for n in range(1, 11):
         o.move((n * 10, 0), False, n * 0.02)
@@ -73,7 +73,7 @@ def test_going_somewhere_and_clicking_is_a_pointing_and_two_buttons():
 
 
 def test_a_tremble_is_no_pointing():
-    o = Operators()
+    o = OperatorEvents()
     o.move((0, 0), False, 0.0)
     o.move((5, 5), False, 0.1)
     o.press(LEFT, (5, 5), 0.2)
@@ -82,7 +82,7 @@ def test_a_tremble_is_no_pointing():
 
 
 def test_a_rest_ends_a_pointing_once():
-    o = Operators()
+    o = OperatorEvents()
     o.move((0, 0), False, 0.0)
     o.move((50, 0), False, 0.1)
     o.move((60, 0), False, 1.0)  # rested before
@@ -93,7 +93,7 @@ def test_a_rest_ends_a_pointing_once():
 
 
 def test_a_pointer_on_its_way_when_it_is_counted_is_counted_later():
-    o = Operators()
+    o = OperatorEvents()
     o.move((0, 0), False, 0.0)
     o.move((50, 0), False, 0.1)
     assert count(o, 0.2) == {}
@@ -101,7 +101,7 @@ def test_a_pointer_on_its_way_when_it_is_counted_is_counted_later():
 
 
 def test_a_drag_is_one_with_its_buttons_and_seconds():
-    o = Operators()
+    o = OperatorEvents()
     o.move((0, 0), False, 0.0)
     o.press(LEFT, (0, 0), 1.0)
     o.move((30, 0), True, 1.5)
@@ -113,7 +113,7 @@ def test_a_drag_is_one_with_its_buttons_and_seconds():
 
 
 def test_a_drag_between_programs_ends_with_its_drop():
-    o = Operators()
+    o = OperatorEvents()
     o.press(LEFT, (0, 0), 1.0)
     o.move((30, 0), True, 1.5)
     o.drop(2.0)
@@ -122,7 +122,7 @@ def test_a_drag_between_programs_ends_with_its_drop():
 
 
 def test_a_drag_that_nobody_took_ends_when_the_pointer_moves_freely():
-    o = Operators()
+    o = OperatorEvents()
     o.press(LEFT, (0, 0), 1.0)
     o.move((30, 0), True, 1.5)
     o.move((31, 0), False, 9.0)
@@ -132,7 +132,7 @@ def test_a_drag_that_nobody_took_ends_when_the_pointer_moves_freely():
 
 
 def test_two_buttons_at_once_are_four():
-    o = Operators()
+    o = OperatorEvents()
     o.press(LEFT, (0, 0), 1.0)
     o.press(RIGHT, (0, 0), 1.0)
     o.release(LEFT, (0, 0), 1.0)
@@ -141,7 +141,7 @@ def test_two_buttons_at_once_are_four():
 
 
 def test_hands_that_change_over_are_counted():
-    o = Operators()
+    o = OperatorEvents()
     o.press(LEFT, (0, 0), 1.0)
     o.release(LEFT, (0, 0), 1.0)
     o.key(1, True, 1)

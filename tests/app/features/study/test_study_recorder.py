@@ -11,7 +11,7 @@ from PySide6.QtTest import QTest
 
 from app import translation
 from app.features.study.operator_counting import Counting
-from app.features.study.study_changes import described
+from app.features.study.study_changes import describe_change
 from app.translation import tr
 from metagraph.graph import edits
 from metagraph.graph.manual import edits as manual_edits
@@ -233,21 +233,23 @@ def test_what_changed_names_its_kind_clips_and_layer(toy):
     project = toy.project()
     clip = toy.id(project, "rest wave rt")
     name = {c.name: c.id for c in project.clips.values()}
-    placed = edits.place(project, [name["up beat"]], "arms", "gesture", toy.id(project, "rest"))
-    assert described(project, placed) == {"what": "place", "clips": ["up beat"], "layer": "arms"}
-    assert described(placed, project) == {"what": "delete", "clips": ["up beat"], "layer": "arms"}
-    assert described(project, edits.update_actions(project, [clip], likelihood=3.0))["what"] == "settings"
-    assert described(project, edits.rename_project(project, "x")) == {"what": "settings", "clips": []}
+    placed = edits.place_clips(project, [name["up beat"]], "arms", "gesture", toy.id(project, "rest"))
+    assert describe_change(project, placed) == {"what": "place", "clips": ["up beat"], "layer": "arms"}
+    assert describe_change(placed, project) == {"what": "delete", "clips": ["up beat"], "layer": "arms"}
+    assert (
+        describe_change(project, edits.update_actions(project, [clip], likelihood=3.0))["what"] == "settings"
+    )
+    assert describe_change(project, edits.rename_project(project, "x")) == {"what": "settings", "clips": []}
     first = manual_edits.add_states(project, [name["rest loop"], name["rest wave rt"]], "arms")
-    assert described(project, first)["what"] == "place"
+    assert describe_change(project, first)["what"] == "place"
     one, other = list(first.manual["arms"].states)
     linked = manual_edits.add_link(first, "arms", one, other)
-    assert described(first, linked) == {
+    assert describe_change(first, linked) == {
         "what": "link",
         "clips": ["rest loop", "rest wave rt"],
         "layer": "arms",
     }
-    assert described(linked, first)["what"] == "delete"
+    assert describe_change(linked, first)["what"] == "delete"
 
 
 def test_operators_are_counted_outside_a_study_while_that_is_wanted(toys):

@@ -26,7 +26,9 @@ def other(toy, tmp_path):
     project = edits.add_clips(Project("theirs"), [(f"{c.name}.glb", 0, "", c) for c in clips])
     pose, wave = project.clips
     project = edits.add_stance(project, "arms", "their stance", [pose])
-    project = edits.place(project, [wave], "arms", "gesture", next(iter(project.graphs["arms"].stances)))
+    project = edits.place_clips(
+        project, [wave], "arms", "gesture", next(iter(project.graphs["arms"].stances))
+    )
     save_project(project, folder / f"theirs{SUFFIX}")
     return folder / f"theirs{SUFFIX}"
 

@@ -9,9 +9,9 @@ from PySide6.QtGui import QMouseEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from app.stage.caption_paint import captioned
+from app.stage.caption_paint import add_captions
 from app.stage.cutting import Cutting
-from app.widgets.lane_geometry import lanes
+from app.widgets.lane_geometry import place_lanes
 from metagraph.graph.conversation.edits import add_conversation
 from metagraph.graph.conversation.model import Conversation, Segment, Side, Word
 from metagraph.graph.timeline import Cut
@@ -47,7 +47,7 @@ def talking(toys):
 
 
 def lane(view):
-    return lanes(view.height(), view.sizes)["cameras"]
+    return place_lanes(view.height(), view.sizes)["cameras"]
 
 
 def test_keys_cut_at_the_playhead_and_the_preview_follows(talking):
@@ -128,11 +128,11 @@ def test_captions_are_painted_inside_the_safe_area(qapp, size):
     plain = np.full((height, width, 4), 90, np.uint8)
     plain[..., 3] = 255
     long = "and nobody was at the door so I just walked\nin and all of the lights came on as if they"
-    drawn = captioned(plain.copy(), [Caption(0.0, 1.0, long), Caption(0.0, 1.0, "really", 1)])
+    drawn = add_captions(plain.copy(), [Caption(0.0, 1.0, long), Caption(0.0, 1.0, "really", 1)])
     rows, columns = np.nonzero((drawn != plain).any(-1))
     assert rows.max() <= height * 0.95 and rows.min() > height * 0.3
     assert columns.min() >= width * 0.03 and columns.max() <= width * 0.97
-    assert captioned(plain, []) is plain
+    assert add_captions(plain, []) is plain
 
 
 def test_what_is_written_is_cut_and_captioned_like_the_preview(talking, monkeypatch):
@@ -147,10 +147,10 @@ def test_what_is_written_is_cut_and_captioned_like_the_preview(talking, monkeypa
             cameras.append(camera(float(at)))
             yield np.full((size[1], size[0], 4), 255, np.uint8)
 
-    monkeypatch.setattr(render_command, "pictures", pictures)
+    monkeypatch.setattr(render_command, "render_pictures", pictures)
     captions = (Caption(1.0, 1.5, "so it was"),)
     times = np.array([0.5, 1.2, 2.5])
-    drawn = list(render_command.directed(seen, times, (320, 180), "dark", (cuts, captions)))
+    drawn = list(render_command.render_directed(seen, times, (320, 180), "dark", (cuts, captions)))
     assert cameras[0] == cameras[1] != cameras[2] and cameras[2].distance < cameras[0].distance
     assert [bool((p != 255).any()) for p in drawn] == [False, True, False]
     talking.session.transport.seek(2.5)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from PySide6.QtCore import QPoint
 
-from app.features.timeline.lane_drops import GAP, asked_for, lane_drop
+from app.features.timeline.lane_drops import GAP, ask_for_drop, lane_drop
 from app.project.load import Load
-from app.widgets.lane_geometry import lanes as places
+from app.widgets.lane_geometry import place_lanes as places
 from metagraph.graph import edits
 
 
@@ -21,7 +21,7 @@ def test_actions_are_asked_for_one_after_the_other(toy, project):
     load = Load(actions=(beat, cough))
     drop = lane_drop(project, "arms", project.action(beat).stance, 2.0, load)
     assert drop.possible and "2 actions" in drop.words and "2.00 s" in drop.words
-    same, asked = asked_for(project, drop, load)
+    same, asked = ask_for_drop(project, drop, load)
     start, end = project.span(project.action(beat))
     assert same is project and [a.action for a in asked] == [beat, cough]
     assert [a.at for a in asked] == [2.0, round(2.0 + end - start + GAP, 2)]
@@ -32,14 +32,14 @@ def test_a_clip_that_nothing_plays_is_placed_first(toy, project):
     stance = project.action(toy.id(project, "rest cough")).stance
     drop = lane_drop(project, "arms", stance, 1.5, Load(clips=(clip,)))
     assert drop.possible and "as a gesture of" in drop.words and drop.words.endswith("at 1.50 s")
-    after, (ask,) = asked_for(project, drop, Load(clips=(clip,)))
+    after, (ask,) = ask_for_drop(project, drop, Load(clips=(clip,)))
     made = after.action(ask.action)
     assert (made.clip, made.kind, made.stance, ask.at) == (clip, "gesture", stance, 1.5)
     again = lane_drop(after, "arms", stance, 1.5, Load(clips=(clip,)))
     assert (
         again.words.endswith(" x at 1.50 s")
         and "gesture" not in again.words
-        and asked_for(after, again, Load(clips=(clip,)))[0] is after
+        and ask_for_drop(after, again, Load(clips=(clip,)))[0] is after
     )
 
 

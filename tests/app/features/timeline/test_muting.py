@@ -7,7 +7,7 @@ import pytest
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtTest import QTest
 
-from app.widgets.lane_geometry import lanes
+from app.widgets.lane_geometry import place_lanes
 from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS
 
@@ -25,7 +25,7 @@ def stage(toys):
 
 
 def title(view, layer):
-    return QPointF(20, lanes(view.height())[layer].center().y())
+    return QPointF(20, place_lanes(view.height())[layer].center().y())
 
 
 def test_a_click_on_a_title_mutes_a_layer_and_another_lets_it_be_seen(stage):
@@ -52,7 +52,7 @@ def test_a_muted_layer_rests_while_others_play_on(stage):
     shown = performance.shown
     cue = next(c for c in shown.plan.layers["arms"].cues if c.action.kind == "gesture")
     seconds = (cue.start + cue.end) / 2
-    parts = np.array(anatomy.parts(shown.project))
+    parts = np.array(anatomy.project_parts(shown.project))
     playing = shown.pose(seconds)
     performance.mute({"arms"})
     resting = performance.shown.pose(seconds)

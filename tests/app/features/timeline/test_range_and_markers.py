@@ -7,8 +7,8 @@ from PySide6.QtCore import QPoint, QPointF, QSettings, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QInputDialog
 
-from app.features.timeline.snapping import SnapLine, nearest
-from app.widgets.lane_geometry import LEFT, NUMBERS, RULER, lanes
+from app.features.timeline.snapping import SnapLine, find_nearest_line
+from app.widgets.lane_geometry import LEFT, NUMBERS, RULER, place_lanes
 from metagraph.graph import requests as a
 
 LEFT_BUTTON, NONE, SHIFT = (
@@ -105,7 +105,9 @@ def test_the_range_can_be_written_alone(stage, monkeypatch):
     dialog = render_dialog.RenderDialog(stage.performance, stage.session, stage.jobs, stage.window)
     assert dialog.part.currentText() == "The range, 2.00 to 5.00 s" and dialog.seconds.isHidden()
     orders = []
-    monkeypatch.setattr(render_dialog, "write", lambda project, folder, order, job: orders.append(order))
+    monkeypatch.setattr(
+        render_dialog, "write_rendering", lambda project, folder, order, job: orders.append(order)
+    )
     monkeypatch.setattr(dialog, "_done", lambda path: None)
     dialog._write()
     stage.wait(lambda: bool(orders))
@@ -203,9 +205,9 @@ def test_a_dragged_request_holds_to_a_marker_and_shift_lets_it_go(stage):
 
 def test_the_nearest_line_is_held_to_and_seconds_only_where_nothing_else_is():
     lines = [SnapLine(2.0, "2 s", True), SnapLine(2.2, "stroke"), SnapLine(5.0, "word")]
-    assert nearest(2.05, lines, 0.2).what == "stroke"
-    assert nearest(1.9, lines, 0.2).what == "2 s"
-    assert nearest(3.5, lines, 0.2) is None and nearest(3.5, [], 9.0) is None
+    assert find_nearest_line(2.05, lines, 0.2).what == "stroke"
+    assert find_nearest_line(1.9, lines, 0.2).what == "2 s"
+    assert find_nearest_line(3.5, lines, 0.2) is None and find_nearest_line(3.5, [], 9.0) is None
 
 
 def test_the_timeline_zooms_to_all_and_to_what_is_selected(stage):
@@ -220,7 +222,7 @@ def test_the_timeline_zooms_to_all_and_to_what_is_selected(stage):
 
 def test_what_is_on_a_locked_layer_stays_and_the_padlock_opens_it(stage):
     view, requests = stage.timeline.lanes, stage.performance.requests
-    lock = QPoint(LEFT - 8, round(lanes(view.height(), view.sizes)["arms"].center().y()))
+    lock = QPoint(LEFT - 8, round(place_lanes(view.height(), view.sizes)["arms"].center().y()))
     QTest.mouseClick(view, LEFT_BUTTON, NONE, lock)
     assert stage.performance.timeline.now.locked == ("arms",) and "is locked" in view.tip(QPointF(lock))
     gesture = next(m for m in view.marks() if m.at == 2.0)
@@ -240,17 +242,17 @@ def test_what_is_on_a_locked_layer_stays_and_the_padlock_opens_it(stage):
 
 def test_a_lane_is_made_taller_by_its_border_or_its_menu_and_stays_so(stage):
     view = stage.timeline.lanes
-    before = lanes(view.height(), view.sizes)["arms"].height()
-    bottom = round(lanes(view.height(), view.sizes)["arms"].bottom())
+    before = place_lanes(view.height(), view.sizes)["arms"].height()
+    bottom = round(place_lanes(view.height(), view.sizes)["arms"].bottom())
     drag(view, QPoint(30, bottom), QPoint(30, bottom + 18))
-    after = lanes(view.height(), view.sizes)["arms"]
+    after = place_lanes(view.height(), view.sizes)["arms"]
     assert after.bottom() == pytest.approx(bottom + 18, abs=2) and after.height() > before + 15
     assert "arms" in str(QSettings().value("timeline/heights"))
     compact = next(x for x in view.titles.menu("arms").actions() if x.text() == "Compact")
     compact.trigger()
-    assert lanes(view.height(), view.sizes)["arms"].height() < before
+    assert place_lanes(view.height(), view.sizes)["arms"].height() < before
     view.titles.size(None, 1.0)
-    assert lanes(view.height(), view.sizes)["arms"].height() == pytest.approx(before)
+    assert place_lanes(view.height(), view.sizes)["arms"].height() == pytest.approx(before)
 
 
 def test_ripple_moves_and_closes_up_in_one_step(stage):

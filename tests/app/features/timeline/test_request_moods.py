@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from app.features.timeline.request_editor import RequestEditor
-from app.widgets.request_menu import mood_words, request_menu
+from app.widgets.request_menu import describe_mood, make_request_menu
 from metagraph.graph import requests as a
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
@@ -41,9 +41,9 @@ def test_a_request_and_its_performance_are_given_moods_and_taken_back(drive: Any
 
 
 def test_moods_can_be_asked_for_and_are_told_in_words(drive: Any) -> None:
-    menu = request_menu(drive.timeline, drive.performance, 1.0, "stage")
+    menu = make_request_menu(drive.timeline, drive.performance, 1.0, "stage")
     if not menu.isEmpty() and menu.actions()[0].isEnabled():
         names = [x.text() for x in menu.actions() if x.menu() is not None]
         assert "Be in a mood" in names
     menu.close()
-    assert mood_words("sad", 1.5) == "sad × 1.5" and mood_words((0.3, -0.5), None) == "mood 0.3, -0.5"
+    assert describe_mood("sad", 1.5) == "sad × 1.5" and describe_mood((0.3, -0.5), None) == "mood 0.3, -0.5"

@@ -11,7 +11,7 @@ from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
 
-from app.widgets.lane_geometry import lanes
+from app.widgets.lane_geometry import place_lanes
 from metagraph.graph import requests as a
 
 GRID = (
@@ -50,7 +50,7 @@ def test_words_stand_under_their_times_with_the_voice(spoken):
     view.resize(view.width(), 400)
     assert "words" in view.sizes.names and spoken.timeline.voices.of("1").wave is not None
     view.each, view.first = 100.0, 0.0
-    lane = lanes(view.height(), view.sizes)["words"]
+    lane = place_lanes(view.height(), view.sizes)["words"]
     assert view.tip(QPointF(view.scale().x(2.4), lane.center().y())) == "'so', 2.20 to 2.60 s"
     picture = view.grab().toImage()
     at = lambda seconds: picture.pixelColor(int(view.scale().x(seconds)), int(lane.top() + 6))  # noqa: E731

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from app.features.timing_editor.axis import Axis
-from app.features.timing_editor.line_heard import Waves, line_of, said_in, stresses
+from app.features.timing_editor.line_heard import Waves, find_line_heard, find_line_stresses, lay_line
 from app.stage.line_player import RATE
-from app.stage.playback_source import Shown
+from app.stage.playback_source import ShownPlayback
 from metagraph.graph.requests import Line
 from metagraph.playback.life.track import Speech, Track
 from metagraph.playback.plan import MetaRequest
@@ -29,33 +29,33 @@ def performed(toy, project):
     request = MetaRequest("r", "arms", "gesture", 1.0, action=action.id)
     plan = make_plan(project, 6.0, (request,), idle=False)
     track = Track(speeches=(Speech("s", 1.3, 2.5, "l1", "hello over there"),))
-    return action, Shown(project, replace(plan, track=track), 6.0)
+    return action, ShownPlayback(project, replace(plan, track=track), 6.0)
 
 
 def test_what_is_said_lies_along_the_clip_where_it_is_heard(project, performed):
     action, shown = performed
     cue = next(c for c in shown.plan.layers["arms"].cues if c.action.id == action.id)
-    said = said_in(shown, action)
+    said = find_line_heard(shown, action)
     assert said.speech.line == "l1"
     assert said.offset == pytest.approx(cue.entry + 1.3 - cue.start, abs=0.002)
-    assert all(said.offset <= t <= said.offset + 1.3 for t in stresses(project, said))
+    assert all(said.offset <= t <= said.offset + 1.3 for t in find_line_stresses(project, said))
 
 
 def test_an_action_without_words_has_none(toy, project, performed):
     _, shown = performed
     other = project.action(toy.id(project, "rest long"))
-    assert said_in(shown, other) is None and stresses(project, None) == ()
-    assert line_of(project, "gone", other, 0.5) is None
+    assert find_line_heard(shown, other) is None and find_line_stresses(project, None) == ()
+    assert lay_line(project, "gone", other, 0.5) is None
 
 
 def test_a_line_laid_by_hand_is_stressed_on_the_stroke(toy, project):
     action = project.action(toy.id(project, "rest long"))
-    said = line_of(project, "l1", action, 0.8)
-    assert stresses(project, said)[0] == pytest.approx(0.8, abs=0.002)
+    said = lay_line(project, "l1", action, 0.8)
+    assert find_line_stresses(project, said)[0] == pytest.approx(0.8, abs=0.002)
 
 
 def test_the_wave_stands_where_the_sound_is(toy, project):
-    said = replace(line_of(project, "l1", project.action(toy.id(project, "rest long")), 0.8), offset=0.5)
+    said = replace(lay_line(project, "l1", project.action(toy.id(project, "rest long")), 0.8), offset=0.5)
     sound = np.zeros(RATE)
     sound[RATE // 2 :] = 0.25  # loud from half a second on
     axis = Axis(80, 400, 2.0, 0.0, 200.0)

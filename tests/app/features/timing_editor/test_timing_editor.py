@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QApplication
 from metagraph.graph import edits
 from metagraph.graph.editing.retiming import keep_hand
 from metagraph.graph.requests import Line, Play
-from metagraph.playback.timing.handles import EDGES, times_of
+from metagraph.playback.timing.handles import EDGES, handle_times
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 
@@ -21,7 +21,9 @@ pytestmark = [pytest.mark.window, pytest.mark.gl]
 @pytest.fixture(scope="module")
 def wide(toy):
     project = edits.add_clips(toy.project(), [("wide.glb", 0, "", toy.clip("wide", 2.4, swing=2.4))])
-    project = edits.place(project, [toy.id(project, "wide")], "arms", "gesture", toy.id(project, "rest"))
+    project = edits.place_clips(
+        project, [toy.id(project, "wide")], "arms", "gesture", toy.id(project, "rest")
+    )
     return edits.update_actions(
         project,
         [toy.id(project, "wide")],
@@ -140,10 +142,10 @@ def test_what_gave_way_comes_back_within_one_drag(editor):
 
 def test_a_phase_is_dragged_as_a_block_and_with_shift_all_of_it(editor):
     pull(editor, at(editor, 0.7, "phases"), at(editor, 0.8, "phases"), ALT)
-    found = times_of(editor.document.project, editor.document.project.action(editor.ident))
+    found = handle_times(editor.document.project, editor.document.project.action(editor.ident))
     assert [found[e] for e in EDGES] == pytest.approx([0.1, 0.6, 1.0, 1.2, 1.5], abs=0.01)
     pull(editor, at(editor, 0.8, "phases"), at(editor, 1.0, "phases"), ALT | SHIFT)
-    found = times_of(editor.document.project, editor.document.project.action(editor.ident))
+    found = handle_times(editor.document.project, editor.document.project.action(editor.ident))
     assert [found[e] for e in EDGES] == pytest.approx([0.3, 0.8, 1.2, 1.4, 1.7], abs=0.02)
 
 

@@ -25,7 +25,7 @@ def saved(drive, toy, tmp_path):
     drive.document.edit("Stance", lambda p: edits.add_stance(p, "arms", "rest", [ids["rest"]]))
     stance = next(iter(drive.document.project.graphs["arms"].stances))
     drive.document.edit(
-        "Place", lambda p: edits.place(p, [ids["wave rt"], ids["beat lf"]], "arms", "gesture", stance)
+        "Place", lambda p: edits.place_clips(p, [ids["wave rt"], ids["beat lf"]], "arms", "gesture", stance)
     )
     drive.action = lambda name: next(a for a in drive.document.project.actions() if a.name == name)
     drive.document.edit(

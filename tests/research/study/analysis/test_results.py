@@ -13,10 +13,10 @@ from pathlib import Path
 import pytest
 
 from metagraph.errors import FileError
-from metagraph.research.study.analysis.example import example, told
-from metagraph.research.study.analysis.reading import Data, Rating, collect, prediction
-from metagraph.research.study.analysis.results import analyse, compare
-from metagraph.research.study.report import page, summary
+from metagraph.research.study.analysis.example import compute_example, describe_example
+from metagraph.research.study.analysis.reading import Data, StudyRating, collect_study, prediction
+from metagraph.research.study.analysis.results import analyse_study, compare_conditions
+from metagraph.research.study.report import format_study_page, summarise_study
 from metagraph.research.study.scores.machines import Score
 from metagraph.research.study.simulation.files import write_study
 from metagraph.research.study.simulation.people import Truth
@@ -31,22 +31,22 @@ NOBODY = Data("Empty", ("meta", "manual"), {"a": "A"}, ("P1",))
 
 
 def test_nobody_has_begun() -> None:
-    found = analyse(NOBODY)
+    found = analyse_study(NOBODY)
     assert found.time is None and not found.curves and not found.mistakes
-    (words,) = summary(found)
+    (words,) = summarise_study(found)
     assert "Nobody" in words
-    assert "0 of 1 people have begun" in page(found)
+    assert "0 of 1 people have begun" in format_study_page(found)
 
 
 def test_one_condition_cannot_be_compared() -> None:
-    found = analyse(replace(NOBODY, rows=(row("P1", "meta", "a", 10.0, 0),)))
+    found = analyse_study(replace(NOBODY, rows=(row("P1", "meta", "a", 10.0, 0),)))
     assert found.time is None
-    (words,) = summary(found)
+    (words,) = summarise_study(found)
     assert "meta-graph" in words and "manual" not in words
 
 
 def test_one_person_has_a_ratio_without_an_interval() -> None:
-    found = analyse(
+    found = analyse_study(
         replace(NOBODY, rows=(row("P1", "meta", "a", 10.0, 0), row("P1", "manual", "a", 79.0, 1)))
     )
     assert found.time is not None
@@ -57,16 +57,16 @@ def test_one_person_has_a_ratio_without_an_interval() -> None:
     )
     (caution,) = found.time.cautions
     assert "no interval" in caution
-    assert "no interval, 1 person" in page(found)
+    assert "no interval, 1 person" in format_study_page(found)
 
 
 def test_a_study_may_say_how_long_operators_take_its_people(tmp_path: Path) -> None:
     folder = tmp_path / "study"
     write_study(folder, Truth(participants=2))
-    usual = collect(folder, jumps=False).rows
+    usual = collect_study(folder, jumps=False).rows
     file = folder / FILE
     file.write_text(file.read_text(encoding="utf-8") + "operators: {M: 0, P: 2.2}\n", encoding="utf-8")
-    for a, b in zip(usual, collect(folder, jumps=False).rows, strict=True):
+    for a, b in zip(usual, collect_study(folder, jumps=False).rows, strict=True):
         ops = a.run.operators
         thoughts, points = a.run.edits + a.run.undos, ops["P"] + ops["D"]
         assert b.predicted == pytest.approx(a.predicted - 1.35 * thoughts + 1.1 * points)
@@ -78,7 +78,7 @@ def test_what_was_not_finished_or_took_no_time_is_left_out() -> None:
         row("P1", "manual", "a", 79.0, 1, finished=False),
         row("P1", "manual", "a", 0.0, 2),
     )
-    assert analyse(replace(NOBODY, rows=rows)).time is None
+    assert analyse_study(replace(NOBODY, rows=rows)).time is None
 
 
 def test_what_the_time_limit_ended_counts_and_is_told() -> None:
@@ -86,13 +86,13 @@ def test_what_the_time_limit_ended_counts_and_is_told() -> None:
         row("P1", "meta", "a", 10.0, 0),
         row("P1", "manual", "a", 60.0, 1, finished=False, timed_out=True),
     ]
-    found = compare(rows)
+    found = compare_conditions(rows)
     assert found is not None and found.ratio.value == pytest.approx(6.0)
     assert any("1 of 2 tasks" in words for words in found.cautions)
 
 
 def test_people_who_did_only_one_are_left_out_and_told() -> None:
-    found = compare([*four().rows, row("P9", "meta", "a", 1.0, 0)])
+    found = compare_conditions([*four().rows, row("P9", "meta", "a", 1.0, 0)])
     assert found is not None and found.ratio.n == 4
     assert any(words.startswith("1 ") and "left out" in words for words in found.cautions)
 
@@ -102,13 +102,13 @@ def test_people_who_did_one_each_are_compared_as_groups() -> None:
         row(f"P{n}", c, "a", s, 0)
         for n, (c, s) in enumerate([("meta", 10.0), ("meta", 20.0), ("manual", 80.0), ("manual", 160.0)])
     ]
-    found = compare(rows)
+    found = compare_conditions(rows)
     assert found is not None and not found.paired
     # 2 doublings of spread apart by 3: error sqrt(0.5 / 2 + 0.5 / 2), 2 degrees of freedom.
     half = 4.302652729911275 * sqrt(0.5)
     assert (found.ratio.value, found.ratio.low) == (pytest.approx(8.0), pytest.approx(2 ** (3 - half)))
     assert "includes 1" in found.cautions[-1]
-    alone = compare(rows[1:3])
+    alone = compare_conditions(rows[1:3])
     assert alone is not None and len(alone.cautions) == 1 and "no interval" in alone.cautions[0]
 
 
@@ -117,7 +117,7 @@ def test_other_tasks_in_each_condition_are_compared_by_clips() -> None:
         replace(row("P1", "meta", "a", 80.0, 0), clips=8),
         replace(row("P1", "manual", "b", 640.0, 1), clips=16),
     ]
-    found = compare(rows)
+    found = compare_conditions(rows)
     assert found is not None and found.unit == "clip"
     assert found.ratio.value == pytest.approx(4.0)
 
@@ -126,7 +126,7 @@ def test_other_tasks_in_each_condition_are_compared_by_clips() -> None:
 
 
 def test_the_example_of_the_documentation_by_hand() -> None:
-    found = analyse(four()).time
+    found = analyse_study(four()).time
     assert found is not None
     # Each person's ratio over both tasks is 2, 4, 4, 8: 1, 2, 2, 3 doublings, mean 2, deviation sqrt(2/3),
     # error sqrt(1/6).
@@ -156,20 +156,20 @@ def test_the_example_of_the_documentation_by_hand() -> None:
 
 
 def test_the_documentation_tells_the_same_figures() -> None:
-    text, shown = DOCS.read_text(encoding="utf-8"), page(analyse(four()))
+    text, shown = DOCS.read_text(encoding="utf-8"), format_study_page(analyse_study(four()))
     for figure in ("4.00", "1.63 to 9.84", "4.90", "0.016", "1.77", "0.71", "0.25 to 2.03", "1.19"):
         assert figure in text and figure in shown, figure
 
 
 def test_what_is_asked_is_tested_once_and_corrected_and_nothing_else_is() -> None:
-    found = analyse(four())
+    found = analyse_study(four())
     # In doublings: task a 1, 1, 2, 3 and task b 1, 3, 2, 3.
     assert {t: e.value for t, e in found.by_task.items()} == {
         "a": pytest.approx(2**1.75),
         "b": pytest.approx(2**2.25),
     }
     assert [(name, p == test.p) for name, test, p in found.together] == [("time", True)]
-    shown = page(found)
+    shown = format_study_page(found)
     assert shown.count("p = 0.016") == 2, "alone and together; the sentence for a paper has its own form"
     assert len(re.findall(r"p (=|&lt;) ", shown)) == 2
 
@@ -178,11 +178,11 @@ def test_mistakes_and_ratings_are_means_of_people() -> None:
     good, bad = Score(right=10), Score(right=6, missing=4)
     rows = [replace(r, score=good if r.run.condition == "meta" else bad) for r in four().rows]
     ratings = tuple(
-        Rating(f"P{n}", "SUS", c, v)
+        StudyRating(f"P{n}", "SUS", c, v)
         for n, v in enumerate((50.0, 60.0, 70.0), 1)
         for c, v in (("meta", v + 10), ("manual", v))
     )
-    found = analyse(replace(four(), rows=tuple(rows), ratings=ratings))
+    found = analyse_study(replace(four(), rows=tuple(rows), ratings=ratings))
     recall = next(m for m in found.mistakes if m.name.startswith("recall"))
     assert (recall.means["meta"].value, recall.means["manual"].value) == (100.0, 60.0)
     sus = found.ratings[0]
@@ -190,7 +190,7 @@ def test_mistakes_and_ratings_are_means_of_people() -> None:
     assert [name for name, _, _ in found.together] == ["time", "F1 of connections, %", "SUS"]
     lucky = [replace(r, score=Score(right=10, missing=int(r.run.participant == "P1"))) for r in four().rows]
     bounded = next(
-        m for m in analyse(replace(four(), rows=tuple(lucky))).mistakes if m.name.startswith("recall")
+        m for m in analyse_study(replace(four(), rows=tuple(lucky))).mistakes if m.name.startswith("recall")
     ).means["meta"]
     assert bounded.high == 100.0 and bounded.low is not None and bounded.low < bounded.value < 100.0, (
         "no share is above all"
@@ -204,11 +204,11 @@ def test_a_prediction_counts_thoughts_and_drags() -> None:
 
 
 def test_the_published_example_has_no_interval() -> None:
-    found = example()
+    found = compute_example()
     assert found.ratio.value == pytest.approx(7.875) and found.ratio.low is None
     assert found.minutes == (pytest.approx(480 / 152), pytest.approx(3780 / 152))
     assert found.needed == {0.25: 3, 0.5: 3, 1.0: 5}
-    assert "no interval" in told(found) and "24.87" in told(found)
+    assert "no interval" in describe_example(found) and "24.87" in describe_example(found)
 
 
 # --- through files
@@ -227,11 +227,11 @@ def study(made: Path, tmp_path: Path) -> Path:
 
 def test_a_folder_without_a_study_is_told(tmp_path: Path) -> None:
     with pytest.raises(FileError, match=r"study\.yaml"):
-        collect(tmp_path)
+        collect_study(tmp_path)
 
 
 def test_nothing_is_missing_of_a_whole_study(study: Path) -> None:
-    found = collect(study)
+    found = collect_study(study)
     assert (found.missing, len(found.rows), found.simulated) == ((), 16, True)
     assert all(r.score is not None and r.score.jumps is not None for r in found.rows)
     assert {r.sitting for r in found.rows} == {1, 2}
@@ -241,7 +241,7 @@ def test_nothing_is_missing_of_a_whole_study(study: Path) -> None:
 def test_without_jumps_the_clips_are_not_needed(study: Path) -> None:
     for clip in (study / "clips").iterdir():
         clip.unlink()
-    found = collect(study, jumps=False)
+    found = collect_study(study, jumps=False)
     assert all(r.score is not None and r.score.jumps is None for r in found.rows)
 
 
@@ -255,7 +255,7 @@ def test_whatever_is_missing_or_odd_is_told_and_the_rest_is_used(study: Path) ->
     first.write_text(first.read_text() + "\n")
     next((data / "P03").glob("*-large-manual*")).unlink()
     (data / "stranger").mkdir()
-    found = collect(study)
+    found = collect_study(study)
     told_ = "\n".join(found.missing)
     for words in (
         "P01: has not begun.",
@@ -275,8 +275,8 @@ def test_whatever_is_missing_or_odd_is_told_and_the_rest_is_used(study: Path) ->
         ).score
         is None
     )
-    assert analyse(found).time is not None
-    shown = page(analyse(found))
+    assert analyse_study(found).time is not None
+    shown = format_study_page(analyse_study(found))
     for words in found.missing:
         assert words.partition(": ")[2].replace("'", "&#x27;") in shown
 
@@ -284,14 +284,14 @@ def test_whatever_is_missing_or_odd_is_told_and_the_rest_is_used(study: Path) ->
 def test_a_changed_plan_is_told(study: Path) -> None:
     path = study / FILE
     path.write_text(path.read_text() + "# a remark\n")
-    assert any(words.startswith("P01: ") and "version" in words for words in collect(study).missing)
+    assert any(words.startswith("P01: ") and "version" in words for words in collect_study(study).missing)
 
 
 def test_a_task_without_a_reference_has_no_score(study: Path) -> None:
     path = study / FILE
     path.write_text(path.read_text().replace("  reference: small.metagraph.yaml\n", ""))
     (study / "large.metagraph.yaml").write_text("no project")
-    found = collect(study)
+    found = collect_study(study)
     assert any(words.startswith("small: ") and "reference" in words for words in found.missing)
     assert any(words.startswith("large: its reference cannot be used") for words in found.missing)
     assert all(r.score is None for r in found.rows)
@@ -304,4 +304,4 @@ def test_questionnaires_that_cannot_be_scored_are_told(study: Path) -> None:
         if e["type"] == "answer" and e["item"] == "sus3":
             e["value"] = 9
     log.write_text("".join(json.dumps(e) + "\n" for e in events))
-    assert any("P01: System Usability Scale" in words for words in collect(study).missing)
+    assert any("P01: System Usability Scale" in words for words in collect_study(study).missing)

@@ -11,11 +11,11 @@ from pathlib import Path
 import pytest
 
 from metagraph.errors import FileError
-from metagraph.research.study.analysis.reading import collect
-from metagraph.research.study.analysis.results import analyse
+from metagraph.research.study.analysis.reading import collect_study
+from metagraph.research.study.analysis.results import analyse_study
 from metagraph.research.study.interchange.bids import write_bids
-from metagraph.research.study.logs.log import read
-from metagraph.research.study.logs.withdrawal import withdraw
+from metagraph.research.study.logs.log import read_log
+from metagraph.research.study.logs.withdrawal import note_withdrawal
 from metagraph.research.study.questionnaires import sus_score
 from metagraph.research.study.simulation.files import write_study
 from metagraph.research.study.simulation.people import Truth
@@ -30,7 +30,7 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> Study:
 @pytest.fixture(scope="module")
 def out(study: Study) -> Path:
     place = study.folder.parent / "bids"
-    write_bids(study, analyse(collect(study.folder, jumps=False)), place)
+    write_bids(study, analyse_study(collect_study(study.folder, jumps=False)), place)
     return place
 
 
@@ -90,7 +90,9 @@ def test_questionnaires_have_their_items(study: Study, out: Path) -> None:
     found = rows(out / "phenotype" / "sus.tsv")
     assert [r["participant_id"] for r in found] == ["sub-P01", "sub-P02"]
     answers = {
-        (a.condition, a.item): a.value for a in read(study.log("P01")).answers() if a.questionnaire == "sus"
+        (a.condition, a.item): a.value
+        for a in read_log(study.log("P01")).answers()
+        if a.questionnaire == "sus"
     }
     assert len(answers) == 20
     for (condition, item), value in answers.items():
@@ -105,13 +107,13 @@ def test_questionnaires_have_their_items(study: Study, out: Path) -> None:
 def test_who_withdrew_is_in_no_export(study: Study, tmp_path: Path) -> None:
     shutil.copytree(study.folder, tmp_path / "study")
     again = read_study(tmp_path / "study")
-    withdraw(again, "P02")
-    written = write_bids(again, analyse(collect(again.folder, jumps=False)), tmp_path / "out")
+    note_withdrawal(again, "P02")
+    written = write_bids(again, analyse_study(collect_study(again.folder, jumps=False)), tmp_path / "out")
     assert not [p for p in written if "P02" in p.as_posix() or b"P02" in p.read_bytes()]
 
 
 def test_onsets_ascend_and_operators_add_up(study: Study, out: Path) -> None:
-    for run in read(study.log("P01")).tasks():
+    for run in read_log(study.log("P01")).tasks():
         found = rows(out / f"sub-P01/beh/sub-P01_task-{run.task}_acq-{run.condition}_events.tsv")
         onsets = [float(r["onset"]) for r in found]
         assert onsets == sorted(onsets) and onsets[0] >= 0
@@ -131,7 +133,7 @@ def test_time_goes_on_over_a_restart(study: Study, tmp_path: Path) -> None:
         e["run"], e["mono"] = "second", round(e["mono"] - start, 6)
     log.write_text("".join(json.dumps(e) + "\n" for e in events))
     again = read_study(tmp_path / "study")
-    write_bids(again, analyse(collect(again.folder, jumps=False)), tmp_path / "out")
+    write_bids(again, analyse_study(collect_study(again.folder, jumps=False)), tmp_path / "out")
     path = next((tmp_path / "out" / "sub-P01" / "beh").glob("*_events.tsv"))
     assert all(
         float(a["onset"]) <= float(b["onset"]) for a, b in zip(rows(path), rows(path)[1:], strict=False)
@@ -142,7 +144,7 @@ def test_people_who_have_not_begun_are_left_out(study: Study, tmp_path: Path) ->
     shutil.copytree(study.folder, tmp_path / "study")
     shutil.rmtree(tmp_path / "study" / "data" / "P02")
     again = read_study(tmp_path / "study")
-    write_bids(again, analyse(collect(again.folder, jumps=False)), tmp_path / "out")
+    write_bids(again, analyse_study(collect_study(again.folder, jumps=False)), tmp_path / "out")
     assert [r["participant_id"] for r in rows(tmp_path / "out" / "participants.tsv")] == ["sub-P01"]
 
 
@@ -152,4 +154,4 @@ def test_names_that_bids_cannot_tell_apart_are_refused(study: Study, tmp_path: P
     path.write_text(path.read_text().replace("participants: 2", "participants: [A-1, A_1]"))
     again = read_study(path)
     with pytest.raises(FileError, match="the same in letters and digits"):
-        write_bids(again, analyse(collect(path, jumps=False)), tmp_path / "out")
+        write_bids(again, analyse_study(collect_study(path, jumps=False)), tmp_path / "out")

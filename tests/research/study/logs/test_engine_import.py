@@ -9,10 +9,10 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.research.study import engine_logs
-from metagraph.research.study.analysis.reading import collect
-from metagraph.research.study.analysis.results import analyse
+from metagraph.research.study.analysis.reading import collect_study
+from metagraph.research.study.analysis.results import analyse_study
 from metagraph.research.study.logs.engine_import import import_engine
-from metagraph.research.study.report import page
+from metagraph.research.study.report import format_study_page
 from metagraph.research.study.simulation.files import write_study
 from metagraph.research.study.simulation.people import Truth
 from metagraph.research.study.study_plan import Study
@@ -62,21 +62,21 @@ def test_what_is_no_engines_log_is_refused(study: Study, tmp_path: Path) -> None
 
 
 def test_an_engine_is_told_beside_the_meta_graph(study: Study, tmp_path: Path) -> None:
-    before = analyse(collect(study.folder, jumps=False))
+    before = analyse_study(collect_study(study.folder, jumps=False))
     for n, who in enumerate(study.plan.ids):
         log, odd = import_engine(study, who, written(tmp_path / "log.jsonl", who, 900 + 100 * n))
         assert odd == [] and log.tasks()[0].edits == 40
     with pytest.raises(FileError, match="is there already"):
         import_engine(study, "P01", written(tmp_path / "log.jsonl", "P01", 900))
-    data = collect(study.folder, jumps=False)
-    found = analyse(data)
+    data = collect_study(study.folder, jumps=False)
+    found = analyse_study(data)
     assert (
         data.conditions == ("meta", "manual", "unity") and before.time is not None and found.time is not None
     )
     assert found.time.ratio == before.time.ratio, "the two conditions here stay as they were"
     (other,) = found.others
     assert other.pair == ("unity", "meta") and other.ratio.n == 4 and other.ratio.value > 1
-    assert "Unity" in page(found) and "Other conditions" in page(found)
+    assert "Unity" in format_study_page(found) and "Other conditions" in format_study_page(found)
 
 
 def test_scripts_say_that_they_were_not_run_and_write_what_is_read() -> None:

@@ -11,14 +11,14 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.research.study.logs.gaze import dwelt, read_gaze
-from metagraph.research.study.logs.log import Log, read
+from metagraph.research.study.logs.log import StudyLog, read_log
 
 AREAS = {"library": [0, 0, 400, 1000], "graph": [400, 0, 800, 1000], "graph stance": [700, 300, 200, 200]}
 START = datetime.fromisoformat("2026-03-01T09:00:00+00:00").timestamp()
 
 
 @pytest.fixture
-def log(tmp_path: Path) -> Log:
+def log(tmp_path: Path) -> StudyLog:
     """A clap at 10 s, a task of 20 s from then; the screen is 1600 x 1000, two device pixels for each."""
     task = {"name": "task", "condition": "meta", "task": "ten", "index": 1}
     told = [
@@ -41,7 +41,7 @@ def log(tmp_path: Path) -> Log:
     ]
     path = tmp_path / "log.jsonl"
     path.write_text("\n".join(lines) + "\n")
-    return read(path)
+    return read_log(path)
 
 
 def looks() -> list[tuple[float, float, float]]:
@@ -67,7 +67,7 @@ def check(rows: list[tuple]) -> None:
     assert found["library"][7] == pytest.approx(0.15, abs=0.01), "what was not measured is told"
 
 
-def test_tobii(log: Log, tmp_path: Path) -> None:
+def test_tobii(log: StudyLog, tmp_path: Path) -> None:
     lines = ["Recording timestamp [μs]\tSensor\tGaze point X [DACS px]\tGaze point Y [DACS px]"]
     for t, x, y in looks():
         cells = ("", "") if np.isnan(x) else (f"{2 * x:g}", f"{2 * y:g}")
@@ -80,7 +80,7 @@ def test_tobii(log: Log, tmp_path: Path) -> None:
         dwelt(log, read_gaze(path))
 
 
-def test_pupil_player(log: Log, tmp_path: Path) -> None:
+def test_pupil_player(log: StudyLog, tmp_path: Path) -> None:
     lines = ["world_timestamp,world_index,gaze_timestamp,x_norm,y_norm,x_scaled,y_scaled,on_surf,confidence"]
     for t, x, y in looks():
         there = not np.isnan(x)
@@ -91,7 +91,7 @@ def test_pupil_player(log: Log, tmp_path: Path) -> None:
     check(dwelt(log, read_gaze(path), clap=812.25)[1])
 
 
-def test_pupil_cloud_has_the_time_of_day(log: Log, tmp_path: Path) -> None:
+def test_pupil_cloud_has_the_time_of_day(log: StudyLog, tmp_path: Path) -> None:
     lines = [
         "section id,recording id,timestamp [ns],gaze detected on surface,gaze position on surface x [normalized],gaze position on surface y [normalized]"
     ]
@@ -103,7 +103,7 @@ def test_pupil_cloud_has_the_time_of_day(log: Log, tmp_path: Path) -> None:
     check(dwelt(log, read_gaze(path))[1])
 
 
-def test_what_is_no_recording_is_told(tmp_path: Path, log: Log) -> None:
+def test_what_is_no_recording_is_told(tmp_path: Path, log: StudyLog) -> None:
     path = tmp_path / "else.csv"
     path.write_text("a,b\n1,2\n")
     with pytest.raises(FileError, match=r"else\.csv"):
@@ -115,6 +115,6 @@ def test_what_is_no_recording_is_told(tmp_path: Path, log: Log) -> None:
     with pytest.raises(FileError, match="do not ascend"):
         read_gaze(path)
     path.write_text("gaze_timestamp,x_norm,y_norm\n1,0,0\n2,0,0\n")
-    bare = Log(log.path, tuple(e for e in log.events if e["type"] != "marker"))
+    bare = StudyLog(log.path, tuple(e for e in log.events if e["type"] != "marker"))
     with pytest.raises(ValueError, match="has no clap"):
         dwelt(bare, read_gaze(path), clap=1.0)

@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.errors import FileError
-from metagraph.research.study.logs.log import TYPES, Writer, read
+from metagraph.research.study.logs.log import TYPES, Writer, read_log
 
 
 class Clock:
@@ -55,7 +55,7 @@ class Story:
 
     def log(self):
         self.writer.sync()
-        return read(self.path)
+        return read_log(self.path)
 
 
 @pytest.fixture
@@ -73,12 +73,12 @@ TASK = {"name": "task", "condition": "meta", "task": "ten", "index": 4}
 
 def test_a_log_that_is_not_there_is_named(tmp_path):
     with pytest.raises(FileError, match=r"log\.jsonl"):
-        read(tmp_path / "log.jsonl")
+        read_log(tmp_path / "log.jsonl")
 
 
 def test_an_empty_log_has_no_events(tmp_path):
     (tmp_path / "log.jsonl").touch()
-    log = read(tmp_path / "log.jsonl")
+    log = read_log(tmp_path / "log.jsonl")
     assert (log.events, log.torn, log.problems, log.tasks(), log.answers()) == ((), False, (), [], [])
     assert log.participant == tmp_path.name
 
@@ -130,7 +130,7 @@ def test_a_torn_last_line_is_left_out_and_kept_aside(story, tmp_path, cut):
     story.writer.close()
     content = story.path.read_bytes()
     story.path.write_bytes(content[:-cut])
-    log = read(story.path)
+    log = read_log(story.path)
     assert log.torn and len(log.events) == 2 and not log.problems
     story.restart(5)
     torn = content[:-cut].rsplit(b"\n", 1)[1]
@@ -148,7 +148,7 @@ def test_lines_that_are_damaged_are_told_and_the_others_kept(story):
     del lines[4]
     lines.append(lines[-1])
     story.path.write_bytes(b"".join(lines))
-    log = read(story.path)
+    log = read_log(story.path)
     assert [e["n"] for e in log.events] == [0, 1, 3, 5]
     assert [p.split(":")[0] for p in log.problems] == ["line 3", "line 5", "line 6"]
     assert (
@@ -180,14 +180,14 @@ def test_a_number_is_not_used_again_when_the_last_line_cannot_be_read(story):
 def test_what_is_no_event_is_told(tmp_path, event, words):
     path = tmp_path / "log.jsonl"
     path.write_text(json.dumps(event) + "\n")
-    assert words in read(path).problems[0]
+    assert words in read_log(path).problems[0]
 
 
 @given(st.binary(max_size=300))
 def test_whatever_is_in_the_file_is_read_without_an_error(tmp_path_factory, content):
     path = tmp_path_factory.mktemp("fuzz") / "log.jsonl"
     path.write_bytes(content)
-    log = read(path)
+    log = read_log(path)
     assert log.tasks() == []
 
 
@@ -221,7 +221,7 @@ def test_odd_events_add_up_to_something(tmp_path_factory, events):
     path = tmp_path_factory.mktemp("fuzz") / "log.jsonl"
     whole = [{"n": n, "wall": "2026-01-01T00:00:00Z", **e, "name": "task"} for n, e in enumerate(events)]
     path.write_text("".join(json.dumps(e) + "\n" for e in whole))
-    log = read(path)
+    log = read_log(path)
     for run in log.tasks():
         assert run.seconds >= 0
         assert sum(run.spent.values()) == pytest.approx(run.seconds)

@@ -6,7 +6,7 @@ import os
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-from metagraph.research.study.logs.watching import LOCK, is_open, table, watch
+from metagraph.research.study.logs.watching import LOCK, is_open, tabulate_participants, watch_participants
 from metagraph.research.study.sitting import Sitting
 from metagraph.research.study.study_plan import read_study
 from tests.sittings import ended
@@ -28,14 +28,14 @@ def test_everybody_is_where_the_log_says(tiny: Path) -> None:
     (study.data("P01") / LOCK).write_text(f"{os.getpid()}\nmetagraph\nhere\n")
     study.data("P03").mkdir(parents=True)
     study.log("P03").write_text("{}\n")
-    found = {s.participant: s for s in watch(study, datetime.now(UTC) + timedelta(seconds=90))}
+    found = {s.participant: s for s in watch_participants(study, datetime.now(UTC) + timedelta(seconds=90))}
     one.close()
     assert found["P01"].words.startswith("Practice:") and found["P01"].live and found["P01"].paused
     assert found["P01"].troubles == 1 and found["P01"].quiet is not None and found["P01"].quiet > 80
     assert found["P01"].place is not None and found["P01"].place[0] == 3
     assert (found["P02"].words, found["P02"].live) == ("declined", False)
     assert found["P03"].words.startswith("before: A tiny study") and found["P04"].words == "not begun"
-    lines = table(list(found.values()))
+    lines = tabulate_participants(list(found.values()))
     assert lines[1].startswith("●  P01") and "(paused)" in lines[1] and "1:30" in lines[1]
 
 

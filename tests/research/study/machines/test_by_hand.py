@@ -9,11 +9,11 @@ import pytest
 
 from metagraph.graph import edits
 from metagraph.graph.model import Project
-from metagraph.graph.name_search import fits
-from metagraph.research.study.machines.by_hand import Way, Work, batches, ways, works
-from metagraph.research.study.machines.counted_drops import dropped
-from metagraph.research.study.machines.counted_hand import CountedHand, bare, searched, try_way
-from metagraph.research.study.machines.covering import as_set, bits, covered
+from metagraph.graph.name_search import matches_search
+from metagraph.research.study.machines.by_hand import Way, Work, batches, list_ways, works
+from metagraph.research.study.machines.counted_drops import label_by_drops
+from metagraph.research.study.machines.counted_hand import CountedHand, bare, search_ways, try_way
+from metagraph.research.study.machines.covering import as_set, bits, cover_by_rectangles
 from metagraph.research.study.machines.finding import Finder
 from tests.projects import clip
 
@@ -39,24 +39,28 @@ def reference(shuffled: int = 0) -> Project:
     for name, kind in NAMES.items():
         if kind != "stance":
             stance = stances["stand" if name == "odd" else name.split("__")[0]]
-            out = edits.place(out, [ids[name]], "arms", kind, stance, None)
-    out = edits.place(out, [ids["sit__to__stand"]], "arms", "transition", stances["sit"], stances["stand"])
-    out = edits.place(out, [ids["stand__to__sit"]], "arms", "transition", stances["stand"], stances["sit"])
-    return edits.place(out, [ids["head__nod"]], "head", "gesture", stances["head"], None)
+            out = edits.place_clips(out, [ids[name]], "arms", kind, stance, None)
+    out = edits.place_clips(
+        out, [ids["sit__to__stand"]], "arms", "transition", stances["sit"], stances["stand"]
+    )
+    out = edits.place_clips(
+        out, [ids["stand__to__sit"]], "arms", "transition", stances["stand"], stances["sit"]
+    )
+    return edits.place_clips(out, [ids["head__nod"]], "head", "gesture", stances["head"], None)
 
 
 @pytest.mark.parametrize("shuffled", [0, 1, 2])
 @pytest.mark.parametrize("named", [True, False])
 def test_every_way_draws_just_the_reference(shuffled: int, named: bool) -> None:
-    found = searched(reference(shuffled), named, look=True)
-    assert len(found) == len(ways(named)) >= 16
+    found = search_ways(reference(shuffled), named, look=True)
+    assert len(found) == len(list_ways(named)) >= 16
     for tried in found:
         assert not tried.score.mistakes and tried.score.f1 == 1.0, (str(tried.way), tried.score.mistakes)
     assert [t.seconds for t in found] == sorted(t.seconds for t in found)
 
 
 def test_aliases_are_found_to_be_cheaper_than_links_one_by_one_and_take_fewer() -> None:
-    found = searched(reference())
+    found = search_ways(reference())
     by = {(t.way.links, t.way.settle, t.way.pick, t.way.drop): t for t in found}
     best, worst = found[0], by["one by one", "each", "clicks", "one by one"]
     assert best.way.links in ("from aliases", "from any state")
@@ -74,21 +78,21 @@ def test_looking_takes_keys_and_the_clips_own_time() -> None:
 def test_a_reference_of_one_clip_and_an_empty_one_are_drawn() -> None:
     one = edits.add_clips(Project("one"), [("idle.glb", 0, "", clip("idle"))])
     one = edits.add_stance(one, "arms", "rest", [*one.clips])
-    assert all(not t.score.mistakes for t in searched(one))
-    assert works(Project()) == [] and not try_way(ways()[0], Project()).operators["B"] > 2
+    assert all(not t.score.mistakes for t in search_ways(one))
+    assert works(Project()) == [] and not try_way(list_ways()[0], Project()).operators["B"] > 2
 
 
 def test_clips_that_names_do_not_tell_apart_are_drawn_by_clicks() -> None:
     ref = reference()
     clips = {c: replace(e, name="take") for c, e in ref.clips.items()}
-    found = searched(replace(ref, clips=clips))
+    found = search_ways(replace(ref, clips=clips))
     assert found and all(t.score.f1 == 1.0 for t in found)
     assert "from a table" not in {t.way.links for t in found}
 
 
 def test_labelling_without_proposals_is_counted_and_right() -> None:
     for shuffled in range(3):
-        found = dropped(reference(shuffled))
+        found = label_by_drops(reference(shuffled))
         assert not found.score.mistakes and found.seconds > 0
 
 
@@ -127,7 +131,7 @@ def made(cover) -> set[tuple[int, int]]:
 )
 def test_a_cover_makes_just_what_is_wanted_with_the_fewest(leads: tuple[str, ...], fewest: int) -> None:
     wanted = rows(*leads)
-    cover = covered(wanted)
+    cover = cover_by_rectangles(wanted)
     assert made(cover) == {(a, b) for a, row in enumerate(wanted) for b in bits(row)}
     assert len(cover.rectangles) == fewest and cover.least <= fewest
 
@@ -137,7 +141,7 @@ def test_covers_of_any_machine_are_right_and_never_beat_the_bound() -> None:
     for _ in range(60):
         n = draw.randint(2, 9)
         wanted = [draw.getrandbits(n) & ~(1 << a) for a in range(n)]
-        cover = covered(wanted)
+        cover = cover_by_rectangles(wanted)
         assert made(cover) == {(a, b) for a, row in enumerate(wanted) for b in bits(row)}
         assert cover.least <= len(cover.rectangles)
 
@@ -155,7 +159,9 @@ def test_words_that_are_found_select_just_the_set() -> None:
         words = finder.best(want) if want else None
         if words is not None:
             some += 1
-            assert as_set(n for n, name in enumerate(names) if fits(words.text, name)) == want, words.text
+            assert as_set(n for n, name in enumerate(names) if matches_search(words.text, name)) == want, (
+                words.text
+            )
     assert some > 150
 
 
@@ -191,7 +197,7 @@ def test_clips_are_dropped_in_batches_that_hold_no_other() -> None:
     ],
 )  # fmt: skip
 def test_searched_words(words: str, name: str, found: bool) -> None:
-    assert fits(words, name) is found
+    assert matches_search(words, name) is found
 
 
 def test_blocks_lie_so_that_bands_are_few() -> None:

@@ -7,12 +7,12 @@ from dataclasses import replace
 from hypothesis import given
 
 from metagraph.graph import edits
-from metagraph.graph.expand import size
+from metagraph.graph.expand import count_machine_size
 from metagraph.graph.manual import edits as manual_edits
 from metagraph.graph.manual.machine import ANY
 from metagraph.graph.model import Project
 from metagraph.research.study.machines.normal_machine import clip_names, is_manual, normal
-from metagraph.research.study.simulation.work import drawn
+from metagraph.research.study.simulation.work import draw_every_connection
 from tests.projects import clip, projects
 from tests.research.study.makers import LAYER, small
 
@@ -25,7 +25,7 @@ def test_an_empty_project_has_no_machines() -> None:
 
 def test_a_meta_graph_is_expanded_and_known_by_its_clips() -> None:
     found = normal(small())[LAYER]
-    assert len(found.states) == 8 and len(found.connections) == size(small()).connections == 28
+    assert len(found.states) == 8 and len(found.connections) == count_machine_size(small()).connections == 28
     wave = found.states["sides_wave.glb"]
     assert (wave.kind, found.stances[wave.stance or ""], wave.start, wave.end, wave.loop) == (
         "gesture",
@@ -41,7 +41,7 @@ def test_a_meta_graph_is_expanded_and_known_by_its_clips() -> None:
 
 
 def test_what_is_drawn_by_hand_comes_to_the_same() -> None:
-    by_hand = drawn(small())
+    by_hand = draw_every_connection(small())
     assert is_manual(by_hand) and not is_manual(small())
     meta, manual = normal(small())[LAYER], normal(by_hand)[LAYER]
     assert manual.connections.keys() == meta.connections.keys()
@@ -93,7 +93,7 @@ def test_uses_takes_and_files_that_are_called_alike_are_told_apart() -> None:
     assert [*clip_names(project).values()] == ["a/x.glb", "b/x.glb", "b/x.glb:1", "w.glb"]
     project = edits.add_stance(project, LAYER, "rest", [next(iter(project.clips))])
     stance = next(iter(project.graphs[LAYER].stances))
-    project = edits.place(project, [[*project.clips][3]] * 2, LAYER, "gesture", stance)
+    project = edits.place_clips(project, [[*project.clips][3]] * 2, LAYER, "gesture", stance)
     assert [*normal(project)[LAYER].states] == ["a/x.glb", "w.glb", "w.glb#2"]
 
 
@@ -108,9 +108,9 @@ def test_a_clip_that_is_gone_has_no_length_but_a_place() -> None:
 @given(projects())
 def test_every_project_has_a_normal_form_as_large_as_its_machine(project: Project) -> None:
     found = normal(project, manual=False)
-    assert sum(len(m.states) for m in found.values()) == size(project).states
-    assert sum(len(m.connections) for m in found.values()) == size(project).connections
-    by_hand = normal(drawn(project), manual=True)
+    assert sum(len(m.states) for m in found.values()) == count_machine_size(project).states
+    assert sum(len(m.connections) for m in found.values()) == count_machine_size(project).connections
+    by_hand = normal(draw_every_connection(project), manual=True)
     assert {x: m.connections.keys() for x, m in by_hand.items()} == {
         x: m.connections.keys() for x, m in found.items()
     }

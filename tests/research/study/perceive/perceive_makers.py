@@ -9,7 +9,7 @@ import numpy as np
 from metagraph.research.study.perceive.answers import PageEvent, Sheet
 from metagraph.research.study.perceive.design import design
 from metagraph.research.study.perceive.folder import Perceived, write_folder
-from metagraph.research.study.perceive.perceive_plan import PerceivePlan, from_text
+from metagraph.research.study.perceive.perceive_plan import PerceivePlan, parse_perceive_plan
 
 SECRET = "a secret of tests"
 CHOICE = "choice: {question: Which one?}\n"
@@ -34,12 +34,12 @@ def text(
 
 
 def plan(*args: object, **options: object) -> PerceivePlan:
-    return from_text(text(*args, **options))  # type: ignore[arg-type]
+    return parse_perceive_plan(text(*args, **options))  # type: ignore[arg-type]
 
 
 def study(folder: Path, words: str, secret: str = SECRET) -> Perceived:
     """Write a study without videos."""
-    made = from_text(words)
+    made = parse_perceive_plan(words)
     return write_folder(folder, made, words.encode(), design(made, secret))
 
 
@@ -47,7 +47,7 @@ def shown(folder: Path, words: str, seconds: float = 1.0) -> Perceived:
     """Write a study with a small video for each stimulus."""
     from preview.video import write_video
 
-    made = from_text(words)
+    made = parse_perceive_plan(words)
     drawn = design(made, SECRET)
     (folder / "show" / "videos").mkdir(parents=True)
     for n, name in enumerate(drawn.key.stimuli):

@@ -9,14 +9,14 @@ import msgspec
 import pytest
 
 from metagraph.errors import FileError
-from metagraph.research.study.logs.log import read
+from metagraph.research.study.logs.log import read_log
 from metagraph.research.study.perceive.answers import (
     PageEvent,
     Sheet,
     SheetError,
-    answered,
-    decode,
-    keep,
+    decode_sheet,
+    is_answer,
+    keep_sheet,
     read_answers,
 )
 from metagraph.research.study.perceive.folder import Perceived
@@ -36,12 +36,12 @@ def part(whole: Sheet, first: int, last: int) -> Sheet:
 
 def test_answers_are_appended_once_however_often_they_are_sent(made: Perceived) -> None:
     whole = sheet(made)
-    assert keep(made, part(whole, 0, 3)).kept == 3
-    again = keep(made, part(whole, 0, 5))
+    assert keep_sheet(made, part(whole, 0, 3)).kept == 3
+    again = keep_sheet(made, part(whole, 0, 5))
     assert (again.kept, again.new) == (5, 2)
-    assert keep(made, part(whole, 1, 3)).new == 0
-    assert keep(made, whole).kept == len(whole.events)
-    log = read(made.log("P01"))
+    assert keep_sheet(made, part(whole, 1, 3)).new == 0
+    assert keep_sheet(made, whole).kept == len(whole.events)
+    log = read_log(made.log("P01"))
     assert log.standing == "done" and not log.problems and not log.torn
     assert [e["page_n"] for e in log.events] == list(range(len(whole.events)))
     assert log.events[1]["seconds"] == 1.5 and log.events[0]["design"] == made.key.design
@@ -49,17 +49,17 @@ def test_answers_are_appended_once_however_often_they_are_sent(made: Perceived) 
 
 def test_a_gap_is_refused_and_nothing_of_it_kept(made: Perceived) -> None:
     whole = sheet(made)
-    keep(made, part(whole, 0, 2))
+    keep_sheet(made, part(whole, 0, 2))
     with pytest.raises(SheetError, match="missing between 2 and 4"):
-        keep(made, part(whole, 4, 6))
-    assert len(read(made.log("P01")).events) == 2
+        keep_sheet(made, part(whole, 4, 6))
+    assert len(read_log(made.log("P01")).events) == 2
 
 
 def test_who_begins_with_somebody_s_code_is_told_so(made: Perceived) -> None:
-    keep(made, part(sheet(made), 0, 2))
+    keep_sheet(made, part(sheet(made), 0, 2))
     with pytest.raises(SheetError, match="another browser") as told:
-        keep(made, sheet(made, run="0123456789"))
-    assert told.value.taken and len(read(made.log("P01")).events) == 2
+        keep_sheet(made, sheet(made, run="0123456789"))
+    assert told.value.taken and len(read_log(made.log("P01")).events) == 2
 
 
 @pytest.mark.parametrize(
@@ -72,22 +72,24 @@ def test_who_begins_with_somebody_s_code_is_told_so(made: Perceived) -> None:
 )
 def test_what_belongs_elsewhere_is_refused(made: Perceived, fields: dict[str, object], words: str) -> None:
     with pytest.raises(SheetError, match=words):
-        keep(made, msgspec.structs.replace(sheet(made), **fields))
+        keep_sheet(made, msgspec.structs.replace(sheet(made), **fields))
     assert not made.log("P01").exists()
 
 
 def test_a_code_cannot_lead_out_of_the_folder(made: Perceived) -> None:
     for code in ("../P01", "P01/..", "", ".", "a b", "P01\n"):
         with pytest.raises(SheetError):
-            keep(made, decode(msgspec.json.encode({**msgspec.to_builtins(sheet(made)), "code": code})))
+            keep_sheet(
+                made, decode_sheet(msgspec.json.encode({**msgspec.to_builtins(sheet(made)), "code": code}))
+            )
     assert not (made.folder / "answers").exists()
 
 
 @pytest.mark.parametrize("value", ["left", "middle", {"natural": 8}, {"natural": 0}, {"other": 3}, {}, None])
 def test_an_answer_that_the_page_cannot_give_is_none(made: Perceived, value: object) -> None:
-    assert answered(made, False, value) is False
-    assert answered(made, True, value) is (value == "left")
-    assert answered(made, False, {"natural": 7})
+    assert is_answer(made, False, value) is False
+    assert is_answer(made, True, value) is (value == "left")
+    assert is_answer(made, False, {"natural": 7})
 
 
 @pytest.mark.parametrize(
@@ -112,21 +114,26 @@ def test_many_who_send_at_once_lose_nothing(made: Perceived) -> None:
 
     def send() -> None:
         for n in range(1, len(whole.events) + 1):
-            keep(made, part(whole, 0, n))
+            keep_sheet(made, part(whole, 0, n))
 
     threads = [threading.Thread(target=send) for _ in range(4)]
     for t in threads:
         t.start()
     for t in threads:
         t.join()
-    log = read(made.log("P01"))
+    log = read_log(made.log("P01"))
     assert [e["page_n"] for e in log.events] == list(range(len(whole.events))) and not log.problems
 
 
 def test_a_torn_last_line_is_put_aside_and_what_was_in_it_sent_again(made: Perceived) -> None:
     whole = sheet(made)
-    keep(made, part(whole, 0, 3))
+    keep_sheet(made, part(whole, 0, 3))
     path = made.log("P01")
     path.write_bytes(path.read_bytes()[:-9])
-    assert keep(made, part(whole, 0, 4)).kept == 4
-    assert read(path).standing == "broken off" and [e["page_n"] for e in read(path).events] == [0, 1, 2, 3]
+    assert keep_sheet(made, part(whole, 0, 4)).kept == 4
+    assert read_log(path).standing == "broken off" and [e["page_n"] for e in read_log(path).events] == [
+        0,
+        1,
+        2,
+        3,
+    ]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from metagraph.research.study.perceive.crossed import Crossed, fit, overall
+from metagraph.research.study.perceive.crossed import Crossed, fit_crossed, overall
 from tests.thorough import many
 
 # Contagious bovine pleuropneumonia in 15 herds (Lesnoff et al. 2004, "Within-herd spread of contagious bovine
@@ -25,7 +25,7 @@ def test_the_published_model_of_herds_is_found() -> None:
     rows = [tuple(map(int, row.split(","))) for row in HERDS.split()]
     effects = {"one": [1.0] * len(rows), **{f"p{k}": [float(r[3] == k) for r in rows] for k in (2, 3, 4)}}
     herds, cases, sizes = [r[0] for r in rows], [r[1] for r in rows], [r[2] for r in rows]
-    found = fit(cases, effects, herds, [0] * len(rows), sizes)
+    found = fit_crossed(cases, effects, herds, [0] * len(rows), sizes)
     assert found is not None
     assert [e.value for e in found.effects.values()] == pytest.approx(
         [-1.3983, -0.9919, -1.1282, -1.5797], abs=2e-3
@@ -48,7 +48,7 @@ def drawn(
 
 def fitted(rows: tuple[list[float], list[float], list[int], list[int]]) -> Crossed | None:
     chosen, sides, who, what = rows
-    return fit(chosen, {"preference": [1.0] * len(chosen), "side": sides}, who, what)
+    return fit_crossed(chosen, {"preference": [1.0] * len(chosen), "side": sides}, who, what)
 
 
 def test_crossed_deviations_are_those_that_a_plain_minimiser_finds() -> None:
@@ -79,7 +79,7 @@ def test_crossed_deviations_are_those_that_a_plain_minimiser_finds() -> None:
 
 
 def test_without_deviations_it_is_plain_logistic_regression() -> None:
-    found = fit([1, 1, 1, 0], {"preference": [1.0] * 4}, [0, 0, 0, 0], [1, 1, 1, 1])
+    found = fit_crossed([1, 1, 1, 0], {"preference": [1.0] * 4}, [0, 0, 0, 0], [1, 1, 1, 1])
     assert found is not None and found.effects["preference"].value == pytest.approx(np.log(3), abs=1e-4)
     assert found.errors["preference"] == pytest.approx(np.sqrt(4 / 3), rel=1e-3)
     assert found.share.value == pytest.approx(0.75, abs=1e-4) and found.deviations == {
@@ -89,13 +89,13 @@ def test_without_deviations_it_is_plain_logistic_regression() -> None:
 
 
 def test_what_has_no_end_or_says_the_same_twice_has_no_model() -> None:
-    assert fit([], {"preference": []}, [], []) is None
-    assert fit([1.0] * 6, {"preference": [1.0] * 6}, range(6), [0] * 6) is None
-    assert fit([0.0] * 6, {"preference": [1.0] * 6}, range(6), [0] * 6) is None
+    assert fit_crossed([], {"preference": []}, [], []) is None
+    assert fit_crossed([1.0] * 6, {"preference": [1.0] * 6}, range(6), [0] * 6) is None
+    assert fit_crossed([0.0] * 6, {"preference": [1.0] * 6}, range(6), [0] * 6) is None
     twice = {"preference": [1.0] * 6, "again": [2.0] * 6}
-    assert fit([1, 0, 1, 0, 1, 1], twice, [0, 0, 1, 1, 2, 2], [0, 1] * 3) is None
+    assert fit_crossed([1, 0, 1, 0, 1, 1], twice, [0, 0, 1, 1, 2, 2], [0, 1] * 3) is None
     divided = {"preference": [1.0] * 8, "side": [0.5, -0.5] * 4}
-    assert fit([1, 0] * 4, divided, [0, 0, 1, 1, 2, 2, 3, 3], [0, 1] * 4) is None
+    assert fit_crossed([1, 0] * 4, divided, [0, 0, 1, 1, 2, 2, 3, 3], [0, 1] * 4) is None
 
 
 @pytest.mark.nightly

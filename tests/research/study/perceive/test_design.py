@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import pytest
 
-from metagraph.research.study.perceive.design import design, sequences
+from metagraph.research.study.perceive.design import count_sequences, design
 from metagraph.research.study.perceive.perceive_plan import PerceivePlan
 from tests.research.study.perceive.perceive_makers import CHOICE, RATING, SECRET, plan
 
@@ -22,7 +22,7 @@ def wide(**options: object) -> PerceivePlan:
 @pytest.mark.parametrize("each", [None, 1, 4, 6, 9])
 def test_after_whole_rounds_every_pair_was_on_every_side_as_often(each: int | None) -> None:
     asked = f"choice: {{question: Q{'' if each is None else f', each: {each}'}}}\n"
-    rounds = sequences(wide(asked=asked))
+    rounds = count_sequences(wide(asked=asked))
     made = design(wide(asked=asked, people=2 * rounds), SECRET)
     counts = Counter(
         (t.item, t.a, t.b) for s in made.key.sessions.values() for t in s.trials if t.kind == "choice"

@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 
-from metagraph.research.study.logs.log import read
-from metagraph.research.study.perceive.answers import keep, read_answers
+from metagraph.research.study.logs.log import read_log
+from metagraph.research.study.perceive.answers import keep_sheet, read_answers
 from metagraph.research.study.perceive.folder import Perceived
-from metagraph.research.study.perceive.perceive_data import collect
-from metagraph.research.study.perceive.serving import serve
+from metagraph.research.study.perceive.perceive_data import collect_answers
+from metagraph.research.study.perceive.serving import serve_page
 from tests.browsing import Browser
 from tests.research.study.perceive.perceive_makers import CHOICE, RATING, shown, text
 
@@ -67,8 +67,8 @@ def test_from_a_file_everything_is_answered_by_keyboard_saved_and_read(
     assert not errors and disabled is True
     assert [e["type"] for e in before] == ["begin"]  # nothing counts that was not watched
     sheet = read_answers(saved)
-    assert keep(made, sheet).new == len(sheet.events)
-    (person, *_) = collect(made).people
+    assert keep_sheet(made, sheet).new == len(sheet.events)
+    (person, *_) = collect_answers(made).people
     trials = made.key.sessions["P01"].trials
     assert (person.why, person.answered, person.missed) == ("", len(trials), 0)
     for event, trial in zip(sheet.events[1:-1], trials, strict=True):
@@ -81,7 +81,7 @@ def test_from_a_file_everything_is_answered_by_keyboard_saved_and_read(
 def test_served_answers_arrive_replays_are_counted_and_a_reload_goes_on(
     made: Perceived, browse: Browser
 ) -> None:
-    served = serve(made)
+    served = serve_page(made)
     try:
         first, second = answer(made, "P02")[:4], answer(made, "P02")[4:8]
         steps = [{"url": served.url + "#P02", "until": "document.querySelector('#code')"}, *BEGIN]
@@ -105,14 +105,14 @@ def test_served_answers_arrive_replays_are_counted_and_a_reload_goes_on(
         "2 of "
     )
     assert [e.get("replays") for e in events] == [None, 1, None, 0]
-    log = read(made.log("P02"))
+    log = read_log(made.log("P02"))
     assert [e["type"] for e in log.events] == [e["type"] for e in events] and not log.problems
 
 
 def test_who_withdraws_leaves_nothing_in_the_browser_and_is_not_counted(
     made: Perceived, browse: Browser
 ) -> None:
-    served = serve(made)
+    served = serve_page(made)
     try:
         steps = [{"url": served.url + "#P03", "until": "document.querySelector('#code')"}, *BEGIN]
         steps += [*answer(made, "P03")[:4], {"click": "#withdraw"}, {"click": "#yes"}]
@@ -125,8 +125,8 @@ def test_who_withdraws_leaves_nothing_in_the_browser_and_is_not_counted(
     finally:
         served.close()
     assert not errors and title == "You withdrew" and "value" not in left and "withdrawn" in left
-    assert read(made.log("P03")).standing == "withdrawn"
-    assert next(p for p in collect(made).people if p.participant == "P03").why == "withdrawn"
+    assert read_log(made.log("P03")).standing == "withdrawn"
+    assert next(p for p in collect_answers(made).people if p.participant == "P03").why == "withdrawn"
 
 
 def test_who_does_not_agree_leaves_no_trace_but_that(made: Perceived, browse: Browser) -> None:

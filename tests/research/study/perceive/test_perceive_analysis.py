@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 from msgspec import structs
 
-from metagraph.research.study.logs.withdrawal import delete, withdraw
-from metagraph.research.study.perceive.answers import keep
+from metagraph.research.study.logs.withdrawal import delete_data, note_withdrawal
+from metagraph.research.study.perceive.answers import keep_sheet
 from metagraph.research.study.perceive.folder import Perceived
-from metagraph.research.study.perceive.perceive_analysis import PerceiveResults, analyse
-from metagraph.research.study.perceive.perceive_data import collect
-from metagraph.research.study.perceive.perceive_plan import from_text
+from metagraph.research.study.perceive.perceive_analysis import PerceiveResults, analyse_answers
+from metagraph.research.study.perceive.perceive_data import collect_answers
+from metagraph.research.study.perceive.perceive_plan import parse_perceive_plan
 from metagraph.research.study.perceive.simulated import Raters, write_simulated
 from tests.research.study.perceive.perceive_makers import CHOICE, RATING, sheet, study, text
 from tests.thorough import many
@@ -22,8 +22,10 @@ pytestmark = pytest.mark.usefixtures("quick_codes")
 
 def simulated(folder: Path, raters: Raters, **options: object) -> PerceiveResults:
     words = text(**{"people": 20, "items": 10, **options})  # type: ignore[arg-type]
-    return analyse(
-        collect(write_simulated(folder, from_text(words), words.encode(), f"s{raters.seed}", raters))
+    return analyse_answers(
+        collect_answers(
+            write_simulated(folder, parse_perceive_plan(words), words.encode(), f"s{raters.seed}", raters)
+        )
     )
 
 
@@ -81,14 +83,14 @@ def made(tmp_path: Path) -> Perceived:
 
 
 def test_nobody_s_answers_say_nothing(made: Perceived) -> None:
-    results = analyse(collect(made))
+    results = analyse_answers(collect_answers(made))
     assert results.pairs[0].verdict == "no answers" and len(results.cautions) == 1
     assert results.rated == () and results.left is None and not results.answers.odd
 
 
 def test_one_person_who_always_chooses_the_left_prefers_nothing(made: Perceived) -> None:
-    keep(made, sheet(made))
-    results = analyse(collect(made))
+    keep_sheet(made, sheet(made))
+    results = analyse_answers(collect_answers(made))
     (found,) = results.pairs
     assert found.share is not None and (found.share.value, found.share.n) == (0.5, 4)
     assert results.left is not None and results.left[0].value == 1 and found.people is None
@@ -97,17 +99,17 @@ def test_one_person_who_always_chooses_the_left_prefers_nothing(made: Perceived)
 
 def test_who_withdrew_was_deleted_declined_or_stopped_is_not_counted(made: Perceived) -> None:
     for who in made.plan.ids:
-        keep(made, sheet(made, who, "right", end=who != "P03"))
-    assert withdraw(made, "P01") and not withdraw(made, "P01")
-    delete(made, "P02")
-    found = collect(made)
+        keep_sheet(made, sheet(made, who, "right", end=who != "P03"))
+    assert note_withdrawal(made, "P01") and not note_withdrawal(made, "P01")
+    delete_data(made, "P02")
+    found = collect_answers(made)
     assert found.counting == ("P04", "P05", "P06")
     why = {p.participant: p.why for p in found.people}
     assert (why["P01"], why["P02"], why["P03"]) == ("withdrawn", "deleted", "broken off")
     # Of the three who are left out, only who broke off is among those reckoned with nobody excluded.
     assert {c.participant for c in found.all_choices} == {"P03", "P04", "P05", "P06"}
     with pytest.raises(ValueError, match="does not take part"):
-        withdraw(made, "P77")
+        note_withdrawal(made, "P77")
 
 
 def test_a_missed_check_excludes_unless_the_plan_allows_it(tmp_path: Path) -> None:
@@ -119,28 +121,28 @@ def test_a_missed_check_excludes_unless_the_plan_allows_it(tmp_path: Path) -> No
         events = tuple(
             structs.replace(e, value=turned[str(e.value)]) if e.trial == told[0] else e for e in whole.events
         )
-        keep(made, structs.replace(whole, events=events))
-        assert len(collect(made).counting) == counts
+        keep_sheet(made, structs.replace(whole, events=events))
+        assert len(collect_answers(made).counting) == counts
 
 
 def test_a_log_that_cannot_be_read_is_told_and_spoils_nobody_else_s(made: Perceived) -> None:
-    keep(made, sheet(made))
-    keep(made, sheet(made, "P02"))
+    keep_sheet(made, sheet(made))
+    keep_sheet(made, sheet(made, "P02"))
     path = made.log("P01")
     path.unlink()
     path.mkdir()
-    found = collect(made)
+    found = collect_answers(made)
     assert found.counting == ("P02",)
     made.log("P03").parent.mkdir(parents=True)
     made.log("P03").write_bytes(b"{\n\x00\n[]\n")
-    found = collect(made)
+    found = collect_answers(made)
     assert found.counting == ("P02",) and sum(w.startswith("P03: line") for w in found.odd) == 3
 
 
 def test_a_study_that_was_changed_since_is_told(made: Perceived) -> None:
     page = made.show / "index.html"
     page.write_text(page.read_text() + " ")
-    (odd,) = collect(made).odd
+    (odd,) = collect_answers(made).odd
     assert odd.startswith("show/index.html ")
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from metagraph.errors import FileError
-from metagraph.research.study.perceive.perceive_plan import from_text, read_plan
+from metagraph.research.study.perceive.perceive_plan import parse_perceive_plan, read_perceive_plan
 from tests.research.study.perceive.perceive_makers import CHOICE, RATING, plan, text
 
 
@@ -83,7 +83,7 @@ def test_the_least_plan_is_read_and_compares_all_pairs() -> None:
 )
 def test_what_is_wrong_is_told_with_its_place_and_a_remedy(words: str, cause: str, place: str) -> None:
     with pytest.raises(FileError) as told:
-        from_text(words, Path("my.yaml"))
+        parse_perceive_plan(words, Path("my.yaml"))
     assert cause in told.value.cause and place in told.value.where and told.value.remedy
     assert "my.yaml" in str(told.value)
 
@@ -100,16 +100,16 @@ def test_a_project_is_only_needed_where_something_is_of_one() -> None:
     words = text(conditions="{a: {video: a.mp4}, b: {motion: 'm/{item}.bvh'}}").replace(
         "project: sample.metagraph.yaml\n", ""
     )
-    assert from_text(words).project is None
+    assert parse_perceive_plan(words).project is None
     with pytest.raises(FileError, match="which project"):
-        from_text(words.replace("video: a.mp4", "clip: x"))
+        parse_perceive_plan(words.replace("video: a.mp4", "clip: x"))
 
 
 def test_a_folder_s_plan_is_read_and_what_is_no_text_is_told(tmp_path: Path) -> None:
     (tmp_path / "perceive.yaml").write_text(text())
-    assert read_plan(tmp_path) == read_plan(tmp_path / "perceive.yaml") == plan()
+    assert read_perceive_plan(tmp_path) == read_perceive_plan(tmp_path / "perceive.yaml") == plan()
     (tmp_path / "perceive.yaml").write_bytes(b"perceive: 1\n\xff")
     with pytest.raises(FileError, match="is not text"):
-        read_plan(tmp_path)
+        read_perceive_plan(tmp_path)
     with pytest.raises(FileError):
-        read_plan(tmp_path / "none.yaml")
+        read_perceive_plan(tmp_path / "none.yaml")

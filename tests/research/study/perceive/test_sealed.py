@@ -6,7 +6,7 @@ import base64
 import hashlib
 import json
 
-from metagraph.research.study.perceive.sealed import derive, name_of, sealed, turned
+from metagraph.research.study.perceive.sealed import derive, seal_content, seal_sessions, sealed_name
 
 SESSIONS = {"Ab3": {"trials": [1, 2]}, "zz9": {"trials": "é" * 100}}
 ROUNDS = 100_000
@@ -15,15 +15,19 @@ ROUNDS = 100_000
 def test_a_key_is_derived_as_slowly_as_the_page_is_told() -> None:
     expected = hashlib.pbkdf2_hmac("sha256", b"ab3", b"salt", ROUNDS)
     assert derive("Ab3", "salt") == derive(" aB3 ", "salt") == expected
-    assert sealed({}, "salt") == {"salt": "salt", "rounds": ROUNDS, "sealed": {}}
+    assert seal_sessions({}, "salt") == {"salt": "salt", "rounds": ROUNDS, "sealed": {}}
 
 
 def test_each_session_opens_with_its_code_and_no_other() -> None:
-    told = sealed(SESSIONS, "salt")["sealed"]
+    told = seal_sessions(SESSIONS, "salt")["sealed"]
     keys = {code: derive(code, "salt") for code in SESSIONS}
-    assert list(told) == sorted(name_of(key) for key in keys.values())
+    assert list(told) == sorted(sealed_name(key) for key in keys.values())
     for code, key in keys.items():
-        content = base64.b64decode(told[name_of(key)])
-        assert json.loads(turned(content, key)) == [code, SESSIONS[code]]
+        content = base64.b64decode(told[sealed_name(key)])
+        assert json.loads(seal_content(content, key)) == [code, SESSIONS[code]]
         assert b"trials" not in content
-        assert all(turned(content, other) != turned(content, key) for other in keys.values() if other != key)
+        assert all(
+            seal_content(content, other) != seal_content(content, key)
+            for other in keys.values()
+            if other != key
+        )

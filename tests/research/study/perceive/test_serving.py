@@ -12,9 +12,9 @@ import pytest
 
 from metagraph.engines.serve import Served
 from metagraph.errors import FileError
-from metagraph.research.study.logs.log import read
+from metagraph.research.study.logs.log import read_log
 from metagraph.research.study.perceive.folder import Perceived
-from metagraph.research.study.perceive.serving import MOST_POSTED, page_of, serve
+from metagraph.research.study.perceive.serving import MOST_POSTED, page_of, serve_page
 from tests.research.study.perceive.perceive_makers import sheet, study, text
 
 pytestmark = pytest.mark.usefixtures("quick_codes")
@@ -27,7 +27,7 @@ def made(tmp_path: Path) -> Perceived:
 
 @pytest.fixture
 def served(made: Perceived) -> Iterator[Served]:
-    found = serve(made)
+    found = serve_page(made)
     yield found
     found.close()
 
@@ -52,7 +52,7 @@ def test_answers_are_on_the_disk_before_they_are_acknowledged(served: Served, ma
     whole = msgspec.json.encode(sheet(made))
     status, body, _ = asked(served, "POST", "/answers", whole, **JSON)
     assert status == 200 and json.loads(body)["kept"] == len(sheet(made).events)
-    assert read(made.log("P01")).standing == "done"
+    assert read_log(made.log("P01")).standing == "done"
     assert json.loads(asked(served, "POST", "/answers", whole, **JSON)[1])["new"] == 0
 
 
@@ -112,4 +112,4 @@ def test_a_page_whose_videos_are_missing_is_not_served(made: Perceived) -> None:
 
 def test_an_address_that_is_none_is_told(made: Perceived) -> None:
     with pytest.raises(OSError):
-        serve(made, address="203.0.113.7")
+        serve_page(made, address="203.0.113.7")

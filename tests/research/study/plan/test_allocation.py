@@ -11,8 +11,14 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.research.study.plan import allocation
-from metagraph.research.study.plan.allocation import allocate, commitment, numbers, prepare, problems
-from metagraph.research.study.plan.drawn_orders import LOG, drawn
+from metagraph.research.study.plan.allocation import (
+    allocate,
+    commitment,
+    draw_order_numbers,
+    prepare_allocation,
+    problems,
+)
+from metagraph.research.study.plan.drawn_orders import LOG, read_drawn_orders
 from metagraph.research.study.sitting import Sitting
 from metagraph.research.study.study_plan import read_study
 
@@ -35,7 +41,7 @@ def test_without_a_secret_nobody_begins_and_the_remedy_is_told(concealed) -> Non
 def test_blocks_are_balanced_and_of_sizes_that_nobody_knows() -> None:
     sizes = set()
     for seed in range(40):
-        found = list(islice(numbers(f"secret {seed}", 2), 40))
+        found = list(islice(draw_order_numbers(f"secret {seed}", 2), 40))
         assert sorted(found[:36]) != found[:36]
         ahead = 0
         for n in found:
@@ -43,18 +49,18 @@ def test_blocks_are_balanced_and_of_sizes_that_nobody_knows() -> None:
             assert abs(ahead) <= 2, "never far from balance"
         sizes.add(tuple(n % 2 for n in found[:4]))
     assert len(sizes) >= 5, "many ways to begin"
-    assert list(islice(numbers("a", 2), 20)) == list(islice(numbers("a", 2), 20))
+    assert list(islice(draw_order_numbers("a", 2), 20)) == list(islice(draw_order_numbers("a", 2), 20))
 
 
 def test_an_order_is_drawn_once_and_noted_and_followed(concealed) -> None:
-    told = prepare(concealed)
-    assert prepare(concealed) == told, "the secret stays"
+    told = prepare_allocation(concealed)
+    assert prepare_allocation(concealed) == told, "the secret stays"
     for who in ("P03", "P01", "P04", "P02"):
         Sitting(concealed, who).close()
     again = allocate(concealed, "P01")
     notes = [json.loads(line) for line in (concealed.folder / LOG).read_text().splitlines()]
     assert [n["participant"] for n in notes] == ["P03", "P01", "P04", "P02"]
-    assert drawn(concealed.folder)["P01"] == again == notes[1]["number"]
+    assert read_drawn_orders(concealed.folder)["P01"] == again == notes[1]["number"]
     assert Counter(n["order"][0] for n in notes)["meta"] in (1, 2, 3)
     for n in notes:
         assert [c for c, _ in concealed.blocks(n["participant"])] == n["order"]
@@ -63,7 +69,7 @@ def test_an_order_is_drawn_once_and_noted_and_followed(concealed) -> None:
 
 
 def test_whoever_chose_is_found_out(concealed) -> None:
-    prepare(concealed)
+    prepare_allocation(concealed)
     for who in ("P01", "P02"):
         allocate(concealed, who)
     path = concealed.folder / LOG

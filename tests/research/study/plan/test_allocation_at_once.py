@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from metagraph.research.study.plan.allocation import prepare, problems
+from metagraph.research.study.plan.allocation import prepare_allocation, problems
 from metagraph.research.study.plan.drawn_orders import LOG
 from metagraph.research.study.study_plan import read_study
 
@@ -70,7 +70,7 @@ def test_eight_who_begin_at_once_have_eight_places(
             if part.is_file() and part != concealed:
                 (folder / part.name).write_bytes(part.read_bytes())
         study = read_study(folder / concealed.name)
-        prepare(study)
+        prepare_allocation(study)
         lock = folder / f".{LOG}.lock"
         if left == "a stale lock":
             lock.touch()

@@ -9,36 +9,38 @@ import pytest
 from scipy import stats as scipy
 
 from metagraph.research.study.plan.planning import (
-    assumed,
+    assume_without_pilot,
     chi_squared_cdf,
     chi_squared_quantile,
     equivalence,
-    equivalence_power,
     from_pilot,
     half_width,
     precision_chance,
+    ratio_equivalence_power,
     sample_size,
 )
-from metagraph.research.study.statistics.small_samples import people_needed
+from metagraph.research.study.statistics.small_samples import count_pairs_needed
 
 
 def test_what_cannot_be_is_refused() -> None:
     for ratio, spread in ((0.0, 0.3), (2.0, 0.0), (float("nan"), 0.3)):
         with pytest.raises(ValueError, match="greater than 0"):
-            assumed(ratio, spread)
+            assume_without_pilot(ratio, spread)
     with pytest.raises(ValueError, match="smallest"):
-        sample_size(assumed(2.0, 0.5), 1.0)
+        sample_size(assume_without_pilot(2.0, 0.5), 1.0)
     with pytest.raises(ValueError, match="3 people at least"):
         from_pilot([2.0, 3.0])
     with pytest.raises(ValueError, match="do not differ"):
         from_pilot([2.0, 2.0, 2.0])
-    assert sample_size(assumed(1.0, 0.5), 1.25).show is None, "nothing shows an effect that is none"
+    assert sample_size(assume_without_pilot(1.0, 0.5), 1.25).show is None, (
+        "nothing shows an effect that is none"
+    )
 
 
 def test_paired_tests_need_what_cohen_tables_say() -> None:
     """Cohen (1988) and G*Power 3.1, two-sided, alpha 0.05, power 0.8: d_z 0.2, 0.5, 0.8."""
-    assert [people_needed(d) for d in (0.2, 0.5, 0.8)] == [199, 34, 15]
-    found = sample_size(assumed(exp(0.5 * 0.4), 0.4), exp(0.8 * 0.4))
+    assert [count_pairs_needed(d) for d in (0.2, 0.5, 0.8)] == [199, 34, 15]
+    found = sample_size(assume_without_pilot(exp(0.5 * 0.4), 0.4), exp(0.8 * 0.4))
     assert (found.show, found.smallest) == (34, 15)
 
 
@@ -53,9 +55,9 @@ def test_equivalence_has_the_power_of_the_published_tables(
     power as PowerTOST computes it.
     """
     spread = sqrt(2) * sqrt(log(cv * cv + 1))
-    found = equivalence_power(n, log(ratio), spread, log(0.8), log(1.25), 0.05, n - 2)
+    found = ratio_equivalence_power(n, log(ratio), spread, log(0.8), log(1.25), 0.05, n - 2)
     assert found == pytest.approx(power, abs=2e-5)
-    assert equivalence_power(n - 2, log(ratio), spread, log(0.8), log(1.25), 0.05, n - 4) < 0.8
+    assert ratio_equivalence_power(n - 2, log(ratio), spread, log(0.8), log(1.25), 0.05, n - 4) < 0.8
 
 
 def test_equivalence_happens_as_often_as_its_power_says() -> None:
@@ -66,11 +68,11 @@ def test_equivalence_happens_as_often_as_its_power_says() -> None:
         for _ in range(3000)
         if (found := equivalence(rng.normal(0.02, spread, n).tolist(), exp(bound))) is not None
     )
-    assert shown / 3000 == pytest.approx(equivalence_power(n, 0.02, spread, -bound, bound), abs=0.03)
+    assert shown / 3000 == pytest.approx(ratio_equivalence_power(n, 0.02, spread, -bound, bound), abs=0.03)
 
 
 def test_intervals_are_as_narrow_as_planned_as_often_as_planned() -> None:
-    n = sample_size(assumed(2.0, 0.4), 1.25, within=1.25).precise
+    n = sample_size(assume_without_pilot(2.0, 0.4), 1.25, within=1.25).precise
     assert n is not None and half_width(n, 0.4) < log(1.25)
     rng = np.random.default_rng(2)
     drawn = rng.normal(0, 0.4, (4000, n)).std(axis=1, ddof=1)

@@ -9,11 +9,11 @@ import pytest
 
 from app.cli.parser import main
 from metagraph.errors import FileError
-from metagraph.research.study.plan.planning import assumed, sample_size
+from metagraph.research.study.plan.planning import assume_without_pilot, sample_size
 from metagraph.research.study.plan.preregistration import FOLDER, Aims, preregister, unlike
 from metagraph.research.study.study_plan import read_study
 
-FOUND = assumed(2.3, 0.5)
+FOUND = assume_without_pilot(2.3, 0.5)
 AIMS = Aims(FOUND, sample_size(FOUND, 1.25), 1.25, 1.25, 0.8)
 
 

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from metagraph.errors import FileError
-from metagraph.research.study.analysis.results import analyse
-from metagraph.research.study.plan.sites import merge
-from metagraph.research.study.report import page
+from metagraph.research.study.analysis.results import analyse_study
+from metagraph.research.study.plan.sites import merge_site_data
+from metagraph.research.study.report import format_study_page
 from metagraph.research.study.reports.tables import participants
 from metagraph.research.study.simulation.files import write_study
 from metagraph.research.study.simulation.people import Truth
@@ -28,28 +28,28 @@ def folders(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
 
 
 def test_people_are_told_apart_and_sites_are_a_random_effect(folders: list[Path]) -> None:
-    data = merge(folders, jumps=False)
+    data = merge_site_data(folders, jumps=False)
     assert len(data.participants) == 18 and data.participants[6] == "Bonn-P01"
-    found = analyse(data)
+    found = analyse_study(data)
     assert found.time is not None and found.time.ratio.n == 18 and found.time.ratio.holds(2.3)
     assert found.sensitivity is not None and found.sensitivity.mixed is not None
     assert {"sites", "people", "sites' ratios"} <= found.sensitivity.mixed.deviations.keys()
     assert found.by_site.keys() == {"Ulm", "Bonn", "Kiel"} and all(e.n == 6 for e in found.by_site.values())
-    assert "<h3>Sites</h3>" in page(found)
+    assert "<h3>Sites</h3>" in format_study_page(found)
     columns, rows = participants(found)
     assert columns[1] == "site" and rows[7][:2] == ("Bonn-P02", "Bonn")
 
 
 def test_what_does_not_belong_together_is_refused_or_told(folders: list[Path], tmp_path: Path) -> None:
     with pytest.raises(FileError, match="'Ulm'"):
-        merge([folders[0], folders[0]])
+        merge_site_data([folders[0], folders[0]])
     text = (folders[0] / FILE).read_text()
     (tmp_path / FILE).write_text(text.replace("id: small", "id: tiny"))
     with pytest.raises(FileError, match="tasks or conditions"):
-        merge([folders[0], tmp_path])
+        merge_site_data([folders[0], tmp_path])
     (tmp_path / FILE).write_text(
         text.replace("questionnaires: [sus, tlx]", "questionnaires: [sus]\nsite: Jena")
     )
-    told = merge([folders[0], tmp_path], jumps=False).missing
+    told = merge_site_data([folders[0], tmp_path], jumps=False).missing
     assert any(words.startswith("Jena: questions") and words.endswith("not Ulm's.") for words in told)
     assert any(words == "Jena-P01: has not begun." for words in told)

@@ -13,7 +13,7 @@ from metagraph.graph.model import Project
 from metagraph.research.study.machines.normal_machine import normal
 from metagraph.research.study.scores.jumps import with_jumps
 from metagraph.research.study.scores.machines import Score
-from metagraph.research.study.simulation.work import drawn
+from metagraph.research.study.simulation.work import draw_every_connection
 from metagraph.suggest.jumps.found import Measured, jumps
 from tests.research.study.makers import small
 
@@ -45,7 +45,7 @@ def test_clips_that_the_reference_has_not_are_left_out() -> None:
 
 
 def test_a_good_machine_does_not_jump_in_either_condition() -> None:
-    assert judged(sample()).jumps == judged(drawn(sample())).jumps == 0
+    assert judged(sample()).jumps == judged(draw_every_connection(sample())).jumps == 0
     assert not any(jumps(sample(), Measured(sample(), layer)) for layer in sample().graphs)
 
 
@@ -67,7 +67,7 @@ def test_a_clip_on_the_wrong_stance_jumps_to_and_from_what_it_does_not_fit() -> 
 
 
 def test_a_link_by_hand_between_stances_jumps_unless_it_is_blended_for_long() -> None:
-    project = drawn(sample())
+    project = draw_every_connection(sample())
     machine = project.manual["arms"]
     loops = {s.name: s.id for s in machine.states.values() if s.loop}
     crossed, sides = (
@@ -80,7 +80,7 @@ def test_a_link_by_hand_between_stances_jumps_unless_it_is_blended_for_long() ->
 
 
 def test_what_can_be_left_at_any_time_is_judged_at_no_moment_in_particular() -> None:
-    project = drawn(sample())
+    project = draw_every_connection(sample())
     machine = project.manual["arms"]
     gesture = max((s for s in machine.states.values() if not s.loop), key=lambda s: (s.end or 0) - s.start)
     rest = next(x for x in machine.links.values() if x.source == gesture.id and machine.states[x.target].loop)

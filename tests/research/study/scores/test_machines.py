@@ -12,8 +12,8 @@ from metagraph.graph import edits
 from metagraph.graph.manual import edits as manual_edits
 from metagraph.graph.model import Project
 from metagraph.research.study.machines.normal_machine import normal
-from metagraph.research.study.scores.machines import Score, aligned, equivalent, score
-from metagraph.research.study.simulation.work import drawn
+from metagraph.research.study.scores.machines import Score, align_machine, are_equivalent, score
+from metagraph.research.study.simulation.work import draw_every_connection
 from tests.projects import projects
 from tests.research.study.makers import LAYER, small
 
@@ -73,7 +73,7 @@ def test_what_is_not_wanted_is_extra() -> None:
 
 
 def test_the_same_is_right_in_both_conditions() -> None:
-    for project in (small(), drawn(small())):
+    for project in (small(), draw_every_connection(small())):
         found = scored(project)
         assert (found.precision, found.recall, found.f1) == (1.0, 1.0, 1.0)
         assert (found.placed, found.states, words(found)) == (8, 8, [])
@@ -89,19 +89,21 @@ def test_names_of_stances_and_the_order_of_placing_do_not_matter() -> None:
     wave = action(project, "sides_wave")
     project = edits.remove_actions(project, [wave])
     clip = next(i for i, e in project.clips.items() if e.name == "sides_wave")
-    assert equivalent(normal(edits.place(project, [clip], LAYER, "gesture", sides)), normal(small()))
+    assert are_equivalent(
+        normal(edits.place_clips(project, [clip], LAYER, "gesture", sides)), normal(small())
+    )
 
 
 def test_a_forgotten_link_is_one_mistake() -> None:
-    project = drawn(small())
-    found = scored(manual_edits.remove(project, links=[linked(project, "sides_idle", "sides_wave")]))
+    project = draw_every_connection(small())
+    found = scored(manual_edits.remove_states(project, links=[linked(project, "sides_idle", "sides_wave")]))
     assert (found.missing, found.extra, found.recall, found.precision) == (1, 0, 27 / 28, 1.0)
     assert named(found) == [("missing", "sides_idle.glb")] and "sides_wave.glb" in words(found)[0]
     assert (found.essential_right, found.essential) == (11, 12)
 
 
 def test_a_link_to_the_wrong_state_is_missing_extra_and_wrong() -> None:
-    project = drawn(small())
+    project = draw_every_connection(small())
     machine = project.manual[LAYER]
     ident = linked(project, "sides_wave", "sides_idle")
     hips = next(i for i, s in machine.states.items() if s.name == "hips_idle")
@@ -155,7 +157,7 @@ def test_a_wrong_kind_layer_and_limb_are_named() -> None:
         found = scored(other)
         assert named(found) == [(what, "sides_wave.glb")] and re.search(pieces, words(found)[0])
     clip = next(i for i, e in project.clips.items() if e.name == "sides_wave")
-    elsewhere = edits.place(edits.remove_actions(project, [wave]), [clip], "head", "stance", None)
+    elsewhere = edits.place_clips(edits.remove_actions(project, [wave]), [clip], "head", "stance", None)
     found = scored(elsewhere)
     assert named(found)[:2] == [("unwanted", "sides_wave.glb"), ("layer", "sides_wave.glb")]
     assert "head" in words(found)[0] and re.search("head.*arms", words(found)[1])
@@ -176,11 +178,11 @@ def test_how_far_joints_move_is_compared_to_a_notch_of_the_wheel() -> None:
     assert found.placed == found.states - 1
     found = scored(project, weighed(0.5))
     assert named(found) == [("mask", "sides_wave.glb")] and re.search("2 joints .*50 %", words(found)[0])
-    assert scored(drawn(weighed(0.3)), weighed(0.6)).count("mask") == 1
+    assert scored(draw_every_connection(weighed(0.3)), weighed(0.6)).count("mask") == 1
 
 
 def test_a_requested_link_makes_a_gesture_of_a_fidget() -> None:
-    project = drawn(small())
+    project = draw_every_connection(small())
     fidgets = [
         x.id for x in project.manual[LAYER].links.values() if project.state(x.target).name == "sides_scratch"
     ]
@@ -206,7 +208,7 @@ def test_times_count_beyond_the_tolerance_only() -> None:
 
 
 def test_a_link_that_is_taken_at_once_is_told() -> None:
-    project = drawn(small())
+    project = draw_every_connection(small())
     ident = linked(project, "sides_wave", "sides_to_hips")
     found = scored(manual_edits.update_links(project, [ident], exit_time=None))
     assert named(found) == [("timing", "sides_wave.glb")] and re.search("any time.*2.00 s", words(found)[0])
@@ -215,14 +217,14 @@ def test_a_link_that_is_taken_at_once_is_told() -> None:
 def test_several_uses_of_one_clip_are_matched_by_what_they_are() -> None:
     project = small()
     clip = next(i for i, e in project.clips.items() if e.name == "sides_wave")
-    twice = edits.place(project, [clip], LAYER, "gesture", stance(project, "hips"))
+    twice = edits.place_clips(project, [clip], LAYER, "gesture", stance(project, "hips"))
     other = edits.remove_actions(twice, [action(twice, "sides_wave")])
     first = next(a.id for a in other.actions() if a.clip == clip)
-    other = edits.place(
+    other = edits.place_clips(
         other, [clip], LAYER, "gesture", stance(project, "sides")
     )  # now that on the hips came first
     assert next(a.id for a in other.actions() if a.clip == clip) == first
-    assert equivalent(normal(other), normal(twice))
+    assert are_equivalent(normal(other), normal(twice))
     assert named(scored(twice))[0] == ("unwanted", "sides_wave.glb#2")
     assert scored(small(), twice).count("absent") == 1
 
@@ -230,18 +232,19 @@ def test_several_uses_of_one_clip_are_matched_by_what_they_are() -> None:
 def test_many_uses_of_one_clip_are_matched_one_by_one() -> None:
     project = small()
     clip = next(i for i, e in project.clips.items() if e.name == "sides_wave")
-    many = edits.place(project, [clip] * 9, LAYER, "fidget", stance(project, "hips"))
+    many = edits.place_clips(project, [clip] * 9, LAYER, "fidget", stance(project, "hips"))
     assert (
-        aligned(normal(many)[LAYER], normal(many)[LAYER]).states.keys() == normal(many)[LAYER].states.keys()
+        align_machine(normal(many)[LAYER], normal(many)[LAYER]).states.keys()
+        == normal(many)[LAYER].states.keys()
     )
-    assert equivalent(normal(many), normal(many))
+    assert are_equivalent(normal(many), normal(many))
 
 
 def test_long_lists_are_cut() -> None:
-    project = drawn(small())
+    project = draw_every_connection(small())
     wave = next(s.id for s in project.manual[LAYER].states.values() if s.name == "sides_idle")
     found = scored(
-        manual_edits.remove(
+        manual_edits.remove_states(
             project, links=[x.id for x in project.manual[LAYER].links.values() if x.source == wave]
         )
     )
@@ -260,5 +263,5 @@ def test_shares_by_hand() -> None:
 @given(projects())
 def test_whatever_is_made_is_right_beside_itself(project: Project) -> None:
     found = normal(project, manual=False)
-    assert equivalent(found, found)
+    assert are_equivalent(found, found)
     assert score(found, found).placed == sum(len(m.states) for m in found.values())

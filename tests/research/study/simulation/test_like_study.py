@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 
 from metagraph.errors import FileError
-from metagraph.research.study.analysis.reading import collect
-from metagraph.research.study.analysis.results import analyse
-from metagraph.research.study.logs.log import read
+from metagraph.research.study.analysis.reading import collect_study
+from metagraph.research.study.analysis.results import analyse_study
+from metagraph.research.study.logs.log import read_log
 from metagraph.research.study.simulation.like_study import write_like
 from metagraph.research.study.simulation.people import Truth
-from metagraph.research.study.sitting import phases, where
+from metagraph.research.study.sitting import find_place_in_sitting, list_phases
 from metagraph.research.study.study_plan import read_study
 
 SAMPLE = Path(__file__).resolve().parents[4] / "sample_clips" / "study"
@@ -24,12 +24,12 @@ def test_the_example_study_is_gone_through_by_people_who_do_not_exist(tmp_path: 
     assert made.problems() == [] and [t.id for t in made.plan.tasks] == ["ten", "twenty"]
     assert made.plan.consent == study.plan.consent and made.plan.title.endswith("(simulated)")
     for who in made.plan.ids:
-        log = read(made.log(who))
+        log = read_log(made.log(who))
         assert log.complete and not log.problems
-        assert where(phases(made, who), log.events).phase is None
+        assert find_place_in_sitting(list_phases(made, who), log.events).phase is None
         assert made.blocks(who) == study.blocks(who)
-    data = collect(made.folder, jumps=False)
-    found = analyse(data)
+    data = collect_study(made.folder, jumps=False)
+    found = analyse_study(data)
     assert data.simulated and found.time is not None and found.time.ratio.holds(3.0)
     assert found.mistakes[0].means["meta"].value > found.mistakes[0].means["manual"].value
     with pytest.raises(FileError, match="is not empty"):
@@ -47,7 +47,7 @@ def test_questions_of_ones_own_limits_and_concealed_orders_are_simulated_too(
     )
     tiny.write_text(text.replace(item, f"{item}, {more}"))
     made = write_like(read_study(tiny), tmp_path / "made", Truth())
-    data = collect(made.folder, jumps=False)
+    data = collect_study(made.folder, jumps=False)
     assert any(r.run.timed_out for r in data.rows)
     said = {a.item: a.value for a in data.answers if a.questionnaire == "more"}
     assert said["which"] in ("one", "other") and 1 <= said["sure"] <= 7

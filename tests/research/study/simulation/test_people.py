@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 
 from metagraph.errors import FileError
-from metagraph.research.study.analysis.reading import collect
-from metagraph.research.study.analysis.results import Results, analyse, compare, learning
-from metagraph.research.study.logs.log import read
+from metagraph.research.study.analysis.reading import collect_study
+from metagraph.research.study.analysis.results import Results, analyse_study, compare_conditions, learning
+from metagraph.research.study.logs.log import read_log
 from metagraph.research.study.questionnaires import sus_score
 from metagraph.research.study.simulation.files import TASKS, clips_of, write_study
-from metagraph.research.study.simulation.people import Truth, numbers, simulated
-from metagraph.research.study.simulation.work import drawn, slipped
-from metagraph.research.study.sitting import phases, where
+from metagraph.research.study.simulation.people import Truth, simulate_participants, simulate_times
+from metagraph.research.study.simulation.work import draw_every_connection, make_slips
+from metagraph.research.study.sitting import find_place_in_sitting, list_phases
 from metagraph.research.study.study_plan import read_study
 from tests.research.study.makers import LAYER, small
 from tests.thorough import THOROUGH, many
@@ -47,14 +47,14 @@ def test_what_cannot_be_is_refused(field: str, value: float) -> None:
 
 
 def test_the_same_seed_gives_the_same_people_and_more_of_them_the_same_first_ones() -> None:
-    few, many = (list(simulated(Truth(participants=n), TWO)) for n in (4, 9))
+    few, many = (list(simulate_participants(Truth(participants=n), TWO)) for n in (4, 9))
     assert many[:4] == few
-    assert list(simulated(Truth(participants=4, seed=2), TWO)) != few
+    assert list(simulate_participants(Truth(participants=4, seed=2), TWO)) != few
 
 
 def test_without_any_chance_the_truth_comes_out_exactly() -> None:
     truth = Truth(participants=4, ratio=6.0, pace=0, spread=0, chance=0, order=0.8)
-    found = analyse(numbers(truth, TWO))
+    found = analyse_study(simulate_times(truth, TWO))
     assert found.time is not None and found.time.order is not None
     assert found.time.order.adjusted.value == pytest.approx(6.0)
     assert found.time.order.second.value == pytest.approx(0.8)
@@ -68,12 +68,12 @@ def test_intervals_include_the_truth_as_often_as_they_promise() -> None:
     held: Counter[str] = Counter()
     for seed in range(STUDIES):
         plain = Truth(participants=12, seed=seed, order=1.0)
-        found = compare(numbers(plain, TWO).rows)
+        found = compare_conditions(simulate_times(plain, TWO).rows)
         assert found is not None
         held["ratio"] += found.ratio.holds(plain.ratio)
         truth = replace(plain, seed=seed + STUDIES, order=0.8)
-        rows = numbers(truth, TWO).rows
-        ordered = compare(rows)
+        rows = simulate_times(truth, TWO).rows
+        ordered = compare_conditions(rows)
         curve = learning([r for r in rows if r.run.condition == "manual"])
         assert ordered is not None and ordered.order is not None and curve is not None
         held["adjusted"] += ordered.order.adjusted.holds(truth.ratio)
@@ -93,7 +93,7 @@ def spread_of_logs(truth: Truth) -> float:
     clips (by many draws).
     """
     if "spread" not in _SPREAD:
-        many = compare(numbers(replace(truth, participants=1000, seed=10**6), TWO).rows)
+        many = compare_conditions(simulate_times(replace(truth, participants=1000, seed=10**6), TWO).rows)
         assert many is not None
         _SPREAD["spread"] = float(np.std([log(p.ratio) for p in many.people], ddof=1))
     return _SPREAD["spread"]
@@ -107,15 +107,15 @@ _SPREAD: dict[str, float] = {}
 
 def test_no_slips_change_nothing_and_nothing_to_slip_on_does_no_harm() -> None:
     rng = np.random.default_rng(1)
-    assert slipped(small(), False, 0, rng) == small()
+    assert make_slips(small(), False, 0, rng) == small()
     empty = replace(small(), graphs={x: replace(g, actions={}) for x, g in small().graphs.items()})
-    assert slipped(empty, False, 3, rng) == empty
-    assert slipped(empty, True, 3, rng) == empty
+    assert make_slips(empty, False, 3, rng) == empty
+    assert make_slips(empty, True, 3, rng) == empty
 
 
 def test_what_is_drawn_by_hand_has_a_link_for_every_connection() -> None:
-    assert len(drawn(small()).manual[LAYER].links) == 28
-    assert not [*drawn(small()).actions()]
+    assert len(draw_every_connection(small()).manual[LAYER].links) == 28
+    assert not [*draw_every_connection(small()).actions()]
 
 
 # --- through files
@@ -128,7 +128,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def results(folder: Path) -> Results:
-    return analyse(collect(folder))
+    return analyse_study(collect_study(folder))
 
 
 def test_a_folder_with_something_in_it_is_left_alone(folder: Path) -> None:
@@ -140,16 +140,16 @@ def test_the_study_is_valid_and_every_sitting_comes_to_its_end(folder: Path) -> 
     study = read_study(folder)
     assert study.problems() == []
     for who in study.plan.ids:
-        log_ = read(study.log(who))
+        log_ = read_log(study.log(who))
         assert not log_.torn and not log_.problems and log_.complete
-        assert where(phases(study, who), log_.events).phase is None
+        assert find_place_in_sitting(list_phases(study, who), log_.events).phase is None
 
 
 def test_the_logs_say_what_was_drawn(folder: Path) -> None:
-    people = {p.participant: p for p in simulated(Truth(), {t: clips_of(t) for t in TASKS})}
+    people = {p.participant: p for p in simulate_participants(Truth(), {t: clips_of(t) for t in TASKS})}
     study = read_study(folder)
     for who, person in list(people.items())[:5]:
-        log_ = read(study.log(who))
+        log_ = read_log(study.log(who))
         for run, work in zip(log_.tasks(), person.works, strict=True):
             assert (run.task, run.condition, run.finished, run.away) == (work.task, work.condition, True, 0.0)
             assert run.seconds == pytest.approx(sum(work.seconds.values()), abs=1e-3)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from metagraph.research.study.statistics import mixed as stats_mixed
-from metagraph.research.study.statistics.mixed import fit
+from metagraph.research.study.statistics.mixed import fit_mixed
 from metagraph.research.study.statistics.student_t import t_quantile
 
 # Davies and Goldsmith, "Statistical Methods in Research and Production", 4th ed., table 6.3: yields of dyestuff,
@@ -21,15 +21,15 @@ BATCHES = np.repeat(list("ABCDEF"), 5).tolist()
 
 
 def test_too_few_rows_give_nothing() -> None:
-    assert fit([1.0], {"one": [1]}, {}) is None
-    assert fit([], {"one": []}, {"who": []}) is None
-    assert fit([1.0, 2.0, 1.0, 2.0], {"one": [1] * 4, "x": [0, 1, 0, 1]}, {"who": [0, 0, 1, 1]}) is None, (
-        "exactly"
-    )
+    assert fit_mixed([1.0], {"one": [1]}, {}) is None
+    assert fit_mixed([], {"one": []}, {"who": []}) is None
+    assert (
+        fit_mixed([1.0, 2.0, 1.0, 2.0], {"one": [1] * 4, "x": [0, 1, 0, 1]}, {"who": [0, 0, 1, 1]}) is None
+    ), "exactly"
 
 
 def test_the_textbooks_batches_by_restricted_and_by_plain_likelihood() -> None:
-    found, plain = (fit(YIELDS, {"one": [1] * 30}, {"batch": BATCHES}, reml) for reml in (True, False))
+    found, plain = (fit_mixed(YIELDS, {"one": [1] * 30}, {"batch": BATCHES}, reml) for reml in (True, False))
     assert found is not None and plain is not None
     # Between batches 11271.5 and within 2451.25 (mean squares): (11271.5 - 2451.25) / 5 = 42.0^2.
     assert found.deviations == {
@@ -49,7 +49,7 @@ def test_the_textbooks_batches_by_restricted_and_by_plain_likelihood() -> None:
 
 def test_without_groups_it_is_ordinary_regression() -> None:
     x, y = [1.0, 2.0, 3.0, 4.0], [1.1, 1.9, 3.2, 3.8]
-    found = fit(y, {"one": [1] * 4, "x": x}, {})
+    found = fit_mixed(y, {"one": [1] * 4, "x": x}, {})
     assert found is not None
     assert found.effects["x"].value == pytest.approx(np.polyfit(x, y, 1)[0])
     assert found.df["x"] == 2 and found.deviations.keys() == {"rest"}
@@ -66,7 +66,7 @@ def test_a_balanced_cross_over_is_that_of_its_closed_form() -> None:
     one, other = gaps[above_first], gaps[~above_first]
     adjusted, second = (one.mean() + other.mean()) / 2, (other.mean() - one.mean()) / 2
     half = t_quantile(0.975, 10) * sqrt((one.var(ddof=1) + other.var(ddof=1)) / 2 / 3) / 2
-    found = fit(
+    found = fit_mixed(
         logs.ravel().tolist(),
         {
             "one": [1] * 24,
@@ -87,7 +87,7 @@ def test_a_balanced_cross_over_is_that_of_its_closed_form() -> None:
 def test_an_unbalanced_model_of_two_sorts_of_groups_agrees_with_another_program() -> None:
     """statsmodels 0.15 MixedLM of the same numbers: groups of people, conditions of people within."""
     who, cond, task, y = unbalanced()
-    found = fit(
+    found = fit_mixed(
         y,
         {"one": [1] * len(y), "by hand": cond, "task": task},
         {"person": who, "person and condition": [f"{a} {b}" for a, b in zip(who, cond, strict=True)]},
@@ -121,7 +121,7 @@ def unbalanced() -> tuple[list[int], list[float], list[float], list[float]]:
 
 
 def test_what_others_say_already_and_groups_of_one_row_are_left_out() -> None:
-    found = fit(
+    found = fit_mixed(
         [1.0, 2.0, 3.0, 5.0],
         {"one": [1] * 4, "x": [0, 1, 0, 1], "twice x": [0, 2, 0, 2], "never": [0] * 4},
         {"row": [1, 2, 3, 4], "all": [1, 1, 1, 1]},
@@ -132,7 +132,7 @@ def test_what_others_say_already_and_groups_of_one_row_are_left_out() -> None:
 
 def test_groups_that_do_not_differ_have_no_deviation() -> None:
     y = [1.0, 2.0, 2.1, 1.1, 1.2, 1.9]
-    found = fit(y, {"one": [1] * 6}, {"pair": [0, 0, 1, 1, 2, 2]})
+    found = fit_mixed(y, {"one": [1] * 6}, {"pair": [0, 0, 1, 1, 2, 2]})
     assert found is not None and found.deviations["pair"] == 0
     assert found.df["one"] == pytest.approx(5), "then it is an ordinary mean"
 
@@ -144,9 +144,9 @@ def test_many_rows_of_few_groups_give_what_their_covariances_give(monkeypatch: p
     y, people, items = y[:-3], people[:-3], items[:-3]  # somebody left early
     effects = {"one": np.ones(105), "place": rng.normal(0, 1, 105)}
     groups = {"people": people, "items": items}
-    by_sums = stats_mixed.fit(y, effects, groups)
+    by_sums = stats_mixed.fit_mixed(y, effects, groups)
     monkeypatch.setattr(stats_mixed, "FEW_ROWS", 10_000)
-    by_rows = stats_mixed.fit(y, effects, groups)
+    by_rows = stats_mixed.fit_mixed(y, effects, groups)
     assert by_sums is not None and by_rows is not None
     assert by_sums.deviance == pytest.approx(by_rows.deviance, abs=1e-8)
     assert [*by_sums.deviations.values()] == pytest.approx([*by_rows.deviations.values()], abs=1e-4)

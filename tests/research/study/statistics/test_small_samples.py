@@ -124,14 +124,14 @@ def test_order_is_told_from_the_condition() -> None:
 
 
 def test_words_say_when_people_are_too_few() -> None:
-    (one,) = s.cautions(s.ratio([8.0], [1.0]), None)
+    (one,) = s.ratio_cautions(s.ratio([8.0], [1.0]), None)
     assert "no interval" in one
-    few = s.cautions(s.ratio([8.0, 9.0, 7.0], [1.0, 1.0, 1.0]), 5.0)
+    few = s.ratio_cautions(s.ratio([8.0, 9.0, 7.0], [1.0, 1.0, 1.0]), 5.0)
     assert len(few) == 1 and "3 pairs" in few[0]
-    vague = s.cautions(s.Estimate(1.2, 0.9, 1.6, 12), 0.5)
+    vague = s.ratio_cautions(s.Estimate(1.2, 0.9, 1.6, 12), 0.5)
     assert len(vague) == 1 and "includes 1" in vague[0] and "34 people" in vague[0] and "80 %" in vague[0]
-    assert "10,000 people" in s.cautions(s.Estimate(1.0, 0.9, 1.1, 12), 0.001)[0]
-    assert s.cautions(s.Estimate(2.0, 1.5, 2.5, 12), 3.0) == []
+    assert "10,000 people" in s.ratio_cautions(s.Estimate(1.0, 0.9, 1.1, 12), 0.001)[0]
+    assert s.ratio_cautions(s.Estimate(2.0, 1.5, 2.5, 12), 3.0) == []
 
 
 # --- against others
@@ -190,10 +190,10 @@ def test_sizes_of_effects_and_studies_as_scipy_and_statsmodels_have_them() -> No
         (2, 3.0, 0.26077071422910936),
         (100, 0.2, 0.508264806621038),
     ):
-        assert s.power(n, effect) == close(wanted)
-    assert [s.people_needed(e) for e in (0.5, 0.8, 0.2, -2.0)] == [34, 15, 199, 5]
-    assert s.people_needed(0.0) is None
-    assert s.power(1, 1.0) == 0.0
+        assert s.paired_power(n, effect) == close(wanted)
+    assert [s.count_pairs_needed(e) for e in (0.5, 0.8, 0.2, -2.0)] == [34, 15, 199, 5]
+    assert s.count_pairs_needed(0.0) is None
+    assert s.paired_power(1, 1.0) == 0.0
 
 
 def test_practice_as_least_squares_have_it() -> None:
