@@ -233,8 +233,8 @@ def _order(time: ConditionComparison) -> str:
     ratio, spread = format_ratio(order.second), format_spread(order.second)
     second = f"A second sitting took {ratio} as long as a first one ({spread})."
     carried = (
-        f"Those who began by hand took {format_ratio(order.carried)} as long over both as those who began with "
-        "the meta-graph "
+        f"Those who began by hand took {format_ratio(order.carried)} as long over both as those who began "
+        "with the meta-graph "
         f"({format_spread(order.carried)}): "
     )
     if order.carried.holds(1.0):
