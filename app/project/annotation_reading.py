@@ -150,18 +150,19 @@ def describe_doubts(reading: AnnotationReading) -> list[str]:
     """Return in words what is doubtful about a reading."""
     out = list(reading.annotation.notes)
     if not reading.observed:
-        out.append(
-            tr("No tier is read as an arm, the head or the body yet: choose what the tiers stand for.")
-        )
+        out.append(tr("No tier is read as arms, head or body yet. Choose what each tier stands for."))
     for layer, acts in reading.observed.items():
         if not acts:
             out.append(
-                tr("The {layer} tiers hold nothing that counts: see what their labels mean.", layer=tr(layer))
+                tr(
+                    "The {layer} tiers contain no usable labels. Check what their labels mean.",
+                    layer=tr(layer),
+                )
             )
         elif len(acts) < FEW:
             out.append(
                 tr(
-                    "Only {acts} actions of the {layer}: its model will be a rough one.",
+                    "Only {acts} actions of the {layer}, so its model will be rough.",
                     acts=len(acts),
                     layer=tr(layer),
                 )

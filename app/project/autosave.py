@@ -138,8 +138,9 @@ class Autosave:
             return None
         self._warn(
             tr(
-                "Your edits cannot be kept beside {name} any more: {error} They are kept in Metagraph's own "
-                "folder now, and offered when you open the project again. Save it elsewhere to be safe.",
+                "Your edits can no longer be kept beside {name}: {error} They are now kept in "
+                "Metagraph's own folder and offered when you open the project again. To be safe, save "
+                "the project in another place.",
                 name=document.path.name,
                 error=error,
             )

@@ -66,7 +66,7 @@ class Files(QObject):
         self.saver = Saver(document, jobs, self)
         self.saver.saved.connect(self._saved)
         self.saver.noted.connect(
-            lambda path, note: self.report.emit(tr("Saved {name}, but", name=path.name), [note])
+            lambda path, note: self.report.emit(tr("Saved {name}, with a warning", name=path.name), [note])
         )
         self.saver.failed.connect(self._not_saved)
         self.saver.gone.connect(self._folder_gone)
@@ -162,7 +162,7 @@ class Files(QObject):
             _release(found.lock, self.document)
             return
         if found.notes and not found.left:
-            self.report.emit(tr("Edits that cannot be recovered are kept"), list(found.notes))
+            self.report.emit(tr("Unrecoverable edits were kept"), list(found.notes))
         self._open(path, before, found, tuple(zip(found.left, choices, strict=True)), read_only=read_only)
 
     def _open(
@@ -224,10 +224,12 @@ class Files(QObject):
             if chosen is not None and chosen.behind:
                 self.look_at_file()
             if kept:
-                self.told.emit(tr("Saved beside it: {names}", names=", ".join(place.name for place in kept)))
+                self.told.emit(
+                    tr("Saved as copies beside it: {names}", names=", ".join(place.name for place in kept))
+                )
             notes = [note for note in opened.notes if not self.network.tells(note)]
             if notes:
-                self.report.emit(tr("{name} was opened, but", name=path.name), notes)
+                self.report.emit(tr("Opened {name}, with warnings", name=path.name), notes)
             self.network.look()
 
         def failed(error: Exception) -> None:
@@ -241,8 +243,8 @@ class Files(QObject):
         from app.project.recovering import describe_lost
 
         if left.is_damaged:
-            kept = tr("The damaged file is kept: {place}", place=left.path.parent)
-            self.report.emit(tr("The kept edits were damaged"), [*describe_lost(left), kept])
+            kept = tr("The damaged file is still there: {place}", place=left.path.parent)
+            self.report.emit(tr("Some of your unsaved edits were damaged"), [*describe_lost(left), kept])
 
     def recover(self) -> None:
         """Offer all work that is in no file, wherever it lies."""
@@ -289,7 +291,7 @@ class Files(QObject):
                 self.window,
                 tr("Not saved"),
                 tr(
-                    "{name} is open in another window, by {holder}. Choose another name.",
+                    "{name} is open in another window ({holder}). Choose another name.",
                     name=path.name,
                     holder=describe_holder(holder),
                 ),
@@ -307,7 +309,7 @@ class Files(QObject):
         self._asked_for = None  # the document's now
         self._remember(path)
         if anew and path == self.document.path:
-            self.told.emit(tr("{name} was not there any more. It has been written again.", name=path.name))
+            self.told.emit(tr("{name} no longer existed, so it was written again.", name=path.name))
         else:
             self.told.emit(tr("Saved {name}", name=path.name))
 
@@ -336,7 +338,7 @@ class Files(QObject):
         def show() -> None:
             self.report.emit(tr("Your unsaved edits"), warnings)
 
-        self.noticed.emit(tr("About your unsaved edits: look…"), "\n".join(warnings), show)
+        self.noticed.emit(tr("Check your unsaved edits…"), "\n".join(warnings), show)
 
     def _not_saved(self, error: Exception, path: Path | None) -> None:
         if self._asked_for is not None:
@@ -356,7 +358,7 @@ class Files(QObject):
         answer = QMessageBox.question(
             self.window,
             tr("Save changes?"),
-            tr("'{name}' has changes that are not saved.", name=self.document.project.name),
+            tr("'{name}' has unsaved changes.", name=self.document.project.name),
             box.Save | box.Discard | box.Cancel,
             box.Save,
         )
@@ -377,7 +379,7 @@ class Files(QObject):
         try:
             write_atomically(state_folder() / "recent.json", json.dumps(names[:RECENT]).encode(), PRIVATE)
         except (FileError, OSError):
-            self.told.emit(tr("The list of recent projects could not be written."))
+            self.told.emit(tr("The list of recent projects could not be saved."))
 
 
 def _release(lock: Lock | None, document: Document) -> None:

@@ -115,7 +115,7 @@ class Importing(QObject):
             if era == self._era:
                 self._imported(result, drop)
             else:
-                self.told.emit(tr("The import was dropped, since another project was opened."))
+                self.told.emit(tr("The import was discarded because another project was opened."))
 
         maps = read_joint_maps()
 
@@ -173,7 +173,7 @@ class Importing(QObject):
         if not result.loaded and not result.apart and not result.failures:
             self.report.emit(
                 tr("Nothing was imported"),
-                [tr("No clip was found there. Clips are BVH, GLB, glTF, VRM animation or FBX files.")],
+                [tr("No clips were found there. Clips are BVH, GLB, glTF, VRM animation or FBX files.")],
             )
             return
         before = [note for note in result.notes if note.endswith("retargeted as before")]
@@ -209,7 +209,7 @@ class Importing(QObject):
         def done(back: Opened) -> None:
             if era != self._era:
                 return
-            self.document.take_motion(tr("Read clips that are back"), lambda p: take_over(p, back.project))
+            self.document.take_motion(tr("Read restored clips"), lambda p: take_over(p, back.project))
             if any(e.motion is None for e in self.document.project.clips.values()):
                 self._ask_for_missing(count)
             else:
@@ -228,7 +228,7 @@ class Importing(QObject):
         missing = [e for e in project.clips.values() if e.motion is None]
         name = QFileDialog.getExistingDirectory(
             self.widget,
-            tr("Where are the {missing} missing clips?", missing=len(missing)),
+            tr("Locate {missing} missing clips", missing=len(missing)),
             str(self.document.folder or Path.home()),
         )
         if not name:

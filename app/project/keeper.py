@@ -43,8 +43,8 @@ class Keeper(QObject):
                 lock.made_again = False
                 document.warned.emit(
                     tr(
-                        "Another program removed the file beside {name} that tells other windows that it is "
-                        "open. It is there again.",
+                        "Another program removed the lock file beside {name}, which shows other windows that "
+                        "the project is open. Metagraph has restored it.",
                         name=document.path.name,
                     )
                 )
@@ -52,8 +52,8 @@ class Keeper(QObject):
                 document.lose_lock()
                 self.told.emit(
                     tr(
-                        "Another window has taken {name} over. This one can look and try, and "
-                        "save elsewhere.",
+                        "Another window has taken over {name}. Here you can still look around, try things, "
+                        "and save under another name.",
                         name=document.path.name,
                     )
                 )

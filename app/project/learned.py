@@ -154,7 +154,7 @@ class Learned(QObject):
             except OSError as error:
                 self.failed.emit(
                     tr(
-                        "What was learned cannot be read: {path}: {why}.",
+                        "Cannot read what was learned: {path}: {why}.",
                         path=path,
                         why=error.strerror or error,
                     )
@@ -164,7 +164,7 @@ class Learned(QObject):
                 aside = _set_aside(path)
                 self.failed.emit(
                     tr(
-                        "What was learned cannot be read: {name}: {error}. It was set aside as {aside}.",
+                        "Cannot read what was learned: {name}: {error}. The file is kept as {aside}.",
                         name=path.name,
                         error=error,
                         aside=aside,
@@ -181,8 +181,8 @@ class Learned(QObject):
         if not lock.tryLock(LOCK_WAIT):
             self.failed.emit(
                 tr(
-                    "Nothing was learned: another window holds {name}. It will be tried again with the "
-                    "next correction.",
+                    "Nothing was learned because another window is using {name}. Metagraph tries again at "
+                    "the next correction.",
                     name=path.name,
                 )
             )

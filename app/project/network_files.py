@@ -50,7 +50,7 @@ class NetworkFiles(QObject):
         """Ask whether to open them, whatever was answered before; the answer is kept for this project."""
         names = list_closed_paths(self.document.project)
         if not names:
-            self.files.told.emit(tr("This project names no files on other computers that are not open."))
+            self.files.told.emit(tr("Every file on other computers that this project names is already open."))
             return
         box = QMessageBox(
             QMessageBox.Icon.Warning,
@@ -64,13 +64,13 @@ class NetworkFiles(QObject):
             + more
             + "\n\n"
             + tr(
-                "Opening them tells those computers that you do, and perhaps who you are. Open them only if "
-                "you trust where this project comes from. The answer is kept for this project."
+                "Opening them shows those computers that you did, and perhaps who you are. Open them "
+                "only if you trust the source of this project. The answer is kept for this project."
             )
         )
         box.setTextFormat(Qt.TextFormat.PlainText)
         yes = box.addButton(tr("Open them"), QMessageBox.ButtonRole.AcceptRole)
-        no = box.addButton(tr("Leave them closed"), QMessageBox.ButtonRole.RejectRole)
+        no = box.addButton(tr("Keep them closed"), QMessageBox.ButtonRole.RejectRole)
         box.setDefaultButton(no)
         box.exec()
         opens = box.clickedButton() is yes

@@ -56,10 +56,11 @@ class Outside(QObject):
                 return
             self._told_of = changed.digest
             document.keep_all()
-            what = tr("look…") if document.dirty else tr("reload…")
-            tip = tr("Another program, another window or a version control update has written it")
+            tip = tr("Another program, another window or a version control update wrote it")
             files.noticed.emit(
-                tr("{name} changed on disk: {what}", name=path.name, what=what),
+                tr("{name} changed on disk. Compare…", name=path.name)
+                if document.dirty
+                else tr("{name} changed on disk. Reload…", name=path.name),
                 tip,
                 lambda: self.ask(changed),
             )
@@ -87,7 +88,7 @@ class Outside(QObject):
                 self._merge(changed, document.common, theirs, digest)
 
     def _start(self, changed: FileChangedError, work: Callable[[WindowJob], object], done: Callable) -> None:
-        title = tr("Reading {name} again", name=changed.path.name)
+        title = tr("Reloading {name}", name=changed.path.name)
         self.files.jobs.start(title, work, done, self.files.show_failure)
 
     def _reload(self, changed: FileChangedError, theirs: Project, digest: str) -> None:
@@ -96,7 +97,7 @@ class Outside(QObject):
         def done(opened: Opened) -> None:
             if era == self._era:
                 self.document.reload(opened.project, digest)
-                self.files.told.emit(tr("Read {name} again", name=changed.path.name))
+                self.files.told.emit(tr("Reloaded {name}", name=changed.path.name))
 
         self._start(changed, lambda job: load_whole(theirs, changed.path.parent, job.tell), done)
 
@@ -118,7 +119,8 @@ class Outside(QObject):
                 return
             if isinstance(found, MergeError):
                 words = tr(
-                    "The two do not go together: {found}. Save yours under another name instead.", found=found
+                    "The two versions cannot be merged: {found}. Save yours under another name instead.",
+                    found=found,
                 )
                 QMessageBox.warning(self.files.window, tr("Not merged"), words)
             elif self.document.project is not mine:
@@ -126,8 +128,12 @@ class Outside(QObject):
             else:
                 opened, kept = found
                 self.document.merge(opened.project, theirs, digest)
-                self.files.told.emit(tr("Merged with {name}; saving writes both", name=changed.path.name))
+                self.files.told.emit(
+                    tr("Merged with {name}. Saving writes both versions.", name=changed.path.name)
+                )
                 if kept:
-                    self.files.report.emit(tr("Merged; what both had changed is as it was here"), list(kept))
+                    self.files.report.emit(
+                        tr("Merged. Your version was kept where both had changed the same thing."), list(kept)
+                    )
 
         self._start(changed, work, done)

@@ -32,9 +32,9 @@ def read_patterns(path: Path) -> Patterns:
             tr(REMEDY),
         ) from None
     except (UnicodeDecodeError, RecursionError):
-        raise FileError(path, tr("it is not JSON"), tr("on reading name patterns"), tr(REMEDY)) from None
+        raise FileError(path, tr("it is not JSON"), tr("while reading name patterns"), tr(REMEDY)) from None
     except PatternsError as error:
-        raise FileError(path, tr_error(error), tr("on reading name patterns"), tr(REMEDY)) from None
+        raise FileError(path, tr_error(error), tr("while reading name patterns"), tr(REMEDY)) from None
 
 
 def write_patterns(path: Path, patterns: Patterns) -> None:

@@ -42,7 +42,7 @@ def describe_holder(holder: Holder) -> str:
     """Say who has a file: user, computer, since when."""
     owner = holder.owner
     if owner is None:
-        return tr("another window, which does not say whose it is")
+        return tr("another window, whose user is unknown")
     return tr(
         "{user} on {host}, since {since}",
         user=owner.user,
@@ -59,16 +59,16 @@ def ask_held(window: QWidget, path: Path, holder: Holder) -> Held | None:
         tr("{name} is open in another window.", name=path.name),
         parent=window,
     )
-    words = tr("By {holder}.", holder=describe_holder(holder)) + "\n\n"
+    words = tr("Opened by {holder}.", holder=describe_holder(holder)) + "\n\n"
     if holder.gone:
         words += tr(
-            "That window has not been heard of for a while: it may be gone, or its computer asleep. "
-            "Take over if you know that it is gone."
+            "That window has not responded for a while: it may be closed, or its computer asleep. "
+            "Take over only if you know that it is closed."
         )
         words += "\n\n"
     words += tr(
-        "Read-only, you can look, play and try anything, and save it elsewhere. A copy is a project of "
-        "your own."
+        "In read-only mode you can look, play and try anything, and save under another name. A "
+        "copy is a project of your own."
     )
     box.setInformativeText(words)
     first = box.addButton(tr("Open read-only"), Role.AcceptRole)
@@ -90,7 +90,7 @@ def ask_folder_gone(window: QWidget, error: FolderGoneError) -> Gone | None:
     box = QMessageBox(
         QMessageBox.Icon.Warning,
         tr("Not saved"),
-        tr("The folder of {name} is not there any more.", name=error.path.name),
+        tr("The folder of {name} no longer exists.", name=error.path.name),
         parent=window,
     )
     box.setInformativeText(tr_error(error))
@@ -122,15 +122,15 @@ def ask_changed(
         parent=window,
     )
     words = tr(
-        "Another program, another window or a version control update has written it since it was opened "
-        "or saved here."
+        "Another program, another window or a version control update has written it since you "
+        "opened or saved it here."
     )
     if changed.theirs is None:
         words += "\n\n" + tr("It cannot be read: {why}", why=changed.why)
     if dirty:
         words += "\n\n" + tr(
-            "Merging takes what was done on both sides. Saving anyway replaces what is there. "
-            "Merging and reloading are steps that can be undone; your edits are kept in them."
+            "Merge keeps the changes of both sides. Save anyway replaces the file on disk. You can "
+            "undo Merge and Reload, and both keep your edits."
         )
     box.setInformativeText(words)
     ways: list[tuple[QPushButton, Changed]] = []
@@ -180,15 +180,15 @@ class DifferencesDialog(QDialog):
         elif common is not None:
             self._column(
                 row,
-                tr("Done on disk"),
-                describe_differences(common, theirs) or [tr("Nothing but spacing or comments")],
+                tr("Changed on disk"),
+                describe_differences(common, theirs) or [tr("Only spacing or comments")],
             )
         if common is not None:
-            self._column(row, tr("Done here"), describe_differences(common, mine) or [tr("Nothing")])
+            self._column(row, tr("Changed here"), describe_differences(common, mine) or [tr("Nothing")])
         elif theirs is not None:
             self._column(
                 row,
-                tr("From the file on disk to what is here"),
+                tr("Changes from the file on disk to this window"),
                 describe_differences(theirs, mine) or [tr("Nothing")],
             )
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)

@@ -37,8 +37,8 @@ from preview.joints import find_drawn_joints, nearest_above
 Choice = Literal["recover", "copy", "later", "discard"]
 WORDS: dict[Choice, str] = lazy_texts(
     lambda: {
-        "recover": tr("Go on with it"),
-        "copy": tr("Save as a copy beside it"),
+        "recover": tr("Recover"),
+        "copy": tr("Save as a copy beside the project"),
         "later": tr("Keep for later"),
         "discard": tr("Discard"),
     }
@@ -57,25 +57,26 @@ def describe_left(left: Left, saved: Path | None) -> tuple[str, str]:
     count = sum(1 for _ in left.project.actions())
     actions = tr_plural("{count:,} action", "{count:,} actions", count)
     words = [
-        tr(
-            "{edits} in no file, the last of {moment}",
-            edits=tr_plural("{count:,} edit", "{count:,} edits", left.edits),
+        tr_plural(
+            "{count:,} unsaved edit, made at {moment}",
+            "{count:,} unsaved edits, the last at {moment}",
+            left.edits,
             moment=describe_moment(left.written),
         ),
         f"{count_clips(len(left.project.clips))}, {actions}",
     ]
     if saved is not None and left.saved is not None and left.saved.name != saved.name:
-        words.append(tr("Made when the project file was called {name}", name=left.saved.name))
+        words.append(tr("Made when the project file was named {name}", name=left.saved.name))
     if saved is None and named is not None:
         words.append(tr("In {folder}", folder=named.parent))
     if named is not None and not is_file(named):
-        words.append(tr("The project file is not there any more; its text is kept with the edits."))
+        words.append(tr("The project file no longer exists. Its text is kept with the edits."))
     elif named is not None and left.behind and is_junk(named):
-        words.append(tr("The project file cannot be read any more; its text is kept with the edits."))
+        words.append(tr("The project file can no longer be read. Its text is kept with the edits."))
     elif left.behind:
-        words.append(tr("The file has been saved by somebody else since: both can be merged."))
+        words.append(tr("Someone else has saved the file since then. The two versions can be merged."))
     if left.worked_in:
-        words.append(tr("The file has changed since: the edits are worked into what it is now."))
+        words.append(tr("The file has changed since then. The edits are merged into its current state."))
     words += describe_lost(left)
     return name if named is not None else tr("{name}, never saved", name=name), "\n".join(words)
 
@@ -85,22 +86,27 @@ def describe_lost(left: Left) -> list[str]:
     words = []
     if left.lost:
         words.append(
-            tr("1 edit is damaged and cannot be recovered:")
-            if len(left.lost) == 1
-            else tr("{count} edits are damaged and cannot be recovered:", count=len(left.lost))
+            tr_plural(
+                "{count:,} edit is damaged and cannot be recovered:",
+                "{count:,} edits are damaged and cannot be recovered:",
+                len(left.lost),
+            )
         )
         words += [_lost_edit(lost) for lost in left.lost[:LOST]]
         if len(left.lost) > LOST:
             words.append(tr("and {count} more", count=len(left.lost) - LOST))
     if left.doubtful:
         words.append(
-            tr("What the edits begin with is damaged, too: a value in it may be wrong. Look it through.")
+            tr(
+                "The project that the edits start from is damaged, too, so a value in it may be wrong. "
+                "Check it."
+            )
         )
     return words
 
 
 def _lost_edit(lost: LostEdit) -> str:
-    step = tr("'{step}'", step=lost.step) if lost.step else tr("one whose name is damaged, too")
+    step = tr("'{step}'", step=lost.step) if lost.step else tr("an edit whose name is damaged, too")
     if lost.at is None:
         return step
     return tr("{step}, at {moment}", step=step, moment=describe_moment(lost.at))
@@ -141,9 +147,7 @@ class RecoverDialog(QDialog):
         layout.setContentsMargins(16, 14, 16, 14)
         layout.setSpacing(10)
         title = (
-            tr("{name} was not closed properly", name=saved.name)
-            if saved is not None
-            else tr("Work that was not saved")
+            tr("{name} was not closed properly", name=saved.name) if saved is not None else tr("Unsaved work")
         )
         heading = QLabel(title, self)
         heading.setProperty("heading", True)
@@ -170,7 +174,7 @@ class RecoverDialog(QDialog):
             for choice in offered:
                 field.addItem(WORDS[choice], choice)
             field.setCurrentIndex(0 if n == 0 else offered.index("later"))
-            field.setAccessibleName(tr("What becomes of {name}", name=name))
+            field.setAccessibleName(tr("What to do with {name}", name=name))
             field.activated.connect(lambda _, chosen=field: self._only(chosen))
             grid.addWidget(field, n, 2)
             self.fields.append(field)
@@ -184,7 +188,7 @@ class RecoverDialog(QDialog):
         go = buttons.addButton(tr("Continue"), QDialogButtonBox.ButtonRole.AcceptRole)
         put_off = tr("Cancel") if saved is not None else tr("Not now")
         buttons.addButton(put_off, QDialogButtonBox.ButtonRole.RejectRole).setToolTip(
-            tr("All is kept as it is")
+            tr("Everything is kept as it is")
         )
         strengthen(go)
         go.setDefault(True)
@@ -227,7 +231,7 @@ class SittingPicture(QWidget):
         self.project = project
         self._figure = _figure(clip) if clip is not None else None
         self.setFixedSize(PICTURE)
-        self.setAccessibleName(tr("What was in it"))
+        self.setAccessibleName(tr("Preview of its contents"))
 
     def paintEvent(self, event: QPaintEvent) -> None:
         painter = QPainter(self)

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from app.translation import tr
+from app.translation import tr_plural
 from metagraph.graph.conversation.model import MOST_SPEAKERS
 
 SOUNDS = (".wav", ".flac", ".ogg", ".mp3")
@@ -70,7 +70,7 @@ def facts_of(path: Path) -> str:
     except (soundfile.LibsndfileError, RuntimeError, OSError):
         return path.name
     minutes, seconds = divmod(round(info.duration), 60)
-    channels = tr("one channel") if info.channels == 1 else tr("{count} channels", count=info.channels)
+    channels = tr_plural("{count:,} channel", "{count:,} channels", info.channels)
     return f"{path.name} ({channels}, {minutes}:{seconds:02d})"
 
 

@@ -18,7 +18,7 @@ from app.project.leftovers import (
     remove_journal,
 )
 from app.project.opening import load_recovered
-from app.translation import tr
+from app.translation import tr, tr_plural
 from metagraph.formats.project.history import UndoStep
 from metagraph.formats.project.journal_search import project_of
 from metagraph.formats.recovery import Left
@@ -61,12 +61,12 @@ class Unsaved(QObject):
         """Say in the status bar that there are some, when a project is opened by its name."""
         count = len(list_untitled_journals())
         if count:
-            words = (
-                tr("1 unsaved project can be recovered: look…")
-                if count == 1
-                else tr("{count} unsaved projects can be recovered: look…", count=count)
+            words = tr_plural(
+                "{count:,} unsaved project can be recovered. Review…",
+                "{count:,} unsaved projects can be recovered. Review…",
+                count,
             )
-            tip = tr("Work that is in no file, of windows that were not closed properly")
+            tip = tr("Unsaved work from windows that were not closed properly")
             self.files.noticed.emit(words, tip, self.offer)
 
     def _nothing(self, otherwise: Callable[[], object] | None) -> None:
@@ -78,7 +78,7 @@ class Unsaved(QObject):
     def _offer(self, found: FoundJournal, otherwise: Callable[[], object] | None) -> None:
         files = self.files
         if found.notes and not found.left:
-            files.report.emit(tr("Edits that cannot be recovered are kept"), list(found.notes))
+            files.report.emit(tr("Unrecoverable edits were kept"), list(found.notes))
         if not found.left:
             self._nothing(otherwise)
             return
@@ -93,7 +93,13 @@ class Unsaved(QObject):
                 remove_journal(left.path, discard=True)
         kept = sum(choice == "later" for choice in choices)
         if kept:
-            files.told.emit(tr("{kept} kept: File > Recover offers what is kept again.", kept=kept))
+            files.told.emit(
+                tr_plural(
+                    "Kept {count:,} project for later: File > Recover offers it again.",
+                    "Kept {count:,} projects for later: File > Recover offers them again.",
+                    kept,
+                )
+            )
         if chosen is None:
             if otherwise is not None:
                 otherwise()
@@ -123,7 +129,7 @@ class Unsaved(QObject):
             files.opened.emit()
             files.tell_lost(left)
             if opened.notes:
-                files.report.emit(tr("It was recovered, but"), list(opened.notes))
+                files.report.emit(tr("Recovered, with warnings"), list(opened.notes))
 
         files.jobs.start(
             tr("Recovering"), lambda job: load_recovered(left, folder, job.tell), done, files.show_failure

@@ -150,32 +150,31 @@ class Watcher(QObject):
         again = tuple(x for x in result.loaded if known.get((x[0], x[1]), x[2]) != x[2])
         if again:
             self.document.edit(
-                tr("Refresh {clips}", clips=count_clips(len(again))),
+                tr("Reload {clips}", clips=count_clips(len(again))),
                 replace(result, loaded=again, character=None).into,
             )
             self.told.emit(
-                tr("Changed on disk and read again: {names}", names=_names([x[3].name for x in again]))
+                tr("Changed on disk and reloaded: {names}", names=_names([x[3].name for x in again]))
             )
         if result.failures:
-            self.told.emit(tr("Changed on disk, but: {why}", why=result.failures[0]))
+            self.told.emit(tr("Changed on disk, but not reloaded: {why}", why=result.failures[0]))
 
     def _put_back(self, returned: Opened) -> None:
         before = self.document.project
-        self.document.take_motion(tr("Read clips that are back"), lambda p: take_over(p, returned.project))
+        self.document.take_motion(tr("Read restored clips"), lambda p: take_over(p, returned.project))
         back = [
             e.name
             for i, e in self.document.project.clips.items()
             if e.motion is not None and before.clips[i].motion is None
         ]
         if back:
-            self.told.emit(tr("Back again: {names}", names=_names(back)))
+            self.told.emit(tr("Found again: {names}", names=_names(back)))
         else:
             told = [note for note in returned.notes if not note.endswith("is missing")]
             self.told.emit(
-                tr(
-                    "A missing file is back, but: {why}",
-                    why=told[0] if told else tr("its clip cannot be read"),
-                )
+                tr("A missing file is back, but cannot be used: {why}", why=told[0])
+                if told
+                else tr("A missing file is back, but its clip cannot be read.")
             )
 
 

@@ -39,12 +39,12 @@ class FolderGoneError(FileError):
 
     def __init__(self, path: Path, place: Path | None) -> None:
         self.place = place
-        cause = phrase("its folder {folder} is not there any more", folder=path.parent)
-        remedy = phrase("Save the project in another place; your edits are kept until then.")
+        cause = phrase("its folder {folder} no longer exists", folder=path.parent)
+        remedy = phrase("Save the project in another place. Your edits are kept until then.")
         if place is not None:
             cause = phrase("its folder {folder} is now {place}", folder=path.parent, place=place)
-            remedy = phrase("Save the project there, or in another place; your edits are kept until then.")
-        super().__init__(path, cause, phrase("on saving it"), remedy)
+            remedy = phrase("Save the project there or in another place. Your edits are kept until then.")
+        super().__init__(path, cause, phrase("while saving it"), remedy)
 
     def __reduce__(self) -> tuple[type[FolderGoneError], tuple[Path, Path | None]]:  # type: ignore[override]
         return type(self), (self.path, self.place)

@@ -80,26 +80,30 @@ class FaultTeller(QObject):
             faults.note("started after it had ended by itself")
             dialog = FaultDialog(self.window)
             words = tr(
-                "Metagraph ended by itself the last time. Edits that were finished are offered for recovery. "
-                "A report of where it ended helps to mend it; it holds nothing of your projects."
+                "Metagraph quit unexpectedly last time. It offers to recover the edits that were "
+                "finished. A report of where it stopped helps to fix the fault; it contains nothing from "
+                "your projects."
             )
-            dialog.say(tr("Metagraph ended by itself"), words, f"{faults.format_fault_report()}\n{left}")
+            dialog.say(tr("Metagraph quit unexpectedly"), words, f"{faults.format_fault_report()}\n{left}")
             dialog.show()
 
 
 def _sentence(safe: bool) -> str:
     what = (
         tr(
-            "A part of the window could not do its work. The rest goes on, and every finished edit is in the "
-            "journal."
+            "Something in the window failed. Everything else still works, and every finished edit is "
+            "in the journal."
         )
         if safe
         else tr(
-            "A part of the window could not do its work, and your last edits are in no file: save the "
-            "project now, elsewhere if need be."
+            "Something in the window failed, and no file has your last edits. Save the project now, "
+            "in another place if necessary."
         )
     )
-    then = tr("If it stays wrong, save and start again. The report below holds nothing of your project.")
+    then = tr(
+        "If the problem persists, save and restart Metagraph. The report below contains nothing "
+        "from your project."
+    )
     return f"{what} {then}"
 
 
@@ -118,7 +122,7 @@ class FaultDialog(QDialog):
         self.sentence.setWordWrap(True)
         self.text = QPlainTextEdit(self)
         self.text.setReadOnly(True)
-        self.text.setAccessibleName(tr("What the report holds"))
+        self.text.setAccessibleName(tr("Contents of the report"))
         for widget in (self.heading, self.sentence):
             layout.addWidget(widget)
         layout.addWidget(self.text, 1)
@@ -145,7 +149,7 @@ class FaultDialog(QDialog):
         try:
             write_atomically(Path(place), self.text.toPlainText().encode())
             self.sentence.setText(
-                tr("Saved {name}. Send it to whoever gave you Metagraph.", name=Path(place).name)
+                tr("Saved {name}. Send it to the people who gave you Metagraph.", name=Path(place).name)
             )
         except FileError as error:
             self.sentence.setText(tr_error(error))

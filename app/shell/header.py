@@ -61,7 +61,7 @@ class Header(QToolBar):
     def refresh(self) -> None:
         """Show name and dirty mark as they are now."""
         d = self.document
-        saved = tr("not saved") if d.path is None else tr("edited") if d.dirty else tr("saved")
+        saved = tr("unsaved") if d.path is None else tr("edited") if d.dirty else tr("saved")
         saved = tr("read-only, {saved}", saved=saved) if d.read_only else saved
         dim = theme(self.session.look.name).dim
         room = NARROW if self.width() < WIDE else 3 * NARROW

@@ -69,7 +69,9 @@ class JobLine(QWidget):
         elif stands:
             self.told.emit(tr("{title}: done.", title=title))
         else:
-            self.told.emit(tr("{title}: what came of it was dropped with its dialog.", title=title))
+            self.told.emit(
+                tr("{title}: the result was discarded because its dialog was closed.", title=title)
+            )
 
     def _cancel(self) -> None:
         if self.jobs.running:

@@ -199,7 +199,7 @@ class Workspaces(QObject):
         if not self.tab.own:
             raise ValueError(
                 tr(
-                    "The workspace {title} comes with the program and stays as it is named.",
+                    "The workspace {title} is built in and cannot be renamed.",
                     title=self.tab.title,
                 )
             )
@@ -210,7 +210,7 @@ class Workspaces(QObject):
         if not title:
             raise ValueError(tr("A workspace needs a name."))
         if any(t.title.casefold() == title.casefold() for t in self.tabs):
-            raise ValueError(tr("There is a workspace {title} already.", title=title))
+            raise ValueError(tr("There is already a workspace called {title}.", title=title))
         return title
 
     def _keep_own(self) -> None:

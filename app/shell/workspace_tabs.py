@@ -55,7 +55,7 @@ def list_workspace_commands(keeper: Callable[[], Workspaces], window: QWidget) -
                 partial(title, n),
                 partial(choose, n),
                 (f"Ctrl+Alt+{n + 1}",),
-                tip=tr(WORKSPACES[n].tip) if n < len(WORKSPACES) else tr("A workspace of your own"),
+                tip=tr(WORKSPACES[n].tip) if n < len(WORKSPACES) else tr("Your own workspace"),
                 enabled=partial(there, n),
                 visible=partial(there, n),
                 checked=partial(on, n),
@@ -68,7 +68,7 @@ def list_workspace_commands(keeper: Callable[[], Workspaces], window: QWidget) -
             "workspace",
             tr("&Reset workspace"),
             lambda: keeper().reset(),
-            tip=tr("Put the panels of this workspace back"),
+            tip=tr("Restore the panels of this workspace to their original places"),
         ),
         Command(
             "save_workspace",
@@ -76,7 +76,7 @@ def list_workspace_commands(keeper: Callable[[], Workspaces], window: QWidget) -
             "workspace",
             tr("Save &workspace as…"),
             lambda: ask(tr("Save workspace as"), "", keeper().save_as),
-            tip=tr("Keep the panels as they stand now as a tab of your own"),
+            tip=tr("Save the current arrangement of panels as a tab of your own"),
         ),
         Command(
             "rename_workspace",

@@ -60,31 +60,31 @@ def down(*parts: tuple[str | Split, int]) -> Split:
 LABEL = Workspace(
     "label",
     tr_noop("Label"),
-    tr_noop("Clips large: say of each what it is"),
+    tr_noop("Large clips, to label each of them"),
     across(("large", 52), (down(("side", 57), ("below", 43)), 48)),
 )
 GRAPH = Workspace(
     "graph",
     tr_noop("Graph"),
-    tr_noop("The graph and the character, both large"),
+    tr_noop("Large graph and character"),
     across(("list", 16), (down(("large", 73), ("below", 27)), 51), ("side", 33)),
 )
 TIME = Workspace(
     "time",
     tr_noop("Time"),
-    tr_noop("The character large, over the timing of an action"),
+    tr_noop("Large character above the timing of an action"),
     across(("list", 27), (down(("large", 53), ("below", 47)), 73)),
 )
 PERFORM = Workspace(
     "perform",
     tr_noop("Perform"),
-    tr_noop("The character large, over what is asked of it and what plays"),
+    tr_noop("Large character above its requests and what it plays"),
     down((across(("large", 68), ("side", 32)), 64), ("below", 36)),
 )
 TALK = Workspace(
     "talk",
     tr_noop("Talk"),
-    tr_noop("Two who talk, over what they say"),
+    tr_noop("Two characters in conversation, above what they say"),
     down((across(("large", 70), ("side", 30)), 54), ("below", 46)),
 )
 WORKSPACES: tuple[Workspace, ...] = (LABEL, GRAPH, TIME, PERFORM, TALK)

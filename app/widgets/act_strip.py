@@ -51,7 +51,7 @@ class ActStrip(QWidget):
         self.first, self.zoom = 0.0, 1.0
         self._grip: float | None = None
         self.setMouseTracking(True)
-        self.setAccessibleName(tr("What is done when"))
+        self.setAccessibleName(tr("Activity of each layer"))
         session.look.changed.connect(self.update)
 
     def show_acts(self, acts: Mapping[Layer, Sequence[Act]], seconds: float | None = None) -> None:

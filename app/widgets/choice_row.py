@@ -53,9 +53,13 @@ class LimbRow(ChoiceRow):
 
     def __init__(self, parent: QWidget, keeps: str) -> None:
         tips = {
-            "left": tr("Moves left arm; the other keeps to the {keeps}", keeps=vocabulary_word(keeps)),
-            "right": tr("Moves right arm; the other keeps to the {keeps}", keeps=vocabulary_word(keeps)),
-            "both": tr("Moves both arms; the other keeps to the {keeps}", keeps=vocabulary_word(keeps)),
+            "left": tr("Moves the left arm; the other arm follows the {keeps}", keeps=vocabulary_word(keeps)),
+            "right": tr(
+                "Moves the right arm; the other arm follows the {keeps}", keeps=vocabulary_word(keeps)
+            ),
+            "both": tr(
+                "Moves both arms; the rest of the body follows the {keeps}", keeps=vocabulary_word(keeps)
+            ),
         }
         super().__init__(parent, ((vocabulary_title(x), tips[x]) for x in LIMBS))
 

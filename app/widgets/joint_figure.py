@@ -43,7 +43,7 @@ class JointFigure(QWidget):
         self._to = QPointF()
         self.setMouseTracking(True)
         self.setAccessibleName(tr("Joints as a figure"))
-        self.setAccessibleDescription(tr("For the mouse; the list beside it has the same joints."))
+        self.setAccessibleDescription(tr("For the mouse. The list beside it has the same joints."))
 
     def sizeHint(self) -> QSize:
         return QSize(300, 480)

@@ -70,9 +70,10 @@ class MaskDialog(QDialog):
         layout = QVBoxLayout(self)
         words = QLabel(
             tr(
-                "Only ticked joints move, as far as their weight says; otherwise they keep to the stance. A "
-                "click gives a joint and what hangs on it the strength below, or none; a drag gives it to "
-                "the joints within, with Alt or the right button none. The wheel, + and - change a weight."
+                "The action moves only the ticked joints, as far as their weights say. All other joints "
+                "follow the stance. Click a joint to give it and its children the strength below, or to "
+                "clear them. Drag to set all joints in a rectangle; Alt+drag or right-drag clears them. "
+                "The wheel, + and - change a weight."
             ),
             self,
             wordWrap=True,
@@ -126,7 +127,7 @@ class MaskDialog(QDialog):
             maximum=1.0,
             singleStep=NOTCH,
             value=1.0,
-            toolTip=tr("How far ticked joints move"),
+            toolTip=tr("How far the ticked joints follow the action"),
         )
         self.strength.setAccessibleName(tr("Strength"))
         self.slider = Slider(Qt.Orientation.Horizontal, self, minimum=5, maximum=100, singleStep=5, value=100)
@@ -138,31 +139,37 @@ class MaskDialog(QDialog):
         label.setBuddy(self.strength)
         self.over = SpinBox(self, minimum=1, maximum=9, value=3)
         self.over.setAccessibleName(tr("Joints of a soft edge"))
-        self.over.setToolTip(tr("Over how many joints a soft edge rises"))
+        self.over.setToolTip(tr("Number of joints over which a soft edge fades in"))
         row.addWidget(label)
         row.addWidget(self.slider, 1)
         row.addWidget(self.strength)
         row.addWidget(
             self._button(
-                tr("Set &chosen"),
-                tr("Give the joints that are chosen in the list this strength"),
+                tr("Set &selected"),
+                tr("Give the joints that are selected in the list this strength"),
                 lambda: self._give(self._chosen(), self.strength.value()),
             )
         )
         row.addSpacing(12)
-        tip = tr("Let weights rise where the mask begins: 0.25, 0.5, 0.75 over three joints of the spine")
+        tip = tr("Fade the weights in where the mask begins: 0.25, 0.5, 0.75 over three joints of the spine")
         row.addWidget(self._button(tr("Soft &edge"), tip, self._soften))
         row.addWidget(self.over)
         return row
 
     def _make_buttons(self) -> QHBoxLayout:
         row = QHBoxLayout()
-        row.addWidget(self._button(tr("&All"), tr("All joints move wholly"), partial(self._all, True)))
-        row.addWidget(self._button(tr("&None"), tr("No joint moves"), partial(self._all, False)))
-        self.undo_button = self._button(
-            tr("&Undo"), tr("Take the last change here back (Ctrl+Z)"), self._undo
+        row.addWidget(
+            self._button(tr("&All"), tr("Let the action move all joints fully"), partial(self._all, True))
         )
-        self.redo_button = self._button(tr("&Redo"), tr("Make it again (Ctrl+Shift+Z)"), self._redo)
+        row.addWidget(
+            self._button(tr("&None"), tr("Let the action move no joint"), partial(self._all, False))
+        )
+        self.undo_button = self._button(
+            tr("&Undo"), tr("Undo the last change in this dialog (Ctrl+Z)"), self._undo
+        )
+        self.redo_button = self._button(
+            tr("&Redo"), tr("Redo the change in this dialog (Ctrl+Shift+Z)"), self._redo
+        )
         row.addWidget(self.undo_button)
         row.addWidget(self.redo_button)
         row.addStretch(1)

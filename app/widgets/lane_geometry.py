@@ -288,7 +288,7 @@ def describe_wanted(mark: RequestMark) -> str:
     when = (
         tr("at {seconds:.2f} s", seconds=mark.at)
         if getattr(mark.ask, "stroke", None) is None
-        else tr("its stroke at {seconds:.2f} s", seconds=mark.at)
+        else tr("stroke at {seconds:.2f} s", seconds=mark.at)
     )
     return f"{mark.words}, {when}" + (
         tr(", priority {priority}", priority=mark.ask.priority) if mark.ask.priority != 1 else ""
@@ -299,7 +299,9 @@ def describe_mark(mark: RequestMark, editable: bool = True) -> str:
     """Return what to say about a mark: what was asked, what came of it, or why nothing did."""
     lines = [describe_wanted(mark), describe_outcome(mark.ask, mark.answer)]
     if editable:
-        lines.append(tr("Drag it in time, with Ctrl a copy; double-click changes it; Delete takes it back"))
+        lines.append(
+            tr("Drag to move it in time; Ctrl+drag copies it. Double-click to edit it; Delete withdraws it.")
+        )
     return "\n".join(x for x in lines if x)
 
 

@@ -23,7 +23,7 @@ from metagraph.graph.editing import performances as performance_edits
 
 AXES = lazy_texts(
     lambda: (
-        (tr("To its left"), tr("Metres to the character's left; to its right below 0")),
+        (tr("Left"), tr("Metres to the character's left; negative values are to its right")),
         (tr("Up"), tr("Metres above the floor")),
         (tr("Ahead"), tr("Metres in front of the character")),
     )
@@ -39,7 +39,7 @@ class PointEditor(QDialog):
         super().__init__(parent)
         self.document, self.then = document, then
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setWindowTitle(tr("A point to look at"))
+        self.setWindowTitle(tr("Point to look at"))
         layout = QVBoxLayout(self)
         form = QFormLayout()
         layout.addLayout(form)
@@ -58,7 +58,7 @@ class PointEditor(QDialog):
             self.axes.append(box)
             form.addRow(words, box)
         self.words = QLabel(
-            tr("Agents call it by this name, and may move it while they play."), self, wordWrap=True
+            tr("Agents use this name, and may move the point while they play."), self, wordWrap=True
         )
         self.words.setProperty("dim", True)
         layout.addWidget(self.words)
@@ -79,6 +79,6 @@ class PointEditor(QDialog):
 
     def _put(self) -> None:
         name, point = self.name.text().strip(), tuple(round(box.value(), 3) for box in self.axes)
-        self.document.edit(tr("Put a point"), lambda p: performance_edits.set_point(p, name, point))
+        self.document.edit(tr("Set point"), lambda p: performance_edits.set_point(p, name, point))
         self.accept()
         self.then(name)

@@ -120,7 +120,7 @@ def make_request_menu(
         menu.addSeparator()
         menu.addAction(tr("Withdraw all requests"), lambda: performance.requests.withdraw())
     if menu.isEmpty():
-        menu.addAction(tr("Make a stance first")).setEnabled(False)
+        menu.addAction(tr("Create a stance first")).setEnabled(False)
     return menu
 
 
@@ -135,12 +135,12 @@ def _layer_items(menu: QMenu, project: Project, layer: Layer, at: float | None, 
             menu.addAction(words, partial(ask, made(layer=layer, at=at), asked))
     tags = sorted({tag for x in graph.actions.values() if x.kind == "gesture" for tag in x.tags})
     if tags:
-        tagged = menu.addMenu(tr("A gesture that is …"))
+        tagged = menu.addMenu(tr("Gesture with tag"))
         for tag in tags:
             tagged.addAction(
                 tag, partial(ask, a.Gesture(layer=layer, at=at, tags=(tag,)), tr("Ask for a gesture"))
             )
-    certain = menu.addMenu(tr("A certain one …"))
+    certain = menu.addMenu(tr("Specific action"))
     for stance in graph.stances.values():
         some = [*graph.of(stance.id, "gesture"), *graph.of(stance.id, "fidget")]
         if not some:
@@ -155,7 +155,7 @@ def _layer_items(menu: QMenu, project: Project, layer: Layer, at: float | None, 
     if layer == "head":
         menu.addSeparator()
         menu.addAction(tr("Nod"), lambda: ask(a.Nod(at=at), tr("Ask for a nod")))
-        menu.addAction(tr("Shake the head"), lambda: ask(a.Shake(at=at), tr("Ask for a shake of the head")))
+        menu.addAction(tr("Shake the head"), lambda: ask(a.Shake(at=at), tr("Ask for a head shake")))
     menu.addSeparator()
     for stance in graph.stances.values():
         menu.addAction(
@@ -177,7 +177,7 @@ def _stage_items(menu: QMenu, parent: QWidget, document: Document, at: float | N
         said.addAction(f"{ident}: {words}", partial(ask, a.Say(line=ident, at=at), tr("Ask for a line")))
     if project.lines:
         said.addSeparator()
-    said.addAction(tr("Other words…"), lambda: _say(parent, at, ask))
+    said.addAction(tr("Type words…"), lambda: _say(parent, at, ask))
     looks = menu.addMenu(tr("Look at"))
     for name in dict.fromkeys(("user", *project.points)):
         looks.addAction(
@@ -189,13 +189,13 @@ def _stage_items(menu: QMenu, parent: QWidget, document: Document, at: float | N
     for words, point in DIRECTIONS.items():
         looks.addAction(tr(words), partial(ask, a.Look(to=point, at=at, duration=2.0), tr("Ask for a look")))
     looks.addSeparator()
-    looks.addAction(tr("Another point…"), lambda: _point(parent, document, at, ask))
+    looks.addAction(tr("New point…"), lambda: _point(parent, document, at, ask))
     menu.addAction(tr("Blink"), lambda: ask(a.Blink(at=at), tr("Ask for a blink")))
     modes = menu.addMenu(tr("Mode"))
     for mode in MODES:
         modes.addAction(MODE_WORDS[mode], partial(ask, a.Behave(mode=mode, at=at), tr("Ask for a mode")))
-    modes.addAction(tr("As it comes"), lambda: ask(a.Behave(mode=None, at=at), tr("Ask for a mode")))
-    moods = menu.addMenu(tr("Be in a mood"))
+    modes.addAction(tr("Automatic"), lambda: ask(a.Behave(mode=None, at=at), tr("Ask for a mode")))
+    moods = menu.addMenu(tr("Mood"))
     for feeling in FEELINGS:
         moods.addAction(MOOD_WORDS[feeling], partial(ask, a.Feel(mood=feeling, at=at), tr("Ask for a mood")))
 

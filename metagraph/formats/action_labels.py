@@ -75,7 +75,7 @@ def read_labels(path: Path) -> tuple[LabelRow, ...]:
             path,
             message[:1].lower() + message[1:],
             where.strip("`") or "its content",
-            phrase("docs/animators/label-files.md says what such a file holds."),
+            phrase("docs/animators/label-files.md describes what such a file contains."),
         ) from None
 
 
@@ -100,7 +100,7 @@ def _applied(project: Project, row: LabelRow, fresh: Mapping[str, str]) -> Proje
     clip = fresh.get(row.clip) or next((e.id for e in project.clips.values() if e.name == row.clip), None)
     known = project.action(row.action) if row.action is not None else None
     if row.action is not None and known is None:
-        raise EditError(phrase("there is no action '{action}' in this project", action=row.action))
+        raise EditError(phrase("this project has no action '{action}'", action=row.action))
     if clip is None:
         raise EditError(phrase("there is no clip '{clip}'", clip=row.clip))
     layer = row.layer or (known.layer if known is not None else None)
@@ -114,9 +114,7 @@ def _applied(project: Project, row: LabelRow, fresh: Mapping[str, str]) -> Proje
     if row.end_stance is not None:
         project, end = _stance(project, layer, row.end_stance)
     if stance is None:
-        raise EditError(
-            phrase("it does not say which stance of the layer {layer} it is of", layer=phrase(layer))
-        )
+        raise EditError(phrase("it does not name a stance of the layer {layer}", layer=phrase(layer)))
     if known is None:
         alike = project.graphs[layer].of(stance, kind)
         known = next((a for a in alike if a.name == (row.name or row.clip)), None)

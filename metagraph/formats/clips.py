@@ -56,7 +56,7 @@ def read_clip_file(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
     if wanted is None:
         raise FileError(
             path,
-            phrase("'{value}' is not an ending of a clip file", value=path.suffix or path.name),
+            phrase("'{value}' is not a file extension for clips", value=path.suffix or path.name),
             phrase("its name"),
             remedy,
         )
@@ -66,7 +66,7 @@ def read_clip_file(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
     if found is not wanted:
         raise FileError(
             path,
-            phrase("it is {names} in spite of its ending", names=found.name),
+            phrase("it is {names} despite its extension", names=found.name),
             phrase("its first bytes"),
             phrase("Rename it to match its content."),
         )
@@ -124,7 +124,7 @@ def _reader(path: Path) -> ClipReader | str:
         return phrase("a Git LFS pointer whose content was never fetched")
     if head.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"<":
         return phrase("a web page or XML file")
-    return phrase("something else")
+    return phrase("another kind of file")
 
 
 def is_face_recording(path: Path) -> bool:

@@ -86,7 +86,7 @@ class _Reader:
 
     def _entity(self, *_: object) -> None:
         raise self.fail(
-            phrase("it defines entities of its own, which no program of annotations does"), remedy=_NOT
+            phrase("it defines its own XML entities, which no annotation program does"), remedy=_NOT
         )
 
     def _begin(self, name: str, at: dict[str, str]) -> None:
@@ -101,12 +101,14 @@ class _Reader:
                 remedy=_NOT,
             )
         if self.depth > NESTING:  # ELAN writes 5
-            raise self.fail(phrase("elements lie more than {most} deep", most=NESTING))
+            raise self.fail(phrase("its elements are nested more than {most} levels deep", most=NESTING))
         if name == "HEADER":
             unit = at.get("TIME_UNITS", "milliseconds")
             if unit not in UNITS:
                 raise self.fail(
-                    phrase("times are in '{unit}'; known are {names}", unit=unit, names=", ".join(UNITS))
+                    phrase(
+                        "times are in '{unit}', which is none of {names}", unit=unit, names=", ".join(UNITS)
+                    )
                 )
             self.unit = UNITS[unit]
             self.old_media = at.get("MEDIA_FILE", "")
@@ -135,7 +137,7 @@ class _Reader:
         if len(self.slots) > 2 * MARKS:
             raise self.fail(phrase("it has more than {value:,} time slots", value=2 * MARKS))
         if ident in self.slots:
-            raise self.fail(phrase("time slot '{ident}' is there twice", ident=ident))
+            raise self.fail(phrase("time slot '{ident}' occurs twice", ident=ident))
         seconds = None
         if text is not None:
             try:
@@ -161,7 +163,7 @@ class _Reader:
         name = self._need(at, "TIER_ID", "TIER")
         if name in self.tiers:
             raise self.fail(
-                phrase("tier '{name}' is there twice", name=name),
+                phrase("tier '{name}' occurs twice", name=name),
                 remedy=phrase("Rename one of them in ELAN."),
             )
         self.tier = self.tiers[name] = _Tier(
@@ -170,19 +172,19 @@ class _Reader:
 
     def _mark(self, name: str, at: Mapping[str, str]) -> None:
         if self.tier is None:
-            raise self.fail(phrase("an annotation stands outside a tier"))
+            raise self.fail(phrase("an annotation is outside any tier"))
         ident = self._need(at, "ANNOTATION_ID", name)
         if len(self.marks) >= MARKS:
             raise self.fail(phrase("it has more than {most:,} annotations", most=MARKS))
         if ident in self.marks:
-            raise self.fail(phrase("annotation '{ident}' is there twice", ident=ident))
+            raise self.fail(phrase("annotation '{ident}' occurs twice", ident=ident))
         if name == "ALIGNABLE_ANNOTATION":
             slots = self._need(at, "TIME_SLOT_REF1", name), self._need(at, "TIME_SLOT_REF2", name)
             unknown = next((s for s in slots if s not in self.slots), None)
             if unknown is not None:
                 raise self.fail(
                     phrase(
-                        "annotation '{ident}' begins or ends at time slot '{unknown}', which is not there",
+                        "annotation '{ident}' starts or ends at time slot '{unknown}', which does not exist",
                         ident=ident,
                         unknown=unknown,
                     )
@@ -332,7 +334,7 @@ def _refer(reader: _Reader, spans: dict[str, tuple[float, float]]) -> None:
                 if mark.of not in reader.marks:
                     raise reader.fail(
                         phrase(
-                            "annotation '{ident}' refers to '{of}', which is not there",
+                            "annotation '{ident}' refers to '{of}', which does not exist",
                             ident=mark.ident,
                             of=mark.of,
                         ),
@@ -355,7 +357,7 @@ def _refer(reader: _Reader, spans: dict[str, tuple[float, float]]) -> None:
     if waiting:
         mark = next(iter(waiting.values()))[0][0]
         raise reader.fail(
-            phrase("annotation '{ident}' refers to itself by way of '{of}'", ident=mark.ident, of=mark.of),
+            phrase("annotation '{ident}' refers to itself through '{of}'", ident=mark.ident, of=mark.of),
             mark.line,
         )
 

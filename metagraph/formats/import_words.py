@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from metagraph.common.wording import join_phrases, phrase
+from metagraph.common.wording import join_phrases, phrase, plural_phrase
 from metagraph.formats.imports import Imported, Strangers
 from metagraph.formats.takes import BIND_POSE, LONE_FRAME, NAME, ONE_FRAME, UNIT, UP
 
@@ -81,37 +81,35 @@ def describe_import(result: Imported, window: bool = True) -> str:
         )
     if right:
         made = [phrase("{what} ({count})", what=_RIGHT.get(k, k), count=n) for k, n in right.items()]
-        parts.append(phrase("Put right: {made}", made=join_phrases(made, ", ")))
+        parts.append(phrase("Repaired: {made}", made=join_phrases(made, ", ")))
     if result.character is not None and result.character.hidden:
         count = len(result.character.hidden)
         parts.append(
-            phrase("Hidden: 1 mesh in the hands")
-            if count == 1
-            else phrase("Hidden: {count} meshes in the hands", count=count)
+            plural_phrase(
+                "Hidden: {count:,} mesh held in the hands",
+                "Hidden: {count:,} meshes held in the hands",
+                count,
+            )
         )
     known = {repair.words for _, _, _, clip in result.loaded for repair in clip.repairs}
     hidden = result.character.notes if result.character is not None else ()
     notes = [n for n in result.notes if n.partition(": ")[2] not in known and n not in hidden]
     if notes := count_alike(notes):
-        parts.append(phrase("1 note") if len(notes) == 1 else phrase("{count:,} notes", count=len(notes)))
+        parts.append(plural_phrase("{count:,} note", "{count:,} notes", len(notes)))
     left = []
     if apart := _count(result.apart):
-        left.append(phrase("{clips} of another skeleton", clips=_clips(apart)))
+        left.append(phrase("{clips} with another skeleton", clips=_clips(apart)))
     broken = len(result.failures) - sum(len(s.told) for s in result.apart)
     if broken > 0:
-        left.append(
-            phrase("1 file that cannot be used")
-            if broken == 1
-            else phrase("{count:,} files that cannot be used", count=broken)
-        )
+        left.append(plural_phrase("{count:,} unusable file", "{count:,} unusable files", broken))
     if left:
-        parts.append(phrase("Left out: {left}", left=join_phrases(left, ", ")))
+        parts.append(phrase("Skipped: {left}", left=join_phrases(left, ", ")))
     to_do = remedies(result)
     if to_do:
         steps = [_STEPS[r.do](r) if window else r.command for r in to_do]
         parts.append(phrase("To do: {steps}", steps=join_phrases(steps, ", ")))
     if result.cancelled:
-        parts.append(phrase("It was stopped before the end"))
+        parts.append(phrase("The import was cancelled"))
     return join_phrases(parts, ". ")
 
 
@@ -176,4 +174,4 @@ def _count(strangers: Iterable[Strangers]) -> int:
 
 
 def _clips(count: int) -> str:
-    return phrase("{count:,} clip", count=count) if count == 1 else phrase("{count:,} clips", count=count)
+    return plural_phrase("{count:,} clip", "{count:,} clips", count)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from metagraph.common.files import unforeseen_error
-from metagraph.common.wording import phrase
+from metagraph.common.wording import phrase, plural_phrase
 from metagraph.errors import FileError, describe_error
 from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clip_file
 from metagraph.formats.store import path_for_project, relative
@@ -31,7 +31,7 @@ Loaded = tuple[str, int, str, Clip]  # path as the project keeps it, take, diges
 Maps = Callable[
     [str, str], JointMap | None
 ]  # fingerprints of a source and a target skeleton -> the map kept for them
-_ALONE = phrase("Import it into a project of its own.")
+_ALONE = phrase("Import it into a separate project.")
 _LONGER = 0.025  # share by which bones may differ from the project's without a word
 
 
@@ -66,20 +66,14 @@ class Strangers:
         remedy = (
             _ALONE
             if self.joint_map.missing
-            else phrase("Retarget it (import it with --retarget), or import it into a project of its own.")
+            else phrase("Retarget it (import it with --retarget), or import it into a separate project.")
         )
         why = self.why
         return tuple(
-            phrase(
-                "{file}: {count} clips are of another character: {why}. {remedy}",
-                file=Path(path).name,
-                count=count,
-                why=why,
-                remedy=remedy,
-            )
-            if count > 1
-            else phrase(
-                "{file}: its clip is of another character: {why}. {remedy}",
+            plural_phrase(
+                "{file}: {count:,} clip belongs to another character: {why}. {remedy}",
+                "{file}: {count:,} clips belong to another character: {why}. {remedy}",
+                count,
                 file=Path(path).name,
                 why=why,
                 remedy=remedy,

@@ -98,7 +98,7 @@ def parse_manual_table(text: str) -> list[TableRow]:
             out.append(TableRow(lines.line_num, known))
     except csv.Error as error:
         raise ValueError(
-            phrase("line {line_num} is no row of a table: {error}", line_num=lines.line_num, error=error)
+            phrase("line {line_num} is not a table row: {error}", line_num=lines.line_num, error=error)
         ) from None
     if names is None:
         raise ValueError(phrase("it is empty"))
@@ -109,10 +109,10 @@ def check_names(names: Sequence[str]) -> None:
     """Raise ValueError where the first row names not both ends of a link, or a column twice."""
     for name in ("from", "to"):
         if name not in names:
-            raise ValueError(phrase("the first row names no column '{name}'", name=name))
+            raise ValueError(phrase("the first row has no column '{name}'", name=name))
     twice = next((n for n in COLUMNS if list(names).count(n) > 1), None)
     if twice is not None:
-        raise ValueError(phrase("the first row names the column '{twice}' twice", twice=twice))
+        raise ValueError(phrase("the first row has the column '{twice}' twice", twice=twice))
 
 
 def fill_machine(project: Project, layer: Layer, rows: Sequence[TableRow]) -> Filled:
@@ -171,7 +171,7 @@ def _nodes(project: Project, layer: Layer, row: TableRow, column: str) -> tuple[
         if not named:
             raise ValueError(
                 phrase(
-                    "'{column}' names '{word}', which is no state or alias of the {layer} layer",
+                    "'{column}' names '{word}', which is not a state or alias of the {layer} layer",
                     column=column,
                     word=word,
                     layer=layer,
@@ -213,7 +213,9 @@ def _settings(row: TableRow) -> dict[str, Any]:
         if condition["when"] not in WHENS:
             raise ValueError(
                 phrase(
-                    "'when' is '{cells}' rather than {names}", cells=cells["when"], names=" or ".join(WHENS)
+                    "'when' is '{cells}', which is none of {names}",
+                    cells=cells["when"],
+                    names=" or ".join(WHENS),
                 )
             )
     if "trigger" in cells:
@@ -240,7 +242,7 @@ def _number(word: str, column: str, least: float = 0.0) -> float:
         value = float(word.strip().removesuffix("s").strip().replace(",", "."))
     except ValueError:
         raise ValueError(
-            phrase("'{column}' is '{word}', which is no number", column=column, word=word)
+            phrase("'{column}' is '{word}', which is not a number", column=column, word=word)
         ) from None
     if not least <= value <= 1e6:
         raise ValueError(phrase("'{column}' is {word}, which is out of range", column=column, word=word))

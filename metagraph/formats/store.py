@@ -87,7 +87,9 @@ def parse_project(text: str, path: Path, notes: list[str] | None = None) -> Proj
                 path,
                 phrase("holds two versions that Git could not merge"),
                 phrase("line {line}", line=text.count("\n", 0, conflict.start()) + 1),
-                phrase("Merge the three versions that Git keeps, as docs/animators/work-together.md says."),
+                phrase(
+                    "Merge the three versions that Git keeps, as docs/animators/work-together.md describes."
+                ),
             ) from None
         line = f"line {error.line}" if error.line else "its text"
         raise FileError(
@@ -113,7 +115,7 @@ def _upgraded(data: Any, path: Path) -> Any:
         raise DataError("metagraph", "should be the version of the format, a whole number from 1")
     if version > FORMAT:
         cause = phrase(
-            "was written by a newer Metagraph (format {version}, this one reads up to {FORMAT})",
+            "was written by a newer Metagraph (format {version}; this one reads up to {FORMAT})",
             version=version,
             FORMAT=FORMAT,
         )
@@ -167,12 +169,12 @@ def encode_project(project: Project, path: Path) -> bytes:
         raise FileError(
             path,
             phrase(
-                "cannot be saved, since it could not be opened again: {where} {error}",
+                "cannot be saved, because it could not be opened again: {where} {error}",
                 where=error.where,
                 error=error,
             ),
             error.where,
-            phrase("Correct that value; the file is as it was."),
+            phrase("Correct that value. The file is unchanged."),
         ) from None
     return text.encode()
 
@@ -327,7 +329,7 @@ def path_for_project(path: Path, folder: Path | None) -> str:
     whole = path.parent.resolve() / path.name  # a linked file keeps its name
     name = relative(path, folder) if folder is not None else whole.as_posix()
     if not is_text(name):
-        raise FileError(path, phrase("has a name that is no text"), phrase("its name"), phrase("Rename it."))
+        raise FileError(path, phrase("has a name that is not text"), phrase("its name"), phrase("Rename it."))
     return name
 
 
@@ -411,8 +413,9 @@ def reopen_paths(project: Project) -> Project:
 def describe_closed_paths(names: Sequence[str]) -> str:
     """Say which files were not opened, and how they can be."""
     return phrase(
-        "{count} of the files that it names were not opened, such as '{name}': {why}. If you trust where the "
-        "project comes from, give the command --network; in the window choose File, Files on other computers",
+        "{count} of the files that it names were not opened, such as '{name}': "
+        "{why}. If you trust the source of the project, add --network to the "
+        "command, or choose File, Files on other computers in the window",
         count=len(names),
         name=clean_text(names[0])[:200],
         why=explain_refusal(names[0]) or ANOTHER,

@@ -69,7 +69,7 @@ def take_repair(raw: str, name: str, stem: str, as_is: Collection[str]) -> tuple
     words = (
         f"named after its file instead of '{raw}'"
         if name == stem
-        else "the rig's and layer's names were taken out of its name"
+        else "the names of the rig and the layer were removed from its name"
     )
     return name if made else raw, Repair(NAME, words, made)
 
@@ -129,9 +129,9 @@ def _without(clip: Clip, found: StrayPoses, as_is: Collection[str]) -> Clip:
     if found.first or found.last:
         made = BIND_POSE not in as_is
         told = [
-            f"its {end} frame was the bind pose and was dropped"
+            f"its {end} frame was the bind pose and was removed"
             if count == 1
-            else f"its {end} {count} frames were the bind pose and the way {way} it and were dropped"
+            else f"its {end} {count} frames were the bind pose or on the way {way} it, and were removed"
             for end, way, count in (("first", "from", found.first), ("last", "to", found.last))
             if count
         ]
@@ -139,10 +139,10 @@ def _without(clip: Clip, found: StrayPoses, as_is: Collection[str]) -> Clip:
     if found.lone:
         mended = LONE_FRAME not in as_is
         words = (
-            f"frame {found.lone[0] + 1} was unlike both its neighbours and was made anew between them"
+            f"frame {found.lone[0] + 1} was unlike both its neighbours and was interpolated between them"
             if len(found.lone) == 1
             else f"{len(found.lone)} frames (the first is {found.lone[0] + 1}) were unlike their neighbours "
-            "and were made anew between them"
+            "and were interpolated between them"
         )
         clip = note_repair(_mended(clip, found.lone) if mended else clip, Repair(LONE_FRAME, words, mended))
     if found.first or found.last:

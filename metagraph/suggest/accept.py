@@ -41,7 +41,7 @@ def accept(
         p for p in found.proposals.values() if (clips is None or p.clip in clips) and p.clip in project.clips
     ]
     left: dict[str, str] = {
-        p.clip: phrase("only {sure:.0%} sure", sure=p.confidence) for p in wanted if p.confidence < above
+        p.clip: phrase("only {sure:.0%} certain", sure=p.confidence) for p in wanted if p.confidence < above
     }
     wanted = [p for p in wanted if p.clip not in left]
     keys = {

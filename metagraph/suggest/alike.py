@@ -120,7 +120,7 @@ class Alike:
             out[field] = Belief(
                 value,
                 sure,
-                phrase("like '{words}'", words=near) if near else phrase("like what is labelled so"),
+                phrase("like '{words}'", words=near) if near else phrase("like clips with this label"),
             )
         return out
 

@@ -104,14 +104,14 @@ def layer_of(traits: Traits) -> Belief[Layer]:
     arms = max(0.0, e["left_arm"] + e["right_arm"] - breath) + e["fingers"]
     have = [layer for layer in ("body", "arms", "head") if layers[layer].names]
     if have == ["body"]:
-        return Belief("body", SUREST, phrase("the character has neither arms nor a head that are known"))
+        return Belief("body", SUREST, phrase("the character has no known arms or head"))
     if traits.face > 1e-3 and "head" in have:
         return Belief("head", SUREST, phrase("only the face moves"))
     if arms + lower + upper < 1e-5:
         return Belief("body", 0.34, phrase("nothing moves"))
     body, hands = lower / (0.15 * upper + 0.25 * arms + 1e-6), arms / (0.1 * upper + 1e-6)
     share = phrase(
-        "hips and legs {lower:.1f}, arms {arms:.1f}, head and trunk {upper:.1f} % of the height a second",
+        "hips and legs {lower:.1f}, arms {arms:.1f}, head and trunk {upper:.1f} % of body height per second",
         lower=lower * 100,
         arms=arms * 100,
         upper=upper * 100,
@@ -150,10 +150,10 @@ def find_layer_moving_most(traits: Traits) -> Belief[Layer]:
 
 def _goes_farthest(layer: Layer, length: float) -> str:
     if layer == "body":
-        return phrase("the body goes {length:.0f} cm, the most beside what is usual", length=length)
+        return phrase("the body moves {length:.0f} cm, furthest beyond what is usual", length=length)
     if layer == "arms":
-        return phrase("the arms go {length:.0f} cm, the most beside what is usual", length=length)
-    return phrase("the head goes {length:.0f} cm, the most beside what is usual", length=length)
+        return phrase("the arms move {length:.0f} cm, furthest beyond what is usual", length=length)
+    return phrase("the head moves {length:.0f} cm, furthest beyond what is usual", length=length)
 
 
 def _tempered(ratio: float) -> float:

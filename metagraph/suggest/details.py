@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.common.wording import phrase
+from metagraph.common.wording import phrase, plural_phrase
 from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Action, Kind, Layer, Project, Timing
 from metagraph.motion.clip import Clip
@@ -94,7 +94,7 @@ def _with_times(p: Proposal, motion: Clip, times: compatibility.ProposedTimes) -
     reasons["loop"] = _plays(p.kind.value)
     if times.earliest_exit is None:
         reasons["earliest_exit"] = (
-            phrase("a stance may be left at any time")
+            phrase("a stance can exit at any time")
             if loop
             else phrase("it plays to its end, where it looks like a stance again")
         )
@@ -113,7 +113,7 @@ def _with_times(p: Proposal, motion: Clip, times: compatibility.ProposedTimes) -
 
 def _plays(kind: Kind) -> str:
     if kind == "stance":
-        return phrase("a stance goes on until it is left")
+        return phrase("a stance plays until it is left")
     if kind == "transition":
         return phrase("a transition plays once")
     return phrase("a gesture plays once") if kind == "gesture" else phrase("a fidget plays once")
@@ -126,7 +126,7 @@ def with_moved_joints(project: Project, p: Proposal, traits: Traits | None) -> P
     motion = project.clips[p.clip].motion
     if motion is None or traits is None:
         return p
-    mask: Belief[tuple[str, ...]] = Belief((), 0.9, phrase("moves what its layer reaches"))
+    mask: Belief[tuple[str, ...]] = Belief((), 0.9, phrase("moves all joints of its layer"))
     if traits.face > 0 and p.layer.value == "head":
         moving = np.flatnonzero(np.ptp(motion.rotations, axis=0).max(-1) > 1e-3)
         apart = np.ptp(motion.translations, axis=0).max(-1) if len(motion.translated) else np.zeros(0)
@@ -138,9 +138,11 @@ def with_moved_joints(project: Project, p: Proposal, traits: Traits | None) -> P
             mask = Belief(
                 names,
                 0.9,
-                phrase("only {count} joints of the face move", count=len(names))
-                if len(names) > 1
-                else phrase("only 1 joint of the face moves"),
+                plural_phrase(
+                    "only {count:,} joint of the face moves",
+                    "only {count:,} joints of the face move",
+                    len(names),
+                ),
             )
     return replace(p, details={**p.details, "mask": mask})
 
@@ -198,11 +200,13 @@ def with_likelihoods(project: Project, proposals: Mapping[str, Proposal]) -> dic
                 round(1 / count, 3),
                 0.8,
                 phrase(
-                    "one of {count} of '{words}', which share the weight of one", count=count, words=words
+                    "one of {count} clips called '{words}', which share the weight of one",
+                    count=count,
+                    words=words,
                 ),
             )
         else:
-            belief = Belief(1.0, 0.8, phrase("no other is called so, so it counts as one"))
+            belief = Belief(1.0, 0.8, phrase("the only clip with this name, so it has full weight"))
         for clip in clips:
             p = proposals[clip]
             out[clip] = replace(p, details={**p.details, "likelihood": belief})
@@ -242,13 +246,13 @@ def rest_of(project: Project, place: StancePlace, proposals: Mapping[str, Propos
             name = project.clips[clip].name
             reason = (
                 phrase(
-                    "no clip rests there; '{name}' is still for its first {seconds:.2f} s",
+                    "no clip rests there; '{name}' holds still for its first {seconds:.2f} s",
                     name=name,
                     seconds=long,
                 )
                 if first
                 else phrase(
-                    "no clip rests there; '{name}' is still for its last {seconds:.2f} s",
+                    "no clip rests there; '{name}' holds still for its last {seconds:.2f} s",
                     name=name,
                     seconds=long,
                 )

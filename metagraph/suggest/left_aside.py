@@ -90,17 +90,18 @@ def explain_skipping(
         return ""
     if is_walk(traits):
         return phrase(
-            "walks or runs: its feet pass each other by {stride:.0f} cm, and its end flows into its "
-            "beginning",
+            "walks or runs: its feet pass each other by {stride:.0f} cm, and its end flows into its start",
             stride=100 * traits.height * traits.stride,
         )
     begins, ends = motion.begins[:1], motion.ends[:1]
     if begins and ends and begins[0][1] is not ends[0][1] and min(begins[0][0], ends[0][0]) > PASSES:
         return ""
     if traits.travel > FAR:
-        return phrase("goes {length:.1f} m away and to no other stance", length=traits.height * traits.travel)
+        return phrase(
+            "travels {length:.1f} m and ends in no other stance", length=traits.height * traits.travel
+        )
     if traits.turned > ROUND:
-        return phrase("turns round by {degrees:.0f} degrees and to no other stance", degrees=traits.turned)
+        return phrase("turns by {degrees:.0f} degrees and ends in no other stance", degrees=traits.turned)
     if (
         traits.rise > EXERCISE
         and traits.energy["legs"] > FAST
@@ -109,7 +110,7 @@ def explain_skipping(
         and begins[0][1] is ends[0][1]
     ):
         return phrase(
-            "goes up and down by {length:.0f} cm: an exercise", length=100 * traits.height * traits.rise
+            "moves up and down by {length:.0f} cm: an exercise", length=100 * traits.height * traits.rise
         )
     return ""
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import exp, log
 
-from metagraph.common.wording import phrase
+from metagraph.common.wording import phrase, plural_phrase
 from metagraph.graph.words import LAYERS, Kind, Layer, Limb
 from metagraph.suggest.clip_measures import (
     SUREST,
@@ -97,23 +97,23 @@ def guess(
     cm = 100 * traits.height
     reason: dict[Kind, str] = {
         "transition": phrase(
-            "ends {apart:.1f} cm from where it begins and goes only {aside:.0f} cm beside that way",
+            "ends {apart:.1f} cm from its start, and strays only {aside:.0f} cm from the way between",
             apart=posed.loop_error * cm,
             aside=posed.extent * cm,
         ),
         "stance": phrase(
-            "moves at most {speed:.0f} cm/s in {seconds:.1f} s",
+            "moves at no more than {speed:.0f} cm/s for {seconds:.1f} s",
             speed=max(y.peak for y in traits.layers.values()) * cm,
             seconds=traits.duration,
         )
         if not walking
         else phrase(
-            "goes on walking or running: its feet pass each other by {stride:.0f} cm, and its end flows into "
-            "its beginning",
+            "keeps walking or running: its feet pass each other by {stride:.0f} cm, "
+            "and its end flows into its start",
             stride=traits.stride * cm,
         ),
         "gesture": phrase(
-            "goes {length:.0f} cm away and comes back, in {times}, up to {speed:.0f} cm/s",
+            "moves {length:.0f} cm away and back in {times}, at up to {speed:.0f} cm/s",
             length=x.extent * cm,
             times=_times(x.bouts),
             speed=x.peak * cm,
@@ -122,7 +122,7 @@ def guess(
             traits,
             cm,
             phrase(
-                "goes {length:.0f} cm away in {times}, up to {speed:.0f} cm/s",
+                "moves {length:.0f} cm away in {times}, at up to {speed:.0f} cm/s",
                 length=x.extent * cm,
                 times=_times(x.bouts),
                 speed=x.peak * cm,
@@ -136,7 +136,7 @@ def guess(
         Belief(
             kind == "stance",
             min(SUREST, chances[kind]),
-            phrase("its ends are {apart:.1f} cm apart", apart=x.loop_error * cm),
+            phrase("its start and end are {apart:.1f} cm apart", apart=x.loop_error * cm),
         ),
         _beside(starts, begins, _begins if kind != "stance" else _rests, layer, cm),
         _beside(ends, leaves, _ends, layer, cm) if kind == "transition" else None,
@@ -149,7 +149,7 @@ def guess(
 
 
 def _times(bouts: int) -> str:
-    return phrase("1 movement") if bouts == 1 else phrase("{count} movements", count=bouts)
+    return plural_phrase("{count:,} movement", "{count:,} movements", bouts)
 
 
 def _touching(traits: Traits, cm: float, goes: str) -> str:
@@ -180,7 +180,7 @@ def _stroke(x: LayerTraits, cm: float) -> Belief[float]:
         x.stroke_at,
         0.8 if again else 0.6,
         phrase(
-            "fastest on the way out at {seconds:.2f} s of {speed:.0f} cm/s",
+            "fastest on the way out, at {seconds:.2f} s with {speed:.0f} cm/s",
             seconds=x.stroke_at,
             speed=x.peak * cm,
         ),
@@ -205,7 +205,7 @@ def _beside(
     second = min((away for away, other in found if other is not shape), default=None)
     words = said(_cm(near * cm), shape.name)
     if second is not None:
-        words = phrase("{words}; next nearest {length}", words=words, length=_cm(second * cm))
+        words = phrase("{words}; the next nearest is {length} away", words=words, length=_cm(second * cm))
     sure = max(chance, ONLY) if second is None else chance  # where there is only one, all are in it
     return Belief(shape, min(CLEAREST * sure, layer.confidence), words)
 
@@ -254,7 +254,7 @@ def _layer_beside(traits: Traits, stances: Stances) -> Belief[Layer]:
             0.75,
             _unusual("body", 100 * traits.height * unusual["body"])
             if "body" in unusual
-            else phrase("rests, and hips and legs make {share:.0%} of what moves", share=lower / all_of),
+            else phrase("rests, and hips and legs do {share:.0%} of the movement", share=lower / all_of),
         )
     if len(unusual) == 1 and found.value not in unusual:
         ((layer, away),) = unusual.items()
@@ -274,7 +274,7 @@ def guess_limb_from_motion(traits: Traits, layer: Layer, kind: Kind) -> Belief[L
     """Return the arm that a clip needs; of a head that goes to one side, the side."""
     if kind in ("stance", "transition"):
         both = (
-            phrase("a stance takes both arms") if kind == "stance" else phrase("a transition takes both arms")
+            phrase("a stance uses both arms") if kind == "stance" else phrase("a transition uses both arms")
         )
         return Belief("both", 0.9, both)
     if layer == "arms":
@@ -285,7 +285,7 @@ def guess_limb_from_motion(traits: Traits, layer: Layer, kind: Kind) -> Belief[L
             limb,
             confidence,
             phrase(
-                "the left arm makes {left:.0f} % of the arms' movement, the right {right:.0f} %",
+                "the left arm does {left:.0f} % of the arms' movement, the right {right:.0f} %",
                 left=50 * (1 + share),
                 right=50 * (1 - share),
             ),
@@ -297,8 +297,10 @@ def guess_limb_from_motion(traits: Traits, layer: Layer, kind: Kind) -> Belief[L
         if max(left, right) > 0.02 and max(left, right) > 3 * min(left, right):
             length = 100 * traits.height * max(left, right)
             if left > right:
-                return Belief("left", 0.7, phrase("the nose goes {length:.0f} cm to the left", length=length))
-            return Belief("right", 0.7, phrase("the nose goes {length:.0f} cm to the right", length=length))
+                return Belief(
+                    "left", 0.7, phrase("the nose moves {length:.0f} cm to the left", length=length)
+                )
+            return Belief("right", 0.7, phrase("the nose moves {length:.0f} cm to the right", length=length))
     moves = (
         phrase("the head moves, not one arm") if layer == "head" else phrase("the body moves, not one arm")
     )

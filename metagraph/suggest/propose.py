@@ -206,7 +206,7 @@ def _leading(said: NameGuess, motion: MotionGuess | None) -> NameGuess:
         return said
     if motion.kind.value != "transition" or motion.kind.confidence < LEADS:
         return said
-    why = phrase("{words}, and it comes there from elsewhere", words=said.stance.reason)
+    why = phrase("{words}, and the motion arrives there from elsewhere", words=said.stance.reason)
     return replace(said, kind=None, stance=None, end_stance=replace(said.stance, reason=why))
 
 
@@ -298,9 +298,9 @@ def _somewhere(proposals: Mapping[str, Proposal], places: dict[str, StancePlace]
                 stance=Belief(
                     key,
                     0.3,
-                    phrase("nothing says a stance; most are in this one")
+                    phrase("no stance is named; most clips are in this one")
                     if mine
-                    else phrase("nothing says a stance; there is no other"),
+                    else phrase("no stance is named, and there is no other"),
                 ),
             )
         out[clip] = p
@@ -354,7 +354,7 @@ def _proposal(each: ClipEvidence, places: StancePlaces, anyway: bool = False) ->
         end = combine(ends, places.count(where))
     limb = each.agreed("limb", len(LIMBS)) if where == "arms" and kind.belief.value != "stance" else None
     both: Belief[Limb] = Belief(
-        "both", 0.9, phrase("only arms have sides") if where != "arms" else phrase("nothing says a side")
+        "both", 0.9, phrase("only arms have sides") if where != "arms" else phrase("nothing names a side")
     )
     found = [x for x in (kind, layer, stance, end) if x is not None]
     return Proposal(

@@ -33,7 +33,7 @@ DECIDING: tuple[Field, ...] = (
     "limb",
 )  # what has a few values to choose from
 WORDS: tuple[Field, ...] = ("kind", "layer", "limb", "tags")
-SAID = phrase("you said so")
+SAID = phrase("you chose it")
 USUAL = 6.0  # seconds a clip takes somebody, until some were decided
 PAUSE = 60.0  # seconds after which somebody was away, not deciding
 REMEMBERED = 25  # decisions the pace is taken from
@@ -269,7 +269,7 @@ def _corrected(found: Proposals, clip: str, said: Mapping[Field, Any]) -> Propos
             (k for k, _ in there.most_common(1)),
             next((k for k, x in places.items() if x.layer == layer), None),
         )
-        stance = Belief(best, 0.5, phrase("where most clips of this layer are")) if best is not None else None
+        stance = Belief(best, 0.5, phrase("most clips of this layer are there")) if best is not None else None
     end = p.end_stance if p.kind.value == "transition" else None
     if "end_stance" in said and p.kind.value == "transition":
         end = Belief(place(said["end_stance"]), 1.0, SAID)

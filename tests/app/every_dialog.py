@@ -151,7 +151,7 @@ def _fault(w: Handles, _: Path) -> None:
     from app.shell.fault_dialog import FaultDialog
 
     dialog = FaultDialog(w.window)
-    dialog.say("Something went wrong", "A part of the window could not do its work.", "Metagraph 0.1.0")
+    dialog.say("Something went wrong", "Something in the window failed.", "Metagraph 0.1.0")
     dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
     dialog.open()
 

@@ -270,4 +270,4 @@ def test_a_crash_of_the_last_time_is_offered(qtbot, teller, monkeypatch):
     monkeypatch.setattr(faults, "read_crash_reports", lambda folder: "Fatal Python error: Segmentation fault")
     teller.offer_left()
     dialog = dialog_of(qtbot, teller)
-    assert "ended by itself" in dialog.windowTitle() and "Segmentation" in dialog.text.toPlainText()
+    assert "quit unexpectedly" in dialog.windowTitle() and "Segmentation" in dialog.text.toPlainText()

@@ -66,13 +66,13 @@ def test_the_base_pose_is_taken_from_a_clip_and_given_back(small):
     choose(
         drive,
         drive.card(entry.name),
-        "Use its first frame as base pose",
+        "Use first frame as base pose",
         until=lambda: drive.document.project.base == BasePose(entry.id, 0),
     )
     choose(
         drive,
         drive.card(entry.name),
-        "Use the rest pose as base pose",
+        "Use rest pose as base pose",
         until=lambda: drive.document.project.base == BasePose(),
     )
     drive.wait(lambda: any(p.code.startswith("base-") for p in drive.problems.problems))

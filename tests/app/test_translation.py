@@ -151,7 +151,7 @@ def test_an_import_is_told_in_the_language_whatever_files_are_left_out(english: 
     result = import_files(Project(), tmp_path, [tmp_path])
     translation.choose("de")
     assert tr_phrase(import_words.describe_import(result)) == (
-        "0 Clips importiert. Weggelassen: 2 Dateien, die nicht zu brauchen sind"
+        "0 Clips importiert. Übersprungen: 2 unbrauchbare Dateien"
     )
     lines = [tr_phrase(line) for line in import_words.count_alike(result.failures)]
     assert lines[0] == (
@@ -219,7 +219,7 @@ def test_what_came_of_recordings_is_said_in_the_language(english: None, tmp_path
     read = read_conversation([tmp_path / "a.wav"], [], tmp_path)
     translation.choose("de")
     assert read.notes[0].startswith("a.wav: the right channel is silent.")
-    assert tr_phrase(read.notes[0]).startswith("a.wav: der Kanal rechts ist stumm.")
+    assert tr_phrase(read.notes[0]).startswith("a.wav: Der Kanal rechts ist stumm.")
     assert all(isinstance(note, Phrase) and tr_phrase(note) != note for note in read.notes), read.notes
 
 

@@ -59,8 +59,8 @@ def test_a_file_of_nothing_but_poses_keeps_them(tmp_path: Path) -> None:
         ("a.glb", b"version https://git-lfs.github.com/spec/v1\n", ("LFS",)),
         ("a.glb", b"<!DOCTYPE html>", ("web page",)),
         ("a.bvh", b"\xff\xfb\x90\x44", ("something else",)),
-        ("a.txt", b"hello", ("ending", ".bvh")),
-        ("a", b"hello", ("ending",)),
+        ("a.txt", b"hello", ("extension", ".bvh")),
+        ("a", b"hello", ("extension",)),
     ],
 )
 def test_a_file_that_is_not_what_its_ending_says_is_refused_with_a_remedy(

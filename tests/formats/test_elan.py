@@ -198,11 +198,11 @@ WRONG = {
     "unknown encoding": ("<?xml version='1.0' encoding='nonsense'?><a/>", "", "line 1", ""),
     "a slot that is not there": (
         eaf("a=0", GOOD),
-        "annotation 'm' begins or ends at time slot 'b'",
+        "annotation 'm' starts or ends at time slot 'b'",
         "line 1",
         "Open it in ELAN",
     ),
-    "a slot twice": (eaf("a=0 a=1", ""), "time slot 'a' is there twice", "", ""),
+    "a slot twice": (eaf("a=0 a=1", ""), "time slot 'a' occurs twice", "", ""),
     "a time that is none": (eaf("a=0.5", ""), "'0.5' is not a whole number of milliseconds", "", ""),
     "a time before the beginning": (eaf("a=-5", ""), "not between 0", "", ""),
     "a time without end": (eaf("a=" + "9" * 5000, ""), "not between 0", "", ""),
@@ -218,33 +218,33 @@ WRONG = {
         "",
         "",
     ),
-    "a tier twice": (eaf("", tier("LH") + tier("LH")), "tier 'LH' is there twice", "", "Rename"),
+    "a tier twice": (eaf("", tier("LH") + tier("LH")), "tier 'LH' occurs twice", "", "Rename"),
     "a tier without name": (eaf("", "<TIER/>"), "a TIER has no TIER_ID", "", ""),
     "a mark twice": (
         eaf("a=0 b=1", tier("LH", "m a-b x", "m a-b x")),
-        "annotation 'm' is there twice",
+        "annotation 'm' occurs twice",
         "",
         "",
     ),
     "a mark outside": (
         eaf("", '<REF_ANNOTATION ANNOTATION_ID="m" ANNOTATION_REF="n"/>'),
-        "outside a tier",
+        "outside any tier",
         "",
         "",
     ),
     "a parent that is not there": (
         eaf("", tier("LH", "m of n x")),
-        "annotation 'm' refers to 'n', which is not there",
+        "annotation 'm' refers to 'n', which does not exist",
         "line 1",
         "",
     ),
     "parents in circles": (
         eaf("", tier("LH", "m of n x", "n of m x")),
-        "refers to itself by way of",
+        "refers to itself through",
         "line 1",
         "",
     ),
-    "too deep": ("<ANNOTATION_DOCUMENT>" + "<a>" * 100000, "elements lie more than 64 deep", "", ""),
+    "too deep": ("<ANNOTATION_DOCUMENT>" + "<a>" * 100000, "nested more than 64 levels deep", "", ""),
 }
 
 
@@ -277,7 +277,7 @@ def test_entities_that_grow_without_end_are_refused_and_outer_files_are_not_fetc
     tracemalloc.stop()
     (tmp_path / "secret").write_text("secret")
     outer = f'<!DOCTYPE d [<!ENTITY x SYSTEM "{(tmp_path / "secret").as_uri()}">]>'
-    with pytest.raises(FileError, match="entities of its own"):
+    with pytest.raises(FileError, match="its own XML entities"):
         read(outer + eaf("a=0 b=1", tier("LH", "m a-b &x;")).split("?>")[1])
 
 

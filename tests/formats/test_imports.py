@@ -80,7 +80,7 @@ def test_a_file_that_is_not_there_or_no_clip_is_told(folder: Path) -> None:
     result = import_files(Project(), folder, [folder / "none.glb", folder / "notes.txt", folder / "a.glb"])
     assert len(result.loaded) == 1
     assert "cannot be read" in result.failures[0]
-    assert "notes.txt" in result.failures[1] and "ending" in result.failures[1]
+    assert "notes.txt" in result.failures[1] and "extension" in result.failures[1]
 
 
 def test_nothing_is_nothing(tmp_path: Path) -> None:
@@ -112,9 +112,9 @@ def test_clips_of_another_character_are_left_out_with_the_reason(folder: Path) -
     result = import_files(project, folder, [folder / "odd.glb", folder / "a.glb"])
     assert len(result.loaded) == 1
     assert result.failures == (
-        "odd.glb: 2 clips are of another character: its joints have other names (it has 'bone0', the project "
-        "has 'Hips'). "
-        "Import it into a project of its own.",
+        "odd.glb: 2 clips belong to another character: its joints have other names (it has 'bone0', the "
+        "project has 'Hips'). "
+        "Import it into a separate project.",
     )
 
 
@@ -178,7 +178,7 @@ def test_a_file_whose_name_is_no_text_is_left_out_since_it_could_not_be_saved(fo
     shutil.copy(folder / "a.glb", os.fsencode(folder / "b") + b"\xff.glb")
     result = import_files(Project(), folder, [folder])
     assert len(result.loaded) == 3
-    assert "no text" in result.failures[0]
+    assert "not text" in result.failures[0]
 
 
 def test_what_is_true_of_many_files_is_said_once(shared_data: Path) -> None:

@@ -64,9 +64,9 @@ def test_without_a_word_they_are_left_out_and_the_remedy_is_named(folder: Path) 
     result = import_files(start(folder), folder, others(folder))
     assert not result.loaded and not result.strangers and not result.joint_maps
     assert len(result.failures) == 2
-    assert result.failures[0].startswith("other0.glb: its clip is of another character")
+    assert result.failures[0].startswith("other0.glb: 1 clip belongs to another character")
     assert result.failures[0].endswith(
-        "Retarget it (import it with --retarget), or import it into a project of its own."
+        "Retarget it (import it with --retarget), or import it into a separate project."
     )
 
 
@@ -124,7 +124,7 @@ def test_what_cannot_be_mapped_says_what_is_missing(folder: Path) -> None:
     result = import_files(start(folder), folder, [folder / "odd.glb"], retarget="yes")
     assert not result.loaded
     (text,) = result.failures
-    assert "odd.glb" in text and "no hips" in text and "project of its own" in text
+    assert "odd.glb" in text and "no hips" in text and "separate project" in text
     (group,) = import_files(start(folder), folder, [folder / "odd.glb"], retarget="ask").strangers
     assert group.joint_map.missing and "--retarget" not in group.failures[0]
 

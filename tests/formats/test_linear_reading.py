@@ -107,7 +107,7 @@ def test_a_gltf_file_whose_joints_hang_too_deep_is_refused(tmp_path: Path) -> No
     (tmp_path / "fits.gltf").write_bytes(_gltf(JOINTS_DEEP))
     assert len(read_gltf_clips(tmp_path / "fits.gltf")[0].skeleton) == JOINTS_DEEP
     (tmp_path / "deep.gltf").write_bytes(_gltf(JOINTS_DEEP + 1))
-    with pytest.raises(FileError, match="hang on each other"):
+    with pytest.raises(FileError, match="joint hierarchy"):
         read_gltf_clips(tmp_path / "deep.gltf")
 
 

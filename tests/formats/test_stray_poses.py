@@ -66,7 +66,7 @@ def test_real_clips_lose_the_bind_poses_they_have_and_no_frame_more(shared_data:
                         dropped[path.name, clip.name] = repair.words
         except FileError:
             continue
-    first = "its first frame was the bind pose and was dropped"
+    first = "its first frame was the bind pose and was removed"
     assert dropped == {
         ("01_01.bvh", "01_01"): first,
         ("cmu_12_01_walk.bvh", "cmu_12_01_walk"): first,

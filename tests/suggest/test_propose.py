@@ -113,7 +113,7 @@ def test_only_what_is_sure_enough_is_taken_over_and_the_rest_says_why(practice: 
     limit = sure[len(sure) // 2]
     taken = accept(practice, found, above=limit)
     assert 0 < len(taken.placed) < len(practice.clips)
-    assert all("sure" in why or "no resting clip" in why for why in taken.left.values())
+    assert all("certain" in why or "no resting clip" in why for why in taken.left.values())
     assert found.doubtful[0].confidence == sure[0]
 
 
@@ -141,7 +141,7 @@ def test_a_gesture_without_a_loop_in_its_stance_is_placed_and_the_stance_held_in
             and loop.timing.loop
             and (loop.timing.start, loop.timing.end) == (rest.start, rest.end)
         )
-        assert rest.reason.startswith("no clip rests there; '") and "is still for its first" in rest.reason
+        assert rest.reason.startswith("no clip rests there; '") and "holds still for its first" in rest.reason
 
 
 def test_a_clip_that_only_lends_a_stance_a_moment_still_waits_to_be_placed(
@@ -229,7 +229,7 @@ def test_a_clip_that_nothing_says_the_stance_of_goes_where_most_are(practice: Pr
     assert (
         lost.stance is not None
         and lost.stance.confidence == 0.3
-        and "nothing says a stance" in lost.stance.reason
+        and "no stance is named" in lost.stance.reason
     )
     assert found.proposals["c1"].stance.confidence > 0.5  # type: ignore[union-attr]
 

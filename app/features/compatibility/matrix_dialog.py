@@ -38,6 +38,7 @@ from app.features.compatibility.matrix_table import (
     describe_cell,
 )
 from app.look.domain_words import LAYER_LONG_TITLES
+from app.look.plural import count_clips
 from app.look.theme import KIND_MARKS, KIND_TITLES, strengthen
 from app.project.document import Document
 from app.project.jobs import Jobs, WindowJob
@@ -77,7 +78,7 @@ class MatrixDialog(QDialog):
         for text, key in (
             (tr("All clips"), "all"),
             (tr("Placed on this layer"), "placed"),
-            (tr("Not placed on it"), "free"),
+            (tr("Not placed on this layer"), "free"),
         ):
             self.which.addItem(text, key)
         self.which.activated.connect(self._narrow)
@@ -101,7 +102,7 @@ class MatrixDialog(QDialog):
         self.table = QTableView(self)
         self.table.setTabKeyNavigation(False)  # Tab leaves it, arrows go about in it
         self.table.setModel(self.model)
-        self.table.setAccessibleName(tr("Clips against stances"))
+        self.table.setAccessibleName(tr("Compare clips with stances"))
         header = self.table.horizontalHeader()
         header.setSectionsClickable(True)
         header.setSortIndicatorShown(True)
@@ -181,7 +182,7 @@ class MatrixDialog(QDialog):
             waits = (
                 tr("Comparing clips with stances…")
                 if stances and project.clips
-                else tr("Make a stance first: drop a resting clip.")
+                else tr("Create a stance first: drop a resting clip.")
             )
             self.title.setText(LAYER_LONG_TITLES[layer])
             self.words.setText(waits)
@@ -250,8 +251,8 @@ class MatrixDialog(QDialog):
         if found is None or found[2] is None or stance is None or entry is None:
             self.words.setText(
                 tr(
-                    "Click a mark to see the clip go from that stance and back to it; double-click to place "
-                    "it there."
+                    "Click a mark to preview the clip from that stance and back. Double-click "
+                    "to place it there."
                 )
             )
             return
@@ -259,9 +260,9 @@ class MatrixDialog(QDialog):
         if self.kind.currentData() == "transition":
             end = project.stance(self._end(found[0], stance.id))
             words += (
-                tr("\nas a transition it would end in '{name}'", name=end.name)
+                tr("\nAs a transition it would end in '{name}'.", name=end.name)
                 if end is not None
-                else tr("\na transition needs a second stance")
+                else tr("\nA transition needs a second stance.")
             )
         self.words.setText(words)
 
@@ -337,7 +338,7 @@ class MatrixDialog(QDialog):
 
             before = document.project
             try:
-                document.edit(tr("Place 1 clip"), placed)
+                document.edit(tr("Place {clips}", clips=count_clips(1)), placed)
             except EditError as error:
                 failures.append(tr_error(error))
                 return

@@ -12,9 +12,10 @@ from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelInd
 from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPainterPath, QPen
 from PySide6.QtWidgets import QStyle, QStyledItemDelegate, QStyleOptionViewItem, QWidget
 
+from app.look.plural import list_in_words
 from app.look.theme import KIND_MARKS, WindowTheme, theme
 from app.stage.session import StageSession
-from app.translation import lazy_texts, tr
+from app.translation import lazy_texts, tr, tr_noop
 from metagraph.graph.model import KINDS, Kind, Project
 
 if TYPE_CHECKING:
@@ -47,21 +48,21 @@ def grade_jump(cost: float) -> int:
 
 
 def describe_half_cell(cost: float, seconds: float, what: str) -> str:
-    """Say a half: "leaves at 1.24 s: 0.6 of what shows as a jump"."""
+    """Say a half: "leaves at 1.24 s: no jump, 0.6 of the visible threshold"."""
+    what = tr("enters") if what == "enters" else tr("leaves")
+    words = (
+        tr_noop("{what} at {seconds:.2f} s: no jump, {cost:.1f} of the visible threshold"),
+        tr_noop(
+            "{what} at {seconds:.2f} s: jumps, {cost:.1f} times the visible threshold; a usual blend hides it"
+        ),
+        tr_noop(
+            "{what} at {seconds:.2f} s: jumps, {cost:.1f} times the visible threshold; a usual blend does "
+            "not hide it"
+        ),
+    )
     if not isfinite(cost):
         return tr("{what}: nothing to compare", what=what)
-    of = tr("of") if cost <= 1 else tr("times")
-    more = {0: "", 1: tr("; a usual blend hides it")}.get(
-        grade_jump(cost), tr("; a usual blend does not hide it")
-    )
-    return tr(
-        "{what} at {seconds:.2f} s: {cost:.1f} {of} what shows as a jump{more}",
-        what=what,
-        seconds=seconds,
-        cost=cost,
-        of=of,
-        more=more,
-    )
+    return tr(words[grade_jump(cost)], what=what, seconds=seconds, cost=cost)
 
 
 def describe_cell(cell: Cell, clip: str, stance: str) -> str:
@@ -72,7 +73,7 @@ def describe_cell(cell: Cell, clip: str, stance: str) -> str:
         describe_half_cell(cell.leave, cell.leave_at, "leaves"),
     ]
     if cell.here:
-        lines.append(tr("placed here as {here}", here=" and ".join(cell.here)))
+        lines.append(tr("placed here as {here}", here=list_in_words([tr(kind) for kind in cell.here])))
     return "\n".join(lines)
 
 
@@ -230,13 +231,13 @@ class MatrixModel(QAbstractTableModel):
         if orientation != Qt.Orientation.Horizontal:
             return None
         if role == Qt.ItemDataRole.DisplayRole:
-            return {CLIP: tr("Clip"), USES: "Is"}.get(section) or self._name(section)
+            return {CLIP: tr("Clip"), USES: tr("Kind")}.get(section) or self._name(section)
         if role == Qt.ItemDataRole.TextAlignmentRole and section < FIRST:
             return Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
         if role == Qt.ItemDataRole.ToolTipRole:
             if section >= FIRST:
                 return tr("Click to sort by how well clips fit '{name}'", name=self._name(section))
-            return tr("Click to sort") if section == CLIP else tr("What it is placed as on this layer")
+            return tr("Click to sort") if section == CLIP else tr("What the clip is on this layer")
         return None
 
 
@@ -317,7 +318,7 @@ class Legend(QWidget):
         super().__init__(parent)
         self.session = session
         self.setFixedHeight(24)
-        self.setAccessibleName(tr("Left half: entered from the stance. Right half: left to it."))
+        self.setAccessibleName(tr("Left half: entry from the stance. Right half: exit to it."))
         session.look.changed.connect(self.update)
 
     def paintEvent(self, event: object) -> None:
@@ -334,7 +335,7 @@ class Legend(QWidget):
             painter.drawText(QRectF(x, 0, wide + 4, self.height()), Qt.AlignmentFlag.AlignVCenter, words)
             x += wide + gap
 
-        for side, words in (("in", tr("enters from the stance")), ("out", tr("leaves to it"))):
+        for side, words in (("in", tr("entry from the stance")), ("out", tr("exit to it"))):
             draw_half(painter, t, QRectF(x, y - MARK / 2, MARK, MARK), side, 0.0)
             x += MARK + 5
             say(words, 16)

@@ -107,8 +107,8 @@ class RenameDialog(BatchDialog):
             ("", self.regex),
         )
         self.preview = make_widget(QTreeWidget, self, rootIsDecorated=False)
-        self.preview.setHeaderLabels([tr("Now"), tr("Then")])
-        self.preview.setAccessibleName(tr("Names now and then"))
+        self.preview.setHeaderLabels([tr("Current"), tr("New")])
+        self.preview.setAccessibleName(tr("Current and new names"))
         self.preview.setColumnWidth(0, 240)
         self.body.addWidget(self.tabs)
         self.body.addWidget(self.preview, 1)
@@ -215,7 +215,7 @@ class ReplaceDialog(BatchDialog):
         form = QFormLayout()
         form.addRow(tr("Clip"), self.clips)
         words = QLabel(
-            tr("Timing, limb, tags and all else stay; times beyond the clip's end are cut to it."),
+            tr("Timing, limb, tags and everything else stay. Times after the clip's end are set to its end."),
             self,
             wordWrap=True,
         )
@@ -230,9 +230,7 @@ class ReplaceDialog(BatchDialog):
     def finish(self) -> None:
         place = self.clips.findText(self.clips.currentText(), Qt.MatchFlag.MatchFixedString)
         if place < 0:
-            self.trouble.setText(
-                tr("there is no clip '{name}' in the library", name=self.clips.currentText())
-            )
+            self.trouble.setText(tr("the library has no clip '{name}'", name=self.clips.currentText()))
             return
         clip = str(self.clips.itemData(place))
         self.document.edit(tr("Replace the clip"), lambda p: batch.replace_clip(p, self.edited, clip))

@@ -37,8 +37,8 @@ class EditingFeature(Feature):
         view = QUndoView(self.document.undo_stack, self.shell.widget)
         view.setSpacing(3)
         view.setFrameShape(QFrame.Shape.NoFrame)
-        view.setEmptyLabel(tr("As it was opened"))
-        view.setAccessibleName(tr("What was done; a click goes back to it"))
+        view.setEmptyLabel(tr("When opened"))
+        view.setAccessibleName(tr("Every step so far; click one to go back to it"))
         return view
 
     # --- what is done with actions
@@ -105,7 +105,7 @@ COMMANDS = (
         "history",
         tr_noop("&History"),
         EditingFeature.show_history,
-        tip=tr_noop("What was done, step by step; a click goes back to it"),
+        tip=tr_noop("List every step so far; click one to go back to it"),
     ),
     Command(
         "delete",
@@ -145,7 +145,7 @@ COMMANDS = (
         tr_noop("&Paste properties…"),
         EditingFeature.paste,
         (Standard.Paste,),
-        tip=tr_noop("Give the selected actions what another one has"),
+        tip=tr_noop("Give the selected actions the copied properties"),
         enabled=EditingFeature.can_paste,
         study=True,
         menus=("action",),
@@ -156,7 +156,7 @@ COMMANDS = (
         "properties",
         tr_noop("Replace c&lip…"),
         EditingFeature.replace_clip,
-        tip=tr_noop("Another clip, the same settings"),
+        tip=tr_noop("Use another clip with the same settings"),
         enabled=has_actions_selected,
         when="meta",
         study=True,

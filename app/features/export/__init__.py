@@ -33,7 +33,7 @@ def contribute(shell: Shell) -> Contribution:
                 export,
                 ("Ctrl+E",),
                 icon="export",
-                tip=tr("JSON and GLB for engines"),
+                tip=tr("Export JSON and GLB for game engines"),
                 enabled=something,
             ),
         ),

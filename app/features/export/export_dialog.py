@@ -37,7 +37,7 @@ from app.project.chosen import is_chosen
 from app.project.document import Document
 from app.project.jobs import Jobs, WindowJob
 from app.project.reveal import open_folder
-from app.translation import tr, tr_error, tr_phrase
+from app.translation import tr, tr_error, tr_phrase, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.tree_items import items_below, top_items
 from metagraph.engines.targets import registry
@@ -132,7 +132,7 @@ class ExportDialog(QDialog):
             self.go.setEnabled(False)
             self.trouble.setText(
                 tr(
-                    "First: {message}. {remedy}",
+                    "Fix this first: {message}. {remedy}",
                     message=tr_phrase(errors[0].message),
                     remedy=tr_phrase(errors[0].remedy),
                 )
@@ -168,19 +168,22 @@ class ExportDialog(QDialog):
         row.addWidget(self.folder, 1)
         row.addWidget(browse)
         form.addRow(tr("Folder"), row)
-        self.mesh = QCheckBox(tr("the character's mesh in the GLB"), self)
+        self.mesh = QCheckBox(tr("Character mesh in the GLB"), self)
         self.mesh.setChecked(chosen.mesh and project.character is not None)
         self.mesh.setEnabled(project.character is not None)
-        self.expanded = QCheckBox(tr("the expanded state machine in the JSON"), self)
+        self.expanded = QCheckBox(tr("Expanded state machine in the JSON"), self)
+        self.expanded.setToolTip(
+            tr("The ordinary state machine that the graph stands for, with all states and transitions listed")
+        )
         self.expanded.setChecked(chosen.expanded)
-        self.vectors = QCheckBox(tr("conformance vectors, which prove that a runtime plays the same"), self)
+        self.vectors = QCheckBox(tr("Conformance vectors, which test that a runtime plays the same"), self)
         self.vectors.setChecked(chosen.vectors)
-        self.tools = QCheckBox(tr("what may be asked, as tools for a language model"), self)
+        self.tools = QCheckBox(tr("Possible requests, as tools for a language model"), self)
         self.tools.setChecked(chosen.tools)
         self.compress = QCheckBox(
-            tr("the GLB packed, half as large, for runtimes and viewers that know it"), self
+            tr("Compressed GLB, half the size, for runtimes and viewers that support it"), self
         )
-        self.compress.setToolTip(tr("EXT_meshopt_compression: not every viewer opens it."))
+        self.compress.setToolTip(tr("Uses EXT_meshopt_compression, which not every viewer opens"))
         self.compress.setChecked(chosen.compress)
         boxes = (self.mesh, self.expanded, self.vectors, self.tools, self.compress)
         for words, box in zip((tr("Include"), "", "", "", ""), boxes, strict=True):
@@ -249,7 +252,7 @@ class ExportDialog(QDialog):
         joints = len(project.skeleton) if project.skeleton else 0
         self.words.setText(
             tr(
-                "Writes {files}. {states} actions, {clips} clips on {joints} joints.",
+                "Writes {files}: {states} actions, {clips} clips, {joints} joints.",
                 files=tr_phrase(target.files),
                 states=whole.states,
                 clips=whole.clips,
@@ -267,13 +270,13 @@ class ExportDialog(QDialog):
         )
         nothing = tr("<p>Nothing else is lost.</p>") if self.differences else tr("<p>Nothing is lost.</p>")
         lost = (
-            f"<p><b>{tr('What it loses')}</b></p><ul style='margin-left:-20px'>{''.join(rows)}</ul>"
+            f"<p><b>{tr('What is lost')}</b></p><ul style='margin-left:-20px'>{''.join(rows)}</ul>"
             if rows
             else nothing
         )
         told = "".join(f"<li>{escape(tr_phrase(words))}</li>" for words in self.differences)
         differs = (
-            f"<p><b>{tr('How it differs from what was drawn')}</b></p>"
+            f"<p><b>{tr('How it differs from the drawn states')}</b></p>"
             f"<ul style='margin-left:-20px'>{told}</ul>"
             if told
             else ""
@@ -293,7 +296,7 @@ class ExportDialog(QDialog):
             self.trouble.setText(result.trouble if result is not None else "")
 
     def _browse(self) -> None:
-        name = QFileDialog.getExistingDirectory(self, tr("Export into"), self.folder.text())
+        name = QFileDialog.getExistingDirectory(self, tr("Export to"), self.folder.text())
         if name:
             self.folder.setText(name)
             self._name_folder(name)
@@ -351,14 +354,18 @@ class ExportDialog(QDialog):
         self.progress.hide()
         self.go.setEnabled(True)
         main = [path.name for path in sorted(made.files, key=lambda path: -path.stat().st_size)[:3]]
-        more = tr(" and {count} more files", count=len(made.files) - 3) if len(made.files) > 3 else ""
+        names = ", ".join(main)
+        if more := len(made.files) - len(main):
+            names = tr_plural(
+                "{names} and {count:,} more file", "{names} and {count:,} more files", more, names=names
+            )
         size = sum(path.stat().st_size for path in made.files) / 1e6
-        words = tr(
-            "Written: {main}{more}, {size:.1f} MB with {clips} clips.",
-            main=", ".join(main),
-            more=more,
+        words = tr_plural(
+            "Wrote {names}: {size:.1f} MB, {count:,} clip.",
+            "Wrote {names}: {size:.1f} MB, {count:,} clips.",
+            made.clips,
+            names=names,
             size=size,
-            clips=made.clips,
         )
         self.results[made.target] = ExportResult(
             str(folder), words, "\n".join(map(tr_phrase, made.warnings[:5]))
@@ -379,12 +386,12 @@ class ExportDialog(QDialog):
         box = QMessageBox(
             QMessageBox.Icon.Question,
             tr("Overwrite?"),
-            tr("{folder} already has files of another origin.", folder=error.folder),
+            tr("{folder} contains files from elsewhere.", folder=error.folder),
             parent=self,
         )
         box.setInformativeText(
-            tr("Written over would be:\n")
-            + "\n".join(error.files[:8])
+            tr("These files would be overwritten:")
+            + "".join(f"\n{file}" for file in error.files[:8])
             + ("\n…" if len(error.files) > 8 else "")
         )
         box.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)

@@ -64,7 +64,7 @@ class FileFeature(Feature):
         for path in self.files.recent():
             menu.addAction(f"{path.name.split('.')[0]}   {path.parent}", partial(self.files.open, path))
         if menu.isEmpty():
-            menu.addAction(tr("None yet")).setEnabled(False)
+            menu.addAction(tr("No recent projects")).setEnabled(False)
 
     def open_sample(self) -> None:
         self.files.open(SAMPLE, template=True)
@@ -165,7 +165,7 @@ COMMANDS = (
         "project",
         tr_noop("Open the seate&d project"),
         FileFeature.open_seated,
-        tip=tr_noop("Somebody who sits on a stool, and gets up when asked"),
+        tip=tr_noop("A character that sits on a stool and gets up when asked"),
     ),
     Command(
         "practice",
@@ -181,7 +181,7 @@ COMMANDS = (
         "project",
         tr_noop("Reco&ver…"),
         FileFeature.recover,
-        tip=tr_noop("All work that is in no file, of windows that were not closed properly"),
+        tip=tr_noop("Recover unsaved work from windows that were not closed properly"),
     ),
     Command(
         "network",
@@ -189,7 +189,7 @@ COMMANDS = (
         "project",
         tr_noop("Files on other &computers…"),
         FileFeature.ask_network,
-        tip=tr_noop("Whether files on other computers that this project names are opened"),
+        tip=tr_noop("Choose whether to open the files on other computers that this project names"),
     ),
     Command("save", FILE, "save", tr_noop("&Save"), FileFeature.save, (Standard.Save,)),
     Command("save_as", FILE, "save", tr_noop("Save &as…"), FileFeature.save_as, (Standard.SaveAs,)),
@@ -199,7 +199,7 @@ COMMANDS = (
         "save",
         tr_noop("Earlier &versions…"),
         FileFeature.show_versions,
-        tip=tr_noop("What each save has kept of this project, and how many are kept"),
+        tip=tr_noop("Open a version that an earlier save kept, and set how many versions are kept"),
         enabled=FileFeature.is_saved,
     ),
     Command(
@@ -220,7 +220,7 @@ COMMANDS = (
         "import",
         tr_noop("Import &labels…"),
         FileFeature.import_labels,
-        tip=tr_noop("A file of labels, as Blender's add-on writes it, with the clips beside it"),
+        tip=tr_noop("Import a file of labels that Blender's add-on wrote, with the clips beside it"),
     ),
     Command(
         "watch",
@@ -229,7 +229,7 @@ COMMANDS = (
         tr_noop("Follow changed &files"),
         FileFeature.toggle_watching,
         checked=FileFeature.watches,
-        tip=tr_noop("Clips that are exported again are read again, in place"),
+        tip=tr_noop("Read clips again when their files change"),
     ),
     Command("find_missing", FILE, "import", tr_noop("Find missing files…"), FileFeature.find_missing),
     Command(

@@ -19,7 +19,7 @@ from metagraph.formats.import_words import Remedy, count_alike, describe_import,
 from metagraph.formats.imports import Imported
 from metagraph.graph.model import Project
 
-NEXT = tr_noop("Next: let them be labelled, or drag them onto the nodes of the graph.")
+NEXT = tr_noop("Next, choose Label clips, or drag them onto the nodes of the graph.")
 
 
 class ImportLine(QToolBar):
@@ -55,10 +55,10 @@ class ImportLine(QToolBar):
         self.buttons.setSpacing(6)
         row.addLayout(self.buttons)
         self.why = make_widget(
-            QToolButton, held, text=tr("Details…"), toolTip=tr("What was left out, and why")
+            QToolButton, held, text=tr("Details…"), toolTip=tr("Show what was not imported, and why")
         )
         self.why.clicked.connect(self._details)
-        self.close_button = make_widget(QToolButton, held, text="✕", toolTip=tr("Close this line"))
+        self.close_button = make_widget(QToolButton, held, text="✕", toolTip=tr("Dismiss this message"))
         self.close_button.setAccessibleName(tr("Close"))
         self.close_button.clicked.connect(self.forget)
         row.addWidget(self.why)

@@ -88,9 +88,9 @@ class VersionsDialog(QDialog):
         heading = QLabel(tr("Earlier versions of {name}", name=name), self)
         heading.setProperty("heading", True)
         words = QLabel(
-            tr("Each save keeps the version before it. Opened as a copy, it replaces nothing.")
+            tr("Each save keeps the version before it. A version opens as a copy and replaces nothing.")
             if found
-            else tr("There is none yet: each save keeps the version before it."),
+            else tr("No earlier versions yet. Each save keeps the version before it."),
             self,
         )
         words.setProperty("dim", True)
@@ -139,7 +139,7 @@ class VersionsDialog(QDialog):
             column.addWidget(rows, 1)
         halves.setSizes([440, 410])
         last = QHBoxLayout()
-        label = QLabel(tr("&Versions to keep at each save"), self)
+        label = QLabel(tr("&Versions to keep"), self)
         label.setBuddy(self.count)
         last.addWidget(label)
         last.addWidget(self.count)
@@ -162,12 +162,9 @@ class VersionsDialog(QDialog):
         if one.project is None:
             words = tr("Cannot be read")
         elif not one.changes:
-            words = tr("As it is now")
+            words = tr("Same as now")
         else:
-            words = tr(
-                "{changes} since then",
-                changes=tr_plural("{count:,} change", "{count:,} changes", len(one.changes)),
-            )
+            words = tr_plural("{count:,} change since then", "{count:,} changes since then", len(one.changes))
         item = QListWidgetItem(f"{when}\n{words}")
         if one.project is not None:
             clips = tr_plural("{count:,} clip", "{count:,} clips", len(one.project.clips))

@@ -23,13 +23,13 @@ if TYPE_CHECKING:
 TIMELINE = lazy_texts(
     lambda: (  # and what the timeline does
         (tr("Add a marker"), "M"),
-        (tr("Move requests or a marker"), tr("arrows, with Shift by a second")),
-        (tr("Take requests back and close up"), tr("Shift+Del")),
+        (tr("Move requests or a marker"), tr("arrows, with Shift by one second")),
+        (tr("Withdraw requests and close the gap"), tr("Shift+Del")),
         (tr("Cut, copy, paste requests"), tr("Ctrl+X, Ctrl+C, Ctrl+V")),
-        (tr("Copy requests a second later"), tr("Ctrl+D")),
+        (tr("Copy requests one second later"), tr("Ctrl+D")),
         (tr("Ask for something"), tr("Insert")),
-        (tr("Cut to all, over a shoulder, close"), tr("1 to 9")),
-        (tr("Take the cut away"), "0"),
+        (tr("Cut to everyone, over the shoulder, close-up"), tr("1 to 9")),
+        (tr("Remove the cut"), "0"),
         (tr("Zoom in and out"), "+, −"),
         (tr("Drag without snapping"), tr("Shift")),
     )
@@ -40,7 +40,7 @@ LANES = lazy_texts(
         (tr("Split a segment"), "S"),
         (tr("Merge segments"), "M"),
         (tr("Set the stress"), "P"),
-        (tr("Go from segment to segment"), tr("Tab, arrows")),
+        (tr("Move from segment to segment"), tr("Tab, arrows")),
     )
 )
 
@@ -103,9 +103,9 @@ def contribute(shell: Shell) -> Contribution:
     def about() -> None:
         from metagraph import __version__
 
-        kinds = " &nbsp; ".join(f"{KIND_MARKS[k]} {k}" for k in KINDS)
+        kinds = " &nbsp; ".join(f"{KIND_MARKS[k]} {tr(k)}" for k in KINDS)
         text = tr(
-            "<h3>Metagraph {version}</h3><p>Drop clips; the state machine draws itself.</p><p>{kinds}</p>",
+            "<h3>Metagraph {version}</h3><p>Drop clips to build a state machine.</p><p>{kinds}</p>",
             version=__version__,
             kinds=kinds,
         )
@@ -135,7 +135,7 @@ def contribute(shell: Shell) -> Contribution:
                 tr("&Commands…"),
                 palette,
                 ("Ctrl+Shift+P",),
-                tip=tr("Find what can be done"),
+                tip=tr("Search all commands by name"),
             ),
             Command("about", "&Help", "", tr("&About Metagraph"), about, study=True),
         ),

@@ -12,7 +12,7 @@ from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelInd
 from PySide6.QtGui import QFont
 from PySide6.QtWidgets import QComboBox, QStyledItemDelegate, QStyleOptionViewItem, QWidget
 
-from app.translation import lazy_texts, tr, tr_error, tr_noop
+from app.translation import lazy_texts, tr, tr_error, tr_noop, tr_plural
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.vocabulary import vocabulary_word
 from metagraph.graph.words import KINDS, LAYERS, LIMBS
@@ -21,7 +21,7 @@ from metagraph.suggest.words.languages import AFTER_FROM, AFTER_TO, MAYBE_FROM, 
 from metagraph.suggest.words.patterns import FIELDS, Patterns, PatternsError, count_correction, forget_learned
 
 Index = QModelIndex | QPersistentModelIndex
-COLUMNS = lazy_texts(lambda: (tr("Words"), tr("About"), tr("Means"), tr("From")))
+COLUMNS = lazy_texts(lambda: (tr("Words"), tr("About"), tr("Means"), tr("Source")))
 ABOUT = lazy_texts(
     lambda: {
         "kinds": tr("kind"),
@@ -30,7 +30,7 @@ ABOUT = lazy_texts(
         "tags": tr("tags"),
         "postures": tr("stance name"),
         "joins": tr("transition"),
-        "junk": tr("no word"),
+        "junk": tr("ignored word"),
         "synonyms": tr("same as"),
         "kind": tr("kind"),
         "layer": tr("layer"),
@@ -56,9 +56,9 @@ MEANINGS: dict[str, tuple[str, ...]] = {
 }
 SHOWN = lazy_texts(
     lambda: {
-        "other": tr("none of the four"),
+        "other": tr("none of the four kinds"),
         "junk": tr("nothing"),
-        None: tr("nothing any more"),
+        None: tr("nothing (removed)"),
         NOTHING: tr("nothing"),
         MAYBE_TO: tr("to, between stances"),
         MAYBE_FROM: tr("from, between stances"),
@@ -95,18 +95,16 @@ class PatternRow:
 
     def texts(self) -> tuple[str, str, str, str]:
         """Return what the columns say."""
-        times = (
-            ""
-            if not self.count
-            else tr(", once")
-            if self.count == 1
-            else tr(", {count} times", count=self.count)
-        )
+        source = tr(self.source)
+        if self.count:
+            source = tr_plural(
+                "{source}, {count:,} time", "{source}, {count:,} times", self.count, source=source
+            )
         return (
             self.phrase,
             ABOUT[self.field],
             describe_meaning(self.field, self.meaning),
-            tr(self.source) + times,
+            source,
         )
 
 

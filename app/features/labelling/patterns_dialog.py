@@ -90,7 +90,10 @@ class PatternsDialog(QDialog):
         layout.setSpacing(10)
         layout.addWidget(
             QLabel(
-                tr("What words in clip names mean when labels are proposed. Kept for all your projects."),
+                tr(
+                    "Set what words in clip names mean when labels are proposed. All your projects use these "
+                    "patterns."
+                ),
                 self,
                 wordWrap=True,
             )
@@ -180,9 +183,7 @@ class PatternsDialog(QDialog):
         self.add.clicked.connect(self._add)
         self.phrase.returnPressed.connect(self._add)
         self.remove = QPushButton(tr("Remove"), self)
-        self.remove.setToolTip(
-            tr("Forget the selected patterns; of built-in ones, that they mean anything (Delete)")
-        )
+        self.remove.setToolTip(tr("Remove the selected patterns (Delete); built-in ones then mean nothing"))
         self.remove.clicked.connect(self._remove)
         grid = QGridLayout()
         for column, (widget, wide) in enumerate(
@@ -196,7 +197,7 @@ class PatternsDialog(QDialog):
         self.on = QCheckBox(tr("Learn from my corrections"), self)
         self.on.setChecked(self.learned.on)
         self.on.toggled.connect(self.learned.set_on)
-        self.forget = QPushButton(tr("Forget all learned…"), self)
+        self.forget = QPushButton(tr("Forget everything learned…"), self)
         self.forget.clicked.connect(self._forget)
         self.take, self.give = QPushButton(tr("Import…"), self), QPushButton(tr("Export…"), self)
         self.take.clicked.connect(self._import)
@@ -243,7 +244,7 @@ class PatternsDialog(QDialog):
     def _try(self) -> None:
         name = self.name.text().strip()
         if not name:
-            self.read.setText(tr("<i>Nothing is tried.</i>"))
+            self.read.setText(tr("<i>No name entered.</i>"))
             return
         names = [clip.name for clip in self.document.project.clips.values()]
         self.read.setText(self._said(read_names([*names, name], self.learned.patterns)[name]))
@@ -266,7 +267,7 @@ class PatternsDialog(QDialog):
             rows.append(
                 "<tr>" + "".join(f"<td style='padding-right:14px'>{cell}</td>" for cell in cells) + "</tr>"
             )
-        return f"<table>{''.join(rows)}</table>" if rows else tr("<i>This name says nothing.</i>")
+        return f"<table>{''.join(rows)}</table>" if rows else tr("<i>This name matches no pattern.</i>")
 
     def _tell(self, words: str) -> None:
         self.words.setText(words)
@@ -301,7 +302,7 @@ class PatternsDialog(QDialog):
             None,
         )
         if at is None:
-            self._tell(tr("'{phrase}' means that already, built in.", phrase=phrase))
+            self._tell(tr("'{phrase}' already has this meaning: it is built in.", phrase=phrase))
             return
         index = self.chosen.mapFromSource(self.model.index(at, 0))
         self.table.setCurrentIndex(index)
@@ -321,7 +322,10 @@ class PatternsDialog(QDialog):
         self.learned.edit(change)
         taken = [row for row in rows if row.source == NOBODY]
         self._tell(
-            tr("'{phrase}' means nothing any more. Remove it again to have it back.", phrase=taken[0].phrase)
+            tr(
+                "'{phrase}' no longer means anything. Remove it again to restore its meaning.",
+                phrase=taken[0].phrase,
+            )
             if len(taken) == 1
             else ""
         )
@@ -333,13 +337,15 @@ class PatternsDialog(QDialog):
     def _forget(self) -> None:
         count, clips = sum(map(len, self.model.patterns.learned.values())), self.learned.clips
         words = tr(
-            "{words} learned from corrections and {clips} of saved projects are forgotten. Patterns you "
-            "wrote stay.",
+            "This forgets {words} learned from corrections, and {clips} of saved projects. Patterns "
+            "that you wrote stay.",
             words=tr_plural("{count:,} word", "{count:,} words", count),
             clips=tr_plural("{count:,} labelled clip", "{count:,} labelled clips", clips),
         )
         buttons = QMessageBox.StandardButton
-        box = QMessageBox(QMessageBox.Icon.Question, tr("Forget all learned?"), words, buttons.Cancel, self)
+        box = QMessageBox(
+            QMessageBox.Icon.Question, tr("Forget everything learned?"), words, buttons.Cancel, self
+        )
         go = box.addButton(tr("Forget"), QMessageBox.ButtonRole.DestructiveRole)
         box.setDefaultButton(buttons.Cancel)
         box.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
@@ -363,7 +369,7 @@ class PatternsDialog(QDialog):
             learned = sum(map(len, theirs.learned.values()))
             self._tell(
                 tr(
-                    "{patterns} and {learned} learned were taken from {name}.",
+                    "Imported {patterns} and {learned} learned ones from {name}.",
                     patterns=tr_plural("{count:,} pattern", "{count:,} patterns", own),
                     learned=learned,
                     name=Path(name).name,
@@ -382,7 +388,7 @@ class PatternsDialog(QDialog):
                 return
             self._tell(
                 tr(
-                    "Written to {name}, for others to import, or for metagraph label --patterns.",
+                    "Wrote {name}. Others can import it, or use it with metagraph label --patterns.",
                     name=path.name,
                 )
             )

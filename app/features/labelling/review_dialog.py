@@ -48,7 +48,7 @@ from metagraph.suggest.review import DECIDING, Field, Review
 
 TITLES: dict[str, str] = lazy_texts(
     lambda: {
-        "kind": tr("Is a"),
+        "kind": tr("Kind"),
         "layer": tr("Layer"),
         "stance": tr("Stance"),
         "end_stance": tr("Ends in"),
@@ -152,7 +152,7 @@ class ReviewDialog(QDialog):
         self.tags = QLineEdit(self)
         self.tags.setAccessibleName(tr("Tags"))
         self.tags.setPlaceholderText(tr("none"))
-        self.tags.setToolTip(tr("Words it may be asked for by, with commas between them (T)"))
+        self.tags.setToolTip(tr("Tags by which a request can ask for the action, separated by commas (T)"))
         self.tags.editingFinished.connect(self._tag)
         label = QLabel(tr("Tags"), self)
         label.setProperty("dim", True)
@@ -401,7 +401,9 @@ class ReviewDialog(QDialog):
             self.stage.tell(
                 tr(
                     "<b>Not placed:</b> {why}.",
-                    why=escape(tr_phrase(why[1]) if why is not None else tr("it is no longer there")),
+                    why=escape(
+                        tr_phrase(why[1]) if why is not None else tr("the clip is no longer in the project")
+                    ),
                 )
             )
             return
@@ -409,7 +411,7 @@ class ReviewDialog(QDialog):
         if why is not None:
             self.queue.words.setText(
                 tr(
-                    "{placed} placed; not {name}: {why}.",
+                    "Placed {placed}. {name} was not placed: {why}.",
                     placed=len(taken.placed),
                     name=self.document.project.clips[why[0]].name,
                     why=why[1],
@@ -450,19 +452,19 @@ class ReviewDialog(QDialog):
         """Show what the current clip is taken for."""
         clip, project = self.current, self.document.project
         p = self._proposed
-        self.go.setText(tr("Done") if clip is None else tr("Accept") if p is not None else tr("Leave aside"))
+        self.go.setText(tr("Done") if clip is None else tr("Accept") if p is not None else tr("Skip"))
         self.tags.setEnabled(p is not None)
         if clip is None or clip not in project.clips:
             self.fields.show_rows((), "")
             self.timing.setText("")
             self.tags.setText("")
             done = (
-                tr("<b>Every clip is placed.</b>")
+                tr("<b>All clips are placed.</b>")
                 if not self.work.aside
                 else review_words.describe_skipped(self.work.aside)
             )
             done = self.watching.words(None) if self.watching.on else done
-            self.stage.tell(done if self.work.looked else tr("Looking at names and motion…"))
+            self.stage.tell(done if self.work.looked else tr("Analysing names and motion…"))
             return
         if p is None:
             why = tr_phrase(self.review.found.aside.get(clip, ""))
@@ -482,7 +484,7 @@ class ReviewDialog(QDialog):
                 sure, reason = (
                     (belief.confidence, tr_phrase(belief.reason))
                     if belief is not None
-                    else (0.0, tr("nothing says which"))
+                    else (0.0, tr("neither the name nor the motion says which"))
                 )
                 rows.append(
                     ReviewRow(

@@ -63,7 +63,7 @@ class ReviewFields(QWidget):
         self._placed: list[_Placed] = []
         self._high = 0.0
         self.setMouseTracking(True)
-        self.setAccessibleName(tr("What the clip is taken for"))
+        self.setAccessibleName(tr("Proposed label"))
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         session.look.changed.connect(self.update)
 
@@ -71,7 +71,7 @@ class ReviewFields(QWidget):
         self.rows, self.current = tuple(rows), current
         self.setAccessibleDescription(
             "; ".join(
-                tr("{title}: {words}, {sure:.0%} sure", title=r.title, words=self._words(r), sure=r.sure)
+                tr("{title}: {words}, {sure:.0%} certain", title=r.title, words=self._words(r), sure=r.sure)
                 for r in rows
             )
         )
@@ -80,7 +80,7 @@ class ReviewFields(QWidget):
 
     @staticmethod
     def _words(row: ReviewRow) -> str:
-        return next((words for value, words in row.choices if value == row.value), tr("not known"))
+        return next((words for value, words in row.choices if value == row.value), tr("unknown"))
 
     def chip(self, name: str, value: Any) -> QPointF:
         """Return the middle of a chip, in pixels of this widget. Raises KeyError when there is none."""

@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 from app.features.labelling.review_words import describe_length
 from app.look.theme import KIND_MARKS, theme
 from app.stage.session import StageSession
-from app.translation import tr, tr_plural
+from app.translation import tr, tr_noop, tr_plural
 from app.widgets.quiet_fields import SpinBox
 from metagraph.graph.model import Project
 from metagraph.suggest.propose import waiting
@@ -48,7 +48,7 @@ class ReviewQueue(QWidget):
         self.aside: tuple[str, ...] = ()
         self._items: dict[str, QTreeWidgetItem] = {}
         self.bar = QProgressBar(self, textVisible=False)
-        self.words = QLabel(tr("Looking at names and motion…"), self, wordWrap=True)
+        self.words = QLabel(tr("Analysing names and motion…"), self, wordWrap=True)
         self.words.setProperty("dim", True)
         self.list = QTreeWidget(self)
         self.list.setRootIsDecorated(False)
@@ -56,7 +56,7 @@ class ReviewQueue(QWidget):
         self.list.setHeaderHidden(True)
         self.list.setTextElideMode(Qt.TextElideMode.ElideMiddle)  # names of one set differ at their ends
         self.list.setColumnCount(2)
-        self.list.setAccessibleName(tr("Clips to look at"))
+        self.list.setAccessibleName(tr("Clips to review"))
         header = self.list.header()
         header.setStretchLastSection(False)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
@@ -64,10 +64,10 @@ class ReviewQueue(QWidget):
         self.list.currentItemChanged.connect(
             lambda item, _: self.picked.emit(item.data(0, CLIP)) if item is not None else None
         )
-        self.sure = QPushButton(tr("Accept the sure"), self)
+        self.sure = QPushButton(tr("Accept certain proposals"), self)
         self.sure.setAutoDefault(False)
         self.sure.setToolTip(
-            tr("Places all that are at least so sure, and about which nothing is disputed (A)")
+            tr("Accept every proposal that is at least this certain and has no contradiction (A)")
         )
         self.sure.clicked.connect(self.sure_wanted)
         self.limit = SpinBox(self)
@@ -76,13 +76,13 @@ class ReviewQueue(QWidget):
         self.limit.setSuffix(" %")
         self.limit.setFixedWidth(78)
         self.limit.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self.limit.setAccessibleName(tr("At least so sure"))
-        self.limit.setToolTip(tr("How sure a proposal must be to be accepted with the others"))
+        self.limit.setAccessibleName(tr("Minimum certainty"))
+        self.limit.setToolTip(tr("Minimum certainty of the proposals to accept together"))
         self.limit.valueChanged.connect(self.limit_changed)
         self.parted = QLabel(self, wordWrap=True)
         self.bridge = QPushButton(tr("Bridge by blending"), self)
         self.bridge.setAutoDefault(False)
-        self.bridge.setToolTip(tr("Makes transitions that are blends from pose to pose, as one step (B)"))
+        self.bridge.setToolTip(tr("Add transitions that blend from pose to pose, as one undo step (B)"))
         self.bridge.clicked.connect(self.bridge_wanted)
         for widget in (self.list, self.sure, self.bridge):
             widget.setFocusPolicy(
@@ -113,9 +113,11 @@ class ReviewQueue(QWidget):
         self.clips, self.aside, self._items = tuple(clips), tuple(aside), {}
         for clip in (*clips, *aside):
             if aside and clip == aside[0]:
-                head = QTreeWidgetItem(self.list, [tr("Left aside ({count})", count=len(aside)), ""])
+                head = QTreeWidgetItem(self.list, [tr("Skipped ({count})", count=len(aside)), ""])
                 head.setFlags(Qt.ItemFlag.NoItemFlags)
-                head.setToolTip(0, tr("None of the four kinds; choose a kind to label one all the same"))
+                head.setToolTip(
+                    0, tr("These are none of the four kinds. To label one anyway, choose its kind.")
+                )
             item = self._items[clip] = QTreeWidgetItem(self.list, ["", ""])
             item.setData(0, CLIP, clip)
             item.setTextAlignment(1, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
@@ -125,17 +127,20 @@ class ReviewQueue(QWidget):
         """Tell of stances, by name, that no clip leads to or from, or else what was made of blends."""
         names = ", ".join(stances[:4]) + (" …" if len(stances) > 4 else "")
         if stances:
-            found = tr_plural("{count:,} stance", "{count:,} stances", len(stances))
             self.parted.setText(
-                tr("No clip leads to {stances}, or back from it: {names}.", stances=found, names=names)
-                if len(stances) == 1
-                else tr("No clip leads to {stances}, or back from them: {names}.", stances=found, names=names)
+                tr_plural(
+                    "{count:,} stance has no clip that leads to it, or none that leads back: {names}.",
+                    "{count:,} stances have no clip that leads to them, or none that leads back: {names}.",
+                    len(stances),
+                    names=names,
+                )
             )
         else:
             self.parted.setText(
-                tr(
-                    "{transitions} made by blending.",
-                    transitions=tr_plural("{count:,} transition", "{count:,} transitions", len(made)),
+                tr_plural(
+                    "Added {count:,} blended transition.",
+                    "Added {count:,} blended transitions.",
+                    len(made),
                 )
                 if made
                 else ""
@@ -161,7 +166,7 @@ class ReviewQueue(QWidget):
             if p is None:
                 item.setText(0, f"–  {entry.name}")
                 item.setToolTip(
-                    0, tr("{name}: left aside, {why}", name=entry.name, why=review.found.aside.get(clip, ""))
+                    0, tr("{name}: skipped, {why}", name=entry.name, why=review.found.aside.get(clip, ""))
                 )
                 for column in (0, 1):
                     item.setForeground(column, QColor(look.dim))
@@ -182,20 +187,22 @@ class ReviewQueue(QWidget):
         self.bar.setMaximum(max(1, total))
         self.bar.setValue(total - left)
         if not total:
-            what = tr("All that is left was left aside.") if self.aside else tr("Every clip is placed.")
+            what = tr("All remaining clips were skipped.") if self.aside else tr("All clips are placed.")
             self.words.setText(what)
         elif not left:
             self.words.setText(tr("All {total} clips are placed.", total=total))
         else:
-            how = tr("at your pace") if pace.known else tr("at the usual pace")
-            self.words.setText(
-                tr(
-                    "{placed} of {total} placed, {time} left {how}",
-                    placed=total - left,
-                    total=total,
-                    time=describe_length(pace.left(left)),
-                    how=how,
-                )
+            words = (
+                tr_noop("{placed} of {total} placed, {time} left at your pace")
+                if pace.known
+                else tr_noop("{placed} of {total} placed, {time} left at a typical pace")
             )
-        self.sure.setText(tr("Accept {sure} sure", sure=sure) if sure else tr("None is so sure"))
+            self.words.setText(
+                tr(words, placed=total - left, total=total, time=describe_length(pace.left(left)))
+            )
+        self.sure.setText(
+            tr_plural("Accept {count:,} proposal", "Accept {count:,} proposals", sure)
+            if sure
+            else tr("No certain proposals")
+        )
         self.sure.setEnabled(sure > 0)

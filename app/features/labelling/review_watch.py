@@ -69,14 +69,14 @@ class Watching:
         done, every = len(self.watched), len(self._order)
         if clip is None:
             return tr(
-                "<b>{done} of {every} watched.</b> Enter accepts them as they are shown.",
+                "<b>Watched {done} of {every}.</b> Press Enter to accept them as shown.",
                 done=done,
                 every=every,
             )
         state = (
-            tr("Held: correct it, Enter goes on")
+            tr("Paused: correct it, then press Enter to continue")
             if self.held
-            else tr("Any correction holds, Tab leaves it out, W ends and accepts")
+            else tr("Any correction pauses, Tab skips the clip, W ends and accepts")
         )
         return tr(
             "<b>Watching {number} of {every}</b> &nbsp; {state}",

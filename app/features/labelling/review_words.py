@@ -24,16 +24,16 @@ KEYS = lazy_texts(
         (tr("Backspace"), tr("undo")),
         (tr("Space"), tr("pause")),
         (", .", tr("frame")),
-        ("[ ]", tr("start, end here")),
-        ("C", tr("alone")),
+        ("[ ]", tr("set start, end")),
+        ("C", tr("clip only")),
         ("N", tr("new stance")),
         ("T", tr("tags")),
-        ("A", tr("accept the sure")),
+        ("A", tr("accept certain ones")),
         ("W", tr("watch all")),
         ("B", tr("bridge stances")),
     )
 )
-ANYWAY = tr_noop("Left aside; choose what it is to label it all the same.")
+ANYWAY = tr_noop("Skipped. To label it anyway, choose its kind.")
 
 
 def format_keys(look: WindowTheme) -> str:
@@ -49,7 +49,7 @@ def headline(review: Review, project: Project, clip: str, look: WindowTheme) -> 
     """Return what a clip is taken for as rich text, and what speaks against it."""
     if clip not in review.found.proposals:
         return (
-            f'<span style="font-size:17px; font-weight:600">{tr("Left aside")}</span><br>'
+            f'<span style="font-size:17px; font-weight:600">{tr("Skipped")}</span><br>'
             f'<span style="color:{look.dim}">{escape(project.clips[clip].name)}</span><br>'
             f"{escape(tr_phrase(review.found.aside.get(clip, '')))}"
         )
@@ -73,11 +73,10 @@ def headline(review: Review, project: Project, clip: str, look: WindowTheme) -> 
 
 def describe_skipped(aside: Sequence[str]) -> str:
     """Return what is said when nothing is left but clips that were left aside."""
-    if len(aside) == 1:
-        return tr("<b>Every clip is placed</b> but one that was left aside.")
-    return tr(
-        "<b>Every clip is placed</b> but {clips} that were left aside.",
-        clips=tr_plural("{count:,} clip", "{count:,} clips", len(aside)),
+    return tr_plural(
+        "<b>All clips are placed</b> except {count:,} skipped clip.",
+        "<b>All clips are placed</b> except {count:,} skipped clips.",
+        len(aside),
     )
 
 
@@ -86,7 +85,7 @@ def timing(p: Proposal, duration: float) -> str:
     t, end = p.timing, p.timing.get("end")
     parts = [
         tr(
-            "From {start:.2f} to {end:.2f} s of {duration:.2f}",
+            "From {start:.2f} to {end:.2f} s of {duration:.2f} s",
             start=t.get("start") or 0.0,
             end=duration if end is None else end,
             duration=duration,
@@ -95,13 +94,13 @@ def timing(p: Proposal, duration: float) -> str:
     if t.get("blend_in") or t.get("blend_out"):
         parts.append(
             tr(
-                "blends {begin:.2f} s in, {end:.2f} s out",
+                "blends in {begin:.2f} s, out {end:.2f} s",
                 begin=t.get("blend_in") or 0.0,
                 end=t.get("blend_out") or 0.0,
             )
         )
     if t.get("earliest_exit") is not None:
-        parts.append(tr("may be left from {seconds:.2f} s", seconds=t["earliest_exit"]))
+        parts.append(tr("can exit from {seconds:.2f} s", seconds=t["earliest_exit"]))
     if t.get("loop"):
         parts.append(tr("loops"))
     words = [", ".join(parts)]
@@ -112,7 +111,7 @@ def timing(p: Proposal, duration: float) -> str:
             value = (
                 f"{belief.value:g}"
                 if name == "likelihood"
-                else f"{belief.value:.2f} s"
+                else tr("{seconds:.2f} s", seconds=belief.value)
                 if name == "stroke"
                 else tr("some joints")
             )

@@ -38,14 +38,14 @@ class ClipActs:
         out = QMenu(self.widget)
         out.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         chosen = self.session.selection.clips if entry.id in self.session.selection.clips else (entry.id,)
-        out.addAction(tr("Play alone"), lambda: self.session.transport.show_clip(entry.id))
+        out.addAction(tr("Play clip only"), lambda: self.session.transport.show_clip(entry.id))
         out.addAction(tr("Play in context"), lambda: self.session.show_context(entry.id))
         out.addSeparator()
         if self.label_actions:
             out.addMenu(tr("&Label as")).addActions(self.label_actions)
         self._fill_marks(out.addMenu(tr("&Mark")), chosen)
         out.addSeparator()
-        out.addAction(tr("Use its first frame as base pose"), lambda: self.use_as_base(entry.id, 0))
+        out.addAction(tr("Use first frame as base pose"), lambda: self.use_as_base(entry.id, 0))
         if self.session.transport.show == "clip" and self.session.transport.shown == entry.id:
             frame = round(self.session.transport.seconds * entry.fps)
             out.addAction(
@@ -53,7 +53,7 @@ class ClipActs:
                 lambda: self.use_as_base(entry.id, frame),
             )
         out.addAction(
-            tr("Use the rest pose as base pose"),
+            tr("Use rest pose as base pose"),
             lambda: self.document.edit(tr("Set base pose"), lambda p: edits.set_base(p, None)),
         )
         out.addSeparator()
@@ -62,8 +62,10 @@ class ClipActs:
         out.addAction(tr("Reveal in folder"), lambda: self.reveal(entry.id))
         out.addActions(self.row_actions)
         out.addSeparator()
-        noun = tr("{chosen} clips", chosen=len(chosen)) if len(chosen) > 1 else "clip"
-        out.addAction(tr("Remove {noun} from the project\tDel", noun=noun), lambda: self.remove(chosen))
+        words = tr_plural(
+            "Remove clip from the project\tDel", "Remove {count:,} clips from the project\tDel", len(chosen)
+        )
+        out.addAction(words, lambda: self.remove(chosen))
         return out
 
     def _fill_marks(self, menu: QMenu, clips: Iterable[str]) -> None:
@@ -97,9 +99,9 @@ class ClipActs:
         some = tuple(clips)
         what = tr_plural("{count:,} clip", "{count:,} clips", len(some))
         words = {
-            "color": tr("Colour {clips}", clips=what),
+            "color": tr("Set colour of {clips}", clips=what),
             "rating": tr("Rate {clips}", clips=what),
-            "favourite": tr("Favourite {clips}", clips=what),
+            "favourite": tr("Set favourite of {clips}", clips=what),
         }[field]
         self.document.edit(words, lambda p: mark(p, some, **{field: value}))
 

@@ -113,7 +113,7 @@ def draw_clip_card(
     line.moveTop(rect.bottom() - 20)
     right = draw_kinds(painter, line, list_clip_kinds(facts, entry), look)
     base = tr("base") if facts.project.base.clip == entry.id else ""
-    length = f"{entry.duration:.1f} s"
+    length = tr("{seconds:.1f} s", seconds=entry.duration)
     stars = f"★{mark.rating}" if mark.rating else ""
     painter.setPen(QColor(look.dim))
     end = QRect(line.left(), line.top(), right - line.left() - 2, line.height())

@@ -54,33 +54,33 @@ def _note(facts: ClipFacts, entry: ClipEntry) -> str:
 
 COLUMNS: tuple[Column, ...] = lazy_texts(
     lambda: (
-        Column("name", tr("Name"), lambda f, e: e.name, "name", 250, tr("What the clip is called")),
+        Column("name", tr("Name"), lambda f, e: e.name, "name", 250, tr("The clip's name")),
         Column(
             "length",
             tr("Length"),
-            lambda f, e: f"{e.duration:.2f} s",
+            lambda f, e: tr("{seconds:.2f} s", seconds=e.duration),
             "length",
             70,
-            tr("Its length"),
+            tr("The clip's length in seconds"),
             right=True,
         ),
         Column(
             "moves",
             tr("Moves"),
-            lambda f, e: ", ".join(f.moved(e)),
+            lambda f, e: f.moved_words(e),
             "moves",
             130,
-            tr("Whose joints turn; place: it travels"),
+            tr("The parts of the body that move; position: the character travels"),
         ),
-        Column("kind", tr("Kind"), _kinds, "use", 90, tr("What it serves as")),
-        Column("layer", tr("Layer"), _layers, "use", 80, tr("The layers it is placed in")),
+        Column("kind", tr("Kind"), _kinds, "use", 90, tr("The kinds of action that use the clip")),
+        Column("layer", tr("Layer"), _layers, "use", 80, tr("The layers of the actions that use the clip")),
         Column(
             "stance",
             tr("Stance"),
             lambda f, e: ", ".join(stances(f, e)),
             "stance",
             130,
-            tr("The stances it is used in"),
+            tr("The stances that use the clip"),
         ),
         Column(
             "uses",
@@ -88,7 +88,7 @@ COLUMNS: tuple[Column, ...] = lazy_texts(
             lambda f, e: _count(len(f.uses(e))),
             "uses",
             55,
-            tr("How many actions use it"),
+            tr("How many actions use the clip"),
             True,
         ),
         Column(
@@ -97,7 +97,7 @@ COLUMNS: tuple[Column, ...] = lazy_texts(
             lambda f, e: _count(f.problems(e)),
             "problems",
             80,
-            tr("In how many it is"),
+            tr("How many problems concern the clip"),
             True,
         ),
         Column(
@@ -106,7 +106,7 @@ COLUMNS: tuple[Column, ...] = lazy_texts(
             lambda f, e: stars(f.mark(e).rating),
             "rating",
             85,
-            tr("How many stars it has"),
+            tr("Your rating of the clip"),
         ),
         Column(
             "color",
@@ -114,7 +114,7 @@ COLUMNS: tuple[Column, ...] = lazy_texts(
             lambda f, e: COLOR_TITLES[f.mark(e).color],
             "color",
             80,
-            tr("Its colour label"),
+            tr("The clip's colour label"),
         ),
         Column(
             "favourite",
@@ -124,17 +124,19 @@ COLUMNS: tuple[Column, ...] = lazy_texts(
             34,
             tr("Favourites"),
         ),
-        Column("note", tr("Note"), _note, "name", 160, tr("What was written about it"), shown=False),
+        Column("note", tr("Note"), _note, "name", 160, tr("Your note on the clip"), shown=False),
         Column(
             "added",
             tr("Added"),
             lambda f, e: str(f.place(e)),
             GIVEN,
             65,
-            tr("In which order clips came"),
+            tr("The clip's place in the order of import"),
             True,
             False,
         ),
-        Column("file", tr("File"), lambda f, e: e.path, "folder", 220, tr("The file it comes from")),
+        Column(
+            "file", tr("File"), lambda f, e: e.path, "folder", 220, tr("The file that the clip comes from")
+        ),
     )
 )

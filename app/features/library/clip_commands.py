@@ -108,7 +108,7 @@ COMMANDS = (
         tr_noop("&Favourite"),
         LibraryFeature.favour,
         ("Ctrl+Shift+6",),
-        tip=tr_noop("Put a heart on the selected clips, or take it away"),
+        tip=tr_noop("Add the selected clips to the favourites, or remove them"),
         enabled=has_clips_selected,
     ),
     Command(
@@ -118,7 +118,7 @@ COMMANDS = (
         tr_noop("&Duplicate"),
         LibraryFeature.duplicate,
         ("Ctrl+Shift+D",),
-        tip=tr_noop("List the selected clips once more, each to be timed for itself"),
+        tip=tr_noop("List the selected clips again, so that each copy has its own timing"),
         enabled=has_clips_selected,
     ),
     Command(
@@ -127,7 +127,7 @@ COMMANDS = (
         "files",
         tr_noop("&Reveal in folder"),
         LibraryFeature.reveal,
-        tip=tr_noop("Show the file of the first selected clip where it lies"),
+        tip=tr_noop("Show the first selected clip's file in the file manager"),
         enabled=has_clips_selected,
     ),
     *(
@@ -163,14 +163,17 @@ def _rating(library: LibraryFeature, number: int) -> Command:
         partial(library.mark, "rating", number),
         (f"Ctrl+Shift+{number}",),
         tip=tr(
-            "Give the selected clips {stars}", stars=tr_plural("{count:,} star", "{count:,} stars", number)
+            "Rate the selected clips {stars}", stars=tr_plural("{count:,} star", "{count:,} stars", number)
         ),
         enabled=partial(has_clips_selected, library),
     )
 
 
 def _label(library: LibraryFeature, color: str) -> Command:
-    on, off = tr("Put this label on the selected clips"), tr("Take labels off the selected clips")
+    on, off = (
+        tr("Give the selected clips this colour label"),
+        tr("Remove the colour label from the selected clips"),
+    )
     return Command(
         f"color_{color or 'none'}",
         MENU,

@@ -6,6 +6,8 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 
 from app.project.document import Document
+from app.translation import tr
+from app.widgets.vocabulary import vocabulary_word
 from metagraph.graph.clip_mark import ClipMark
 from metagraph.graph.editing.marks import mark_of
 from metagraph.graph.model import Action, ClipEntry, Project
@@ -38,6 +40,12 @@ class ClipFacts:
         if found is None or found[0] is not motion:
             found = self._moved[entry.id] = motion, find_moved_parts(motion)
         return found[1]
+
+    def moved_words(self, entry: ClipEntry) -> str:
+        """Return in words what a clip moves, with commas between."""
+        return ", ".join(
+            tr("position") if part == "place" else vocabulary_word(part) for part in self.moved(entry)
+        )
 
     def ahead(self, entries: Iterable[ClipEntry]) -> None:
         """Work out what clips move."""

@@ -63,7 +63,7 @@ class Filter:
         """Return in a few words what is asked for besides the text and whether clips are placed."""
         some = [LAYER_TITLES[self.layer] if self.layer else "", KIND_TITLES[self.kind] if self.kind else ""]
         some += [COLOR_TITLES[self.color or ""], f"★{self.stars}" if self.stars else ""]
-        some += ["♥" * self.favourite, tr("Noted") * self.noted, tr("Problems") * self.broken]
+        some += ["♥" * self.favourite, tr("With a note") * self.noted, tr("Problems") * self.broken]
         return " ".join(filter(None, some))
 
     def as_text(self) -> str:

@@ -19,7 +19,7 @@ UNUSED: Group = lazy_texts(lambda: ((1,), tr("Not placed yet")))
 
 def _folder(facts: ClipFacts, entry: ClipEntry) -> Group:
     path = PurePosixPath(entry.path).parent.as_posix()
-    return natural_key(path), tr("Beside the project") if path == "." else path
+    return natural_key(path), tr("Project folder") if path == "." else path
 
 
 def _stance(facts: ClipFacts, entry: ClipEntry) -> Group:

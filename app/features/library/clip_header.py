@@ -28,9 +28,7 @@ class _Titles(QAbstractTableModel):
             side = Qt.AlignmentFlag.AlignRight if COLUMNS[section].right else Qt.AlignmentFlag.AlignLeft
             return side | Qt.AlignmentFlag.AlignVCenter
         if role == Qt.ItemDataRole.ToolTipRole:
-            return tr(
-                "{tip}; a click sorts by it, the menu shows and hides columns", tip=COLUMNS[section].tip
-            )
+            return tr("{tip}. Click to sort; right-click to choose columns.", tip=COLUMNS[section].tip)
         return None
 
 
@@ -83,7 +81,7 @@ class ClipHeader(QHeaderView):
             action.setEnabled(column.id != "name")
             action.toggled.connect(lambda on, n=n: self.set_shown(n, on))
         menu.addSeparator()
-        menu.addAction(tr("As at first"), self.as_usual)
+        menu.addAction(tr("Reset columns"), self.as_usual)
 
     def set_shown(self, place: int, on: bool) -> None:
         """Show a column, or hide it."""

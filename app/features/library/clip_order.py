@@ -80,6 +80,6 @@ ORDERS: dict[str, tuple[str, Key]] = lazy_texts(
         "color": (tr("Colour label"), _by(_color)),
         "favourite": (tr("Favourites first"), _by(lambda facts, entry: not facts.mark(entry).favourite)),
         "folder": (tr("Folder and file"), _folder),
-        "missing": (tr("Missing ones first"), _by(lambda facts, entry: entry.motion is not None)),
+        "missing": (tr("Missing files first"), _by(lambda facts, entry: entry.motion is not None)),
     }
 )

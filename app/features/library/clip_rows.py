@@ -155,11 +155,11 @@ class ClipRows(QAbstractListModel):
     def _tip(self, entry: ClipEntry) -> str:
         motion = entry.motion
         notes = "".join(f"\n{n}" for n in (motion.notes if motion else (tr("The file is missing."),)))
-        uses = ", ".join(f"{a.kind} ({a.layer})" for a in self.facts.uses(entry))
+        uses = ", ".join(f"{tr(a.kind)} ({tr(a.layer)})" for a in self.facts.uses(entry))
         drawn = entry.id in self.document.project.drawn
-        uses = uses or (tr("drawn as a state") if drawn else tr("not placed yet"))
+        uses = uses or (tr("used as a state") if drawn else tr("not placed yet"))
         made = f"\n{origin(entry)}" if entry.made_by else ""
-        moves = ", ".join(self.facts.moved(entry))
+        moves = self.facts.moved_words(entry)
         mark = self.facts.mark(entry)
         return tr(
             "{name}\n{duration:.2f} s, {frames} frames at {fps:g} fps{moves}\n{path}{made}\n"

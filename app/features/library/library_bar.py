@@ -16,11 +16,15 @@ from app.widgets.quiet_fields import Scrub
 
 BUTTONS: dict[Style, tuple[str, str, str]] = lazy_texts(
     lambda: {
-        "cards": ("grid", tr("Cards"), tr("Pictures, as large as the slider says; small ones are lines")),
+        "cards": (
+            "grid",
+            tr("Cards"),
+            tr("Show pictures. The slider sets their size; at the smallest, each clip is a line."),
+        ),
         "columns": (
             "list",
             tr("Columns"),
-            tr("A list with columns; a click on a title sorts, its menu shows and hides"),
+            tr("Show a list. Click a column title to sort; right-click it to choose columns."),
         ),
     }
 )
@@ -52,9 +56,9 @@ class LibraryBar(QWidget):
         self.told.setProperty("dim", True)
         row.addWidget(self.told, 1)
         self.slider = Scrub(Qt.Orientation.Horizontal, self)
-        self.slider.setAccessibleName(tr("Size of the clips"))
+        self.slider.setAccessibleName(tr("Clip size"))
         self.slider.setToolTip(
-            tr("How large clips are shown (Ctrl and the wheel; Ctrl+ and Ctrl- in the list)")
+            tr("Set how large clips are shown (Ctrl+wheel; Ctrl++ and Ctrl+- in the list)")
         )
         self.slider.setMinimumWidth(60)
         self.slider.setMaximumWidth(130)

@@ -50,7 +50,7 @@ class LibraryMenu:
 
     def __init__(self, panel: MenuHost, menu: QMenu) -> None:
         self.panel = panel
-        menu.addAction(tr("Any kind, any layer"), lambda: panel.narrow())
+        menu.addAction(tr("All kinds and layers"), lambda: panel.narrow())
         menu.addSeparator()
         for kind in KINDS:
             menu.addAction(f"{KIND_MARKS[kind]}  {KIND_TITLES[kind]}", partial(panel.narrow, kind=kind))
@@ -58,7 +58,7 @@ class LibraryMenu:
         for layer in LAYERS:
             menu.addAction(LAYER_LONG_TITLES[layer], partial(panel.narrow, layer=layer))
         menu.addSeparator()
-        self.marks = menu.addMenu(tr("&What is on them"))
+        self.marks = menu.addMenu(tr("With these &marks"))
         self.marks.aboutToShow.connect(self.fill_marks)
         self.kept = menu.addMenu(tr("Sa&ved filters"))
         self.kept.aboutToShow.connect(self.fill_kept)
@@ -67,14 +67,14 @@ class LibraryMenu:
         self._choices(self.orders, {k: words for k, (words, _) in ORDERS.items()}, GIVEN, panel.sort)
         self.orders.addSeparator()
         again = lambda: panel.sort(panel.rows.listing.order)  # noqa: E731
-        self.backwards = self.orders.addAction(tr("The other way &round"), again)
+        self.backwards = self.orders.addAction(tr("&Reverse order"), again)
         self.backwards.setCheckable(True)
         self.groups = menu.addMenu(tr("&Group by"))
         titles = {k: words for k, (words, _) in GROUPS.items()}
         self._choices(self.groups, titles, panel.rows.listing.group, panel.group_by)
         self.groups.addSeparator()
-        self.groups.addAction(tr("Close all\t-"), panel.close_all)
-        self.groups.addAction(tr("Open all\t*"), lambda: panel.rows.close_groups(frozenset()))
+        self.groups.addAction(tr("Collapse all\t-"), panel.close_all)
+        self.groups.addAction(tr("Expand all\t*"), lambda: panel.rows.close_groups(frozenset()))
         self.columns = menu.addMenu(tr("&Columns"))
         self.columns.aboutToShow.connect(self.fill_columns)
 
@@ -108,7 +108,7 @@ class LibraryMenu:
 
         entry(tr("{heart}  Favourites", heart=HEART), rule.favourite, favourite=not rule.favourite)
         entry(tr("{pencil}  With a note", pencil=PENCIL), rule.noted, noted=not rule.noted)
-        entry(tr("!  In problems"), rule.broken, broken=not rule.broken)
+        entry(tr("!  With problems"), rule.broken, broken=not rule.broken)
         menu.addSeparator()
         for color in COLORS:
             on = rule.color == color
@@ -117,14 +117,15 @@ class LibraryMenu:
         menu.addSeparator()
         for rating in range(1, STARS + 1):
             on = rule.stars == rating
-            more = tr(" or more") if rating < STARS else ""
-            entry(f"{stars(rating)}{more}", on, stars=0 if on else rating)
+            words = stars(rating)
+            words = tr("{stars} or more", stars=words) if rating < STARS else words
+            entry(words, on, stars=0 if on else rating)
 
     def fill_kept(self) -> None:
         """Offer the filters that have a name."""
         menu, kept = self.kept, self.panel.settings.filters()
         menu.clear()
-        menu.addAction(tr("&Save this one as…"), self.save).setEnabled(self.panel.rows.filter != Filter())
+        menu.addAction(tr("&Save this filter as…"), self.save).setEnabled(self.panel.rows.filter != Filter())
         if kept:
             menu.addSeparator()
         for name, rule in kept.items():
@@ -154,4 +155,4 @@ class LibraryMenu:
         if self.panel.list.style_of == "columns":
             self.panel.list.header.fill(self.columns)
         else:
-            self.columns.addAction(tr("List in columns"), lambda: self.panel.show_as("columns"))
+            self.columns.addAction(tr("Show as columns"), lambda: self.panel.show_as("columns"))

@@ -131,10 +131,10 @@ class LibraryPanel(QWidget):
             row.addWidget(button)
 
         chip("all", tr("All"), tr("All clips"))
-        chip("unlabelled", tr("Unlabelled"), tr("Clips that were not placed yet"))
+        chip("unlabelled", tr("Unlabelled"), tr("Clips that are not in the graph yet"))
         chip("labelled", tr("Placed"), tr("Clips that are in the graph"))
-        tip = tr("Show some of the clips only; sort and group them")
-        self.more = MoreButton(self.session.look, tr("Layer or kind"), tip, self)
+        tip = tr("Filter, sort and group the clips")
+        self.more = MoreButton(self.session.look, tr("Filter and sort"), tip, self)
         self.menu = LibraryMenu(self, self.more.menu_of)
         self.orders, self.backwards = self.menu.orders, self.menu.backwards
         OneStop(tuple(self.chips.values()), self)

@@ -18,8 +18,8 @@ class Search(QLineEdit):
         super().__init__(parent, clearButtonEnabled=True)
         self.setToolTip(
             tr(
-                "Words of a clip's name or path (Ctrl+F): sit wave, sit -wave, sit | bow; Down goes to the "
-                "clips"
+                "Type words from a clip's name or path (Ctrl+F): sit wave, sit -wave, sit | bow. Down "
+                "moves to the clips."
             )
         )
         self.setAccessibleName(tr("Search clips"))

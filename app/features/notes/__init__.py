@@ -39,7 +39,7 @@ def contribute(shell: Shell) -> Contribution:
                 tr("N&ote…"),
                 write,
                 ("Ctrl+Shift+O",),
-                tip=tr("A note on the selected action or clip, or on the project"),
+                tip=tr("Write a note on the selected action or clip, or on the project"),
                 menus=("action", "clip"),
             ),
         ),

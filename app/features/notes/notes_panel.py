@@ -65,11 +65,11 @@ class NotesPanel(QWidget):
             tr("On {name}", name=plain_action_name(found.name)) if found is not None else tr("On the project")
         )
         self.text.setPlaceholderText(
-            tr("What is to be done, or to be known, about this character")
+            tr("Write down what to do or know about this character.")
             if found is None
-            else tr("What is to be done, or to be known, about this clip")
+            else tr("Write down what to do or know about this clip.")
             if about in project.clips
-            else tr("What is to be done, or to be known, about this action")
+            else tr("Write down what to do or know about this action.")
         )
         note = mark_of(project, about).note if about in project.clips else project.notes.get(about, "")
         if note != self.text.toPlainText().rstrip():

@@ -49,7 +49,7 @@ class ProblemButton(QToolButton):
     def __init__(self, shell: Shell, watch: ProblemWatch, parent: QWidget) -> None:
         super().__init__(parent)
         self.watch, self.session = watch, shell.stage.session
-        self.setToolTip(tr("Problems of the project"))
+        self.setToolTip(tr("Problems in the project"))
         self.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
         self.clicked.connect(lambda: shell.show("problems"))
         watch.changed.connect(self.refresh)

@@ -167,7 +167,7 @@ class ProblemsPanel(QWidget):
         self.none.setProperty("dim", True)
         self.none.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.all = QPushButton(self)
-        self.all.setToolTip(tr("In one step that can be undone"))
+        self.all.setToolTip(tr("Fix them all in one undo step"))
         self.all.clicked.connect(lambda: self.mend_wanted.emit(self.fixable()))
         self.foot = QWidget(self)
         foot = QHBoxLayout(self.foot)
@@ -220,18 +220,15 @@ class ProblemsPanel(QWidget):
             item.setData(0, ROLE, problem)
             self.tree.addTopLevelItem(item)
         self._share_out()
-        each = (
-            tr("state can be reached and left")
+        self.none.setText(
+            tr("No problems. Every state can be reached and left.")
             if self.session.onstage.mode == "manual"
-            else tr("stance rests, leads somewhere and comes back")
+            else tr("No problems. Every stance has a resting clip, a way out and a way back.")
         )
-        self.none.setText(tr("No problems. Every {each}.", each=each))
         self.stack.setCurrentIndex(1 if self.problems else 0)
         count = len(self.fixable())
         self.foot.setVisible(count > 1)
-        self.all.setText(
-            tr("Mend {problems}", problems=tr_plural("{count:,} problem", "{count:,} problems", count))
-        )
+        self.all.setText(tr_plural("Fix {count:,} problem", "Fix {count:,} problems", count))
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if event.type() == QEvent.Type.Resize and watched is self.tree.viewport():
@@ -267,7 +264,7 @@ class ProblemsPanel(QWidget):
         """Return what can be done about a row."""
         menu = QMenu(self)
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        menu.addAction(tr("Go there"), lambda: self._go(item))
+        menu.addAction(tr("Go to the place"), lambda: self._go(item))
         problem = item.data(0, ROLE)
         fix = self.fixes.get(problem) if isinstance(problem, Problem) else None
         if fix is not None:

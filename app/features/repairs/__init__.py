@@ -35,8 +35,8 @@ def contribute(shell: Shell) -> Contribution:
 
     def noticed(title: str, clips: Sequence[str], lines: Sequence[str]) -> None:
         notice.tell(
-            tr("Some clips were repaired: look…"),
-            tr("What reading them put right, and what to leave as it is in the files"),
+            tr("Some clips were repaired. Review…"),
+            tr("See what was repaired on import, and choose what to leave as it is in the files"),
             lambda: show(title, clips, tuple(lines)),
         )
 
@@ -49,7 +49,7 @@ def contribute(shell: Shell) -> Contribution:
                 "properties",
                 tr("Repa&irs…"),
                 show,
-                tip=tr("What reading the files put right, and what to leave as it is"),
+                tip=tr("See what was repaired on import, and choose what to leave as it is"),
                 enabled=lambda: bool(document.project.clips),
                 menus=("clip",),
             ),

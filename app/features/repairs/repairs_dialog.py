@@ -30,11 +30,11 @@ from metagraph.graph.edit_error import EditError
 PLACE = Qt.ItemDataRole.UserRole
 TITLES = lazy_texts(
     lambda: {
-        BIND_POSE: tr("Drop bind poses at the ends"),
-        LONE_FRAME: tr("Mend frames unlike both their neighbours"),
-        UNIT: tr("Find the unit of length"),
-        UP: tr("Turn from Z up to Y up"),
-        ONE_FRAME: tr("Skip bind poses of one frame"),
+        BIND_POSE: tr("Remove bind poses at the ends"),
+        LONE_FRAME: tr("Smooth single stray frames"),
+        UNIT: tr("Detect the unit of length"),
+        UP: tr("Rotate from Z up to Y up"),
+        ONE_FRAME: tr("Skip one-frame bind poses"),
         NAME: tr("Clean names"),
     }
 )
@@ -67,12 +67,12 @@ class RepairsDialog(QDialog):
         self.words = QLabel(self, wordWrap=True)
         self.words.setProperty("dim", True)
         self.tree = make_widget(QTreeWidget, self, uniformRowHeights=True)
-        self.tree.setHeaderLabels([tr("Clip"), tr("What was done")])
+        self.tree.setHeaderLabels([tr("Clip"), tr("Repair")])
         self.tree.setColumnWidth(0, 320)
         self.tree.setAccessibleName(tr("Repairs"))
         self.tree.itemChanged.connect(self._count)
         self.lines = QPlainTextEdit("\n".join(lines), self, readOnly=True)
-        self.lines.setAccessibleName(tr("Also noted"))
+        self.lines.setAccessibleName(tr("Other notes"))
         self.lines.setMaximumHeight(110)
         self.lines.setVisible(bool(lines))
         self.trouble = QLabel(self, wordWrap=True)
@@ -118,11 +118,11 @@ class RepairsDialog(QDialog):
         self.tree.setVisible(bool(found))
         self.words.setText(
             tr(
-                "Reading the files put this right. Untick what should be left as it is in the file; it can "
-                "be ticked again at any time."
+                "These repairs were made on import. Untick a repair to leave the file as "
+                "it is; you can tick it again at any time."
             )
             if found
-            else tr("Nothing had to be put right in these clips.")
+            else tr("These clips needed no repairs.")
         )
         self._count()
 
@@ -138,9 +138,7 @@ class RepairsDialog(QDialog):
         count = len(self.changes())
         self.go.setEnabled(count > 0)
         self.go.setText(
-            tr("Apply {changes}", changes=tr_plural("{count:,} change", "{count:,} changes", count))
-            if count
-            else tr("Apply")
+            tr_plural("Apply {count:,} change", "Apply {count:,} changes", count) if count else tr("Apply")
         )
 
     def apply(self) -> None:
@@ -158,7 +156,7 @@ class RepairsDialog(QDialog):
         def done(result: Reread) -> None:
             """Put it into the project, whether the dialog is still there or not."""
             if document.project is not project:
-                failures.append(tr("The project was changed meanwhile; apply it again."))
+                failures.append(tr("The project has changed in the meantime. Apply again."))
                 return
             failures.extend(result.failures)
             try:
@@ -168,7 +166,7 @@ class RepairsDialog(QDialog):
                         tr_plural("{count:,} repair", "{count:,} repairs", len(changes)),
                     )
                     words = (
-                        tr("Leave out {repairs}", repairs=repairs)
+                        tr("Revert {repairs}", repairs=repairs)
                         if left == len(changes)
                         else tr("Make {repairs}", repairs=repairs)
                         if not left

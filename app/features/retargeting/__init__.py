@@ -25,7 +25,7 @@ def contribute(shell: Shell) -> Contribution:
                 "skeleton",
                 tr("&Joint maps…"),
                 lambda: retargeting.change_maps(session.selection.clips),
-                tip=tr("How clips of other skeletons were brought onto this one"),
+                tip=tr("Show and change how clips of other skeletons were retargeted"),
                 enabled=lambda: bool(document.project.joint_maps),
             ),
         ),

@@ -65,7 +65,7 @@ class Retargeting(QObject):
 
         def done(groups: tuple[Strangers, ...]) -> None:
             if not groups:
-                self.told.emit(tr("No clip of this project was retargeted."))
+                self.told.emit(tr("This project has no retargeted clips."))
             elif self.document.project is project:
                 self.ask(groups, then)
 
@@ -101,7 +101,7 @@ class Retargeting(QObject):
         try:
             keep_map(joint_map)
         except (FileError, OSError) as error:
-            self.told.emit(tr("The joint map is kept in this project only ({error}).", error=error))
+            self.told.emit(tr("The joint map could only be saved in this project ({error}).", error=error))
 
         def done(result: Imported) -> None:
             if (
@@ -109,7 +109,7 @@ class Retargeting(QObject):
                 or self.document.project.skeleton is not bringing.project.skeleton
             ):
                 result = replace(result, loaded=(), joint_maps={}, retargeted=0)
-                self.told.emit(tr("The clips were not retargeted, since another project was opened."))
+                self.told.emit(tr("The clips were not retargeted because another project was opened."))
             self._end(lambda: then(result))
 
         def failed(error: Exception) -> None:

@@ -26,7 +26,7 @@ from PySide6.QtWidgets import (
 
 from app.look.theme import DARK, LIGHT, strengthen
 from app.project.jobs import Jobs
-from app.translation import tr, tr_error, tr_noop
+from app.translation import tr, tr_error, tr_noop, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.stick_figures import StickFigures
@@ -63,7 +63,7 @@ class JointMapDialog(QDialog):
             self.target.names[j]: role for role, j in find_known_roles(self.target, bringing.roles).items()
         }
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setWindowTitle(tr("Another skeleton"))
+        self.setWindowTitle(tr("Retarget clips"))
         self.resize(1200, 720)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(16, 14, 16, 14)
@@ -85,7 +85,7 @@ class JointMapDialog(QDialog):
         layout.addWidget(self.missing)
         self.buttons = QDialogButtonBox(self)
         self.go = self.buttons.addButton(tr("Retarget"), QDialogButtonBox.ButtonRole.AcceptRole)
-        self.leave = self.buttons.addButton(tr("Leave them out"), QDialogButtonBox.ButtonRole.RejectRole)
+        self.leave = self.buttons.addButton(tr("Skip them"), QDialogButtonBox.ButtonRole.RejectRole)
         strengthen(self.go)
         self.buttons.accepted.connect(self.accept)
         self.buttons.rejected.connect(self.reject)
@@ -107,9 +107,7 @@ class JointMapDialog(QDialog):
             tr(" and {count} more", count=len(paths) - 2) if len(paths) > 2 else ""
         )
         self.headline.setText(
-            tr("{count} clips have another skeleton", count=count)
-            if count > 1
-            else tr("A clip has another skeleton")
+            tr_plural("{count:,} clip has another skeleton", "{count:,} clips have another skeleton", count)
         )
         words = tr(
             "From {files}: {joints} joints, {height:.2f} m tall; {why}.",
@@ -120,41 +118,43 @@ class JointMapDialog(QDialog):
         )
         if not self.strangers.why:  # they are in the project
             words = tr(
-                "From {files}: {joints} joints, {height:.2f} m tall. This is how they were brought over.",
+                "From {files}: {joints} joints, {height:.2f} m tall. The joints below show "
+                "how they were mapped.",
                 files=files,
                 joints=len(self.source),
                 height=self.source.height,
             )
             self.headline.setText(
-                tr("{count} clips were retargeted", count=count) if count > 1 else tr("A clip was retargeted")
+                tr_plural("{count:,} clip was retargeted", "{count:,} clips were retargeted", count)
             )
         elif self.strangers.remembered:
-            words += tr(" The joints are mapped as you did it before.")
+            words += tr(" The joints are mapped as you mapped them last time.")
         else:
-            words += tr(
-                " The joints below were paired by what they do and by their names; look at those that "
-                "are not sure."
-            )
+            words += tr(" The joints below were matched by motion and name. Check the uncertain ones.")
         self.details.setText(words)
-        self.go.setText(tr("Retarget {count} clips", count=count) if count > 1 else tr("Retarget the clip"))
+        self.go.setText(tr_plural("Retarget {count:,} clip", "Retarget {count:,} clips", count))
         if not self.strangers.why:
             self.go.setText(tr("Retarget again"))
             self.leave.setText(tr("Keep as it is"))
         elif count == 1:
-            self.leave.setText(tr("Leave it out"))
+            self.leave.setText(tr("Skip it"))
 
     def _table(self) -> QWidget:
         page = QWidget(self)
         box = QVBoxLayout(page)
         box.setContentsMargins(0, 0, 8, 0)
-        self.doubtful = QCheckBox(tr("Only what is not sure or not mapped"), page)
+        self.doubtful = QCheckBox(tr("Show only uncertain and unmapped joints"), page)
         self.doubtful.toggled.connect(self._narrow)
-        self.contacts = QCheckBox(tr("Hands touch their own body where they did"), page)
-        self.contacts.setToolTip(tr("On the face, the chest, the thighs, the other arm and hand"))
+        self.contacts = QCheckBox(tr("Keep hand contacts with the body"), page)
+        self.contacts.setToolTip(
+            tr("Hands touch the face, chest, thighs and the other arm and hand where they did in the clip")
+        )
         self.contacts.setChecked(self.map.contacts)
         self.contacts.toggled.connect(self._touch)
         self.tree = make_widget(QTreeWidget, page, rootIsDecorated=False, uniformRowHeights=True)
-        self.tree.setHeaderLabels([tr("Joint of the clips"), tr("Moves"), tr("As"), tr("Sure"), tr("Why")])
+        self.tree.setHeaderLabels(
+            [tr("Joint of the clips"), tr("Moves"), tr("Role"), tr("Certainty"), tr("Why")]
+        )
         self.tree.setAccessibleName(tr("Joint map"))
         header = self.tree.header()
         header.setStretchLastSection(True)
@@ -190,7 +190,7 @@ class JointMapDialog(QDialog):
     def combo(self, joint: str) -> QComboBox:
         """Return the box in which is chosen what the joint moves."""
         if joint not in self.combos:
-            combo = ComboBox(self.tree, toolTip=tr("The joint of your character that follows it"))
+            combo = ComboBox(self.tree, toolTip=tr("The joint of your character that follows this joint"))
             combo.setModel(self.names)
             combo.setAccessibleName(tr("{joint} moves", joint=joint))
             combo.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
@@ -210,12 +210,12 @@ class JointMapDialog(QDialog):
         page = QWidget(self)
         box = QVBoxLayout(page)
         box.setContentsMargins(8, 0, 0, 0)
-        self.clip = ComboBox(page, toolTip=tr("The clip that is played"))
-        self.clip.setAccessibleName(tr("Clip that is played"))
+        self.clip = ComboBox(page, toolTip=tr("The clip to preview"))
+        self.clip.setAccessibleName(tr("Clip to preview"))
         self.clip.addItems([clip.name for *_, clip in self.strangers.clips])
         self.clip.activated.connect(lambda _: self._play())
         self.figures = StickFigures(page)
-        self.figures.words = (tr("as it is"), tr("on your character"))
+        self.figures.words = (tr("original"), tr("on your character"))
         row = QHBoxLayout()
         row.addWidget(QLabel(tr("Play"), page))
         row.addWidget(self.clip, 1)
@@ -271,13 +271,13 @@ class JointMapDialog(QDialog):
             "{mapped} of {joints} joints are mapped.", mapped=len(self.map.pairs), joints=len(self.source)
         )
         if free:
-            words += tr(" {free} joints of your character keep to their parents.", free=free)
+            words += tr(" {free} joints of your character follow their parents.", free=free)
         if missing:
             parts = [m.removeprefix("no ").removesuffix(" in both") for m in missing]
             more = tr(" and {count} more", count=len(parts) - 4) if len(parts) > 4 else ""
             words = tr(
-                "Still missing: {parts}{more}. Choose what moves them above. Where your own "
-                "character's joints are not known, say so under Graph, Skeleton first.",
+                "Still missing: {parts}{more}. Choose what moves them above. If your own "
+                "character's joints are unknown, set them first under Graph, Skeleton.",
                 parts=", ".join(parts[:4]),
                 more=more,
             )
@@ -313,7 +313,7 @@ class JointMapDialog(QDialog):
         clip = clip.trimmed(0, min(SHOWN, clip.frames))
         self.figures.show_clips(clip, None)
         if joint_map.missing:
-            self.trouble.setText(tr("Your character moves as soon as nothing is missing."))
+            self.trouble.setText(tr("The preview moves your character as soon as nothing is missing."))
             return
         self.trouble.clear()
 
@@ -326,5 +326,9 @@ class JointMapDialog(QDialog):
                 self.trouble.setText(tr_error(error))
 
         self.jobs.start(
-            tr("Trying the joint map"), lambda _: bringing.bring(clip, joint_map), done, failed, quick=True
+            tr("Previewing the joint map"),
+            lambda _: bringing.bring(clip, joint_map),
+            done,
+            failed,
+            quick=True,
         )

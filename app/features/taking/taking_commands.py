@@ -13,7 +13,7 @@ from app.project.jobs import WindowJob
 from app.shell.actions import Command
 from app.shell.command_table import Feature, any_met, has_actions_selected
 from app.shell.context import Shell
-from app.translation import tr, tr_noop
+from app.translation import tr, tr_noop, tr_plural
 from metagraph.formats.store import SUFFIX
 
 if TYPE_CHECKING:
@@ -71,9 +71,13 @@ class TakingFeature(Feature):
         text = piece_text(self.document.project, self.document.folder, actions, stances)
         QApplication.clipboard().setText(text)
         self.shell.tell(
-            tr("Copied {count} actions; paste them in another window", count=len(actions))
+            tr_plural(
+                "Copied {count:,} action. Paste it in another window.",
+                "Copied {count:,} actions. Paste them in another window.",
+                len(actions),
+            )
             if actions
-            else tr("Copied the stance and all that is placed on it; paste it in another window")
+            else tr("Copied the stance and everything placed on it. Paste it in another window.")
         )
         self.shell.actions.refresh()
 
@@ -84,7 +88,7 @@ class TakingFeature(Feature):
             return
         text, into = QApplication.clipboard().text(), self.document.path
         if not is_piece(text):
-            self.shell.tell(tr("Copy stances or actions in another window first"))
+            self.shell.tell(tr("Copy stances or actions in another window first."))
             return
 
         def work(job: WindowJob) -> ProjectPiece:
@@ -107,7 +111,7 @@ COMMANDS = (
         "import",
         tr_noop("Import &project…"),
         TakingFeature.ask_project,
-        tip=tr_noop("Stances and actions of another project, with their clips"),
+        tip=tr_noop("Import stances and actions of another project, with their clips"),
     ),
     Command(
         "copy_over",
@@ -116,7 +120,7 @@ COMMANDS = (
         tr_noop("Copy to an&other project"),
         TakingFeature.copy,
         ("Ctrl+Alt+C",),
-        tip=tr_noop("The selected actions, or else the stance in view with all that is placed on it"),
+        tip=tr_noop("Copy the selected actions, or else the visible stance with everything placed on it"),
         enabled=any_met(has_actions_selected, stance_in_view),
         when="meta",
         menus=("action",),
@@ -128,7 +132,7 @@ COMMANDS = (
         tr_noop("Paste &from another project…"),
         TakingFeature.paste,
         ("Ctrl+Alt+V",),
-        tip=tr_noop("What was copied in another window, with its clips"),
+        tip=tr_noop("Paste what was copied in another window, with its clips"),
         when="meta",
     ),
 )

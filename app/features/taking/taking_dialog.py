@@ -50,14 +50,14 @@ class TakingDialog(QDialog):
         self.taking: Taking | None = None
         self._of: Project | None = None  # the project that `taking` is worked out for
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setWindowTitle(tr("Take from {name}", name=name))
+        self.setWindowTitle(tr("Import from {name}", name=name))
         self.resize(760, 560)
         body = QVBoxLayout(self)
         self.summary = QLabel(self, wordWrap=True)
         body.addWidget(self.summary)
         self.list = make_widget(QTreeWidget, self)
-        self.list.setHeaderLabels([tr("There"), tr("Layer"), tr("Becomes here")])
-        self.list.setAccessibleName(tr("What is taken"))
+        self.list.setHeaderLabels([tr("In that project"), tr("Layer"), tr("In this project")])
+        self.list.setAccessibleName(tr("What to import"))
         self.list.setColumnWidth(0, 280)  # names are read whole, what becomes of them has the rest
         self.list.header().setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
         self.list.header().setSectionResizeMode(2, QHeaderView.ResizeMode.Stretch)
@@ -84,7 +84,7 @@ class TakingDialog(QDialog):
         other, own = piece.project.skeleton, project.skeleton
         self.retarget.setVisible(other is not None and own is not None and other != own)
         self.take.setEnabled(False)
-        self.summary.setText(tr("Looking at what can be taken…"))
+        self.summary.setText(tr("Checking what can be imported…"))
 
         def done(taking: Taking) -> None:
             if isValid(self) and project is self.document.project:
@@ -92,7 +92,7 @@ class TakingDialog(QDialog):
                 self._show(taking)
 
         self.jobs.start(
-            tr("Taking over"), lambda _: piece.into(project, retarget), done, self._fail, quick=True
+            tr("Importing"), lambda _: piece.into(project, retarget), done, self._fail, quick=True
         )
 
     def _fail(self, error: BaseException) -> None:
@@ -139,5 +139,5 @@ class TakingDialog(QDialog):
         if taking is None or self._of is not self.document.project:
             return  # it was edited a moment ago, and is being worked out anew
         self.document.changed.disconnect(self._work_out)
-        self.document.edit(tr("Take from {name}", name=self.name), lambda _: taking.project)
+        self.document.edit(tr("Import from {name}", name=self.name), lambda _: taking.project)
         self.accept()

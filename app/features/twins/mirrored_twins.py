@@ -8,7 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.look.plural import count_clips
 from app.project.jobs import WindowJob
 from app.translation import tr, tr_error, tr_plural
 from metagraph.common.file_names import file_stem
@@ -37,7 +36,7 @@ def make_twins(shell: Shell) -> None:
     if folder is None:
         shell.tell(
             tr(
-                "Save the project first: mirrored clips are written beside it, in a folder '{folder}'.",
+                "Save the project first. Mirrored clips are written beside it, in the folder '{folder}'.",
                 folder=FOLDER,
             )
         )
@@ -57,16 +56,13 @@ def make_twins(shell: Shell) -> None:
         if not made:
             return
         if document.folder != folder or any(project.clips[c].id not in document.project.clips for c in clips):
-            shell.tell(tr("The project was changed meanwhile; make the twins again."))
+            shell.tell(tr("The project has changed in the meantime. Make the twins again."))
             return
         before = document.project
         try:
             count = sum(len(twin.actions) for twin, _ in made) or len(made)
             document.edit(
-                tr(
-                    "Make {twins}",
-                    twins=tr_plural("{count:,} mirrored twin", "{count:,} mirrored twins", count),
-                ),
+                tr_plural("Make {count:,} mirrored twin", "Make {count:,} mirrored twins", count),
                 lambda p: with_twins(p, made),
             )
         except EditError as error:
@@ -80,13 +76,13 @@ def make_twins(shell: Shell) -> None:
         else:
             session.selection.select_clips(tuple(c for c in after.clips if c not in before.clips))
         words = (
-            tr_plural("{count:,} mirrored twin", "{count:,} mirrored twins", count)
+            tr_plural("Made {count:,} mirrored twin", "Made {count:,} mirrored twins", count)
             if actions
-            else tr("{clips} mirrored", clips=count_clips(count))
+            else tr_plural("Mirrored {count:,} clip", "Mirrored {count:,} clips", count)
         )
         names = ", ".join(twin.name for twin, _ in made[:3]) + (" …" if len(made) > 3 else "")
         shell.tell(
-            tr("{words}: {names}. Written to {folder}.", words=words, names=names, folder=folder / FOLDER)
+            tr("{words}: {names}. Saved in {folder}.", words=words, names=names, folder=folder / FOLDER)
         )
 
     shell.jobs.start(tr("Making mirrored twins"), work, done, lambda error: shell.tell(tr_error(error)))

@@ -25,7 +25,7 @@ def contribute(shell: Shell) -> Contribution:
                 "import",
                 tr("Import clips"),
                 tr(
-                    "A folder of your own motion: {formats}",
+                    "Import a folder of your own motion: {formats}",
                     formats=describe_readable_formats().splitlines()[0],
                 ),
                 importing.ask_import_folder,
@@ -33,12 +33,12 @@ def contribute(shell: Shell) -> Contribution:
             WelcomeChoice(
                 "practice",
                 tr("Practice"),
-                tr("152 clips without labels: say of each what it is, the graph grows with it"),
+                tr("152 clips without labels: label each one and watch the graph grow"),
                 lambda: files.open(PRACTICE, template=True),
             ),
             WelcomeChoice(
                 "sample",
-                tr("Look at the sample"),
+                tr("Explore the sample"),
                 tr("A finished character that stands, gestures and talks"),
                 lambda: files.open(SAMPLE, template=True),
             ),

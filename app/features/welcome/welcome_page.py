@@ -114,16 +114,16 @@ class WelcomePage(QWidget):
         self.files, self.session, self.document, self.room = files, session, document, room
         self.closed = False
         self.setAutoFillBackground(True)
-        self.setAccessibleName(tr("Begin"))
-        title = QLabel(tr("How would you like to begin?"), self)
+        self.setAccessibleName(tr("Start"))
+        title = QLabel(tr("How would you like to start?"), self)
         title.setProperty("heading", True)
         title.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.recent = WelcomeCard(
-            WelcomeChoice("recent", tr("Go on"), "", self._choose_recent), session, self
+            WelcomeChoice("recent", tr("Recent"), "", self._choose_recent), session, self
         )
         self.cards = [*(WelcomeCard(c, session, self) for c in choices), self.recent]
         self.skip = make_widget(
-            QToolButton, self, text=tr("Begin with an empty graph"), toolTip=tr("Close this page")
+            QToolButton, self, text=tr("Start with an empty graph"), toolTip=tr("Close this page")
         )
         self.skip.clicked.connect(self._close)
         grid = QGridLayout()
@@ -182,9 +182,9 @@ class WelcomePage(QWidget):
     def _tell_recent(self) -> None:
         names = [path.name.split(".")[0] for path in self.files.recent()[:RECENT]]
         self.recent.tell(
-            tr("With {names}", names=", ".join(names))
+            tr("Continue with {names}", names=", ".join(names))
             if names
-            else tr("Projects that you have saved are found here"),
+            else tr("Your saved projects appear here"),
             bool(names),
         )
 

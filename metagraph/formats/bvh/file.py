@@ -76,7 +76,7 @@ def read_bvh(path: str | Path, scale: float | None = None, as_is: Collection[str
             path, phrase("it has no MOTION section"), phrase("its end"), phrase("Export it with its motion.")
         )
     if motion.start() > _LONGEST_HEADER:
-        raise FileError(path, phrase("its HIERARCHY is longer than any"), phrase("its HIERARCHY"), _DAMAGED)
+        raise FileError(path, phrase("its HIERARCHY is too long"), phrase("its HIERARCHY"), _DAMAGED)
     joints = _Header(path, data[: motion.start()].decode("utf-8", "replace")).joints()
     notes: list[str] = []
     values, fps = _motion(path, data, motion.end(), sum(len(j.channels) for j in joints), notes)
@@ -88,7 +88,7 @@ def _afford(path: Path, size: int, frames: int, joints: list[_Joint]) -> None:
     """Refuse what would take far more memory than the file has: joints without channels cost it nothing."""
 
     def refuse(where: str) -> None:
-        raise FileError(path, OUT_OF_PROPORTION, where, phrase("Leave out the joints that do not move."))
+        raise FileError(path, OUT_OF_PROPORTION, where, phrase("Remove the joints that do not move."))
 
     placed = sum(any(name[1] == "p" for name in joint.channels) for joint in joints)
     Allowance(size, refuse).spend(frames * (len(joints) * 64 + placed * 96), f"its {len(joints)} joints")
@@ -123,7 +123,7 @@ class _Header:
         except ValueError:
             self.fail(phrase("'{word}' is not a number", word=word[:40]), line)
         if not abs(value) < 1e9:
-            self.fail(phrase("{word} is not a sensible number", word=word[:40]), line)
+            self.fail(phrase("{word} is not a plausible number", word=word[:40]), line)
         return value
 
     def joints(self) -> list[_Joint]:
@@ -153,9 +153,9 @@ class _Header:
     def _begin(self, word: str, kind: str, line: int) -> None:
         """Read the name of a joint or an End Site."""
         if kind == "ROOT" and self.stack:
-            self.fail(phrase("a ROOT stands inside another joint"), line)
+            self.fail(phrase("a ROOT is inside another joint"), line)
         if kind != "ROOT" and (not self.stack or self.stack[-1] < 0):
-            self.fail(phrase("a {word} stands outside any joint", word=word[:10]), line)
+            self.fail(phrase("a {word} is outside any joint", word=word[:10]), line)
         name = []
         while self.at < len(self.words) and self.words[self.at][0] != "{":
             name.append(self.next()[0])
@@ -165,7 +165,9 @@ class _Header:
             self.opened = -1
             return
         if len(self.found) >= JOINTS:
-            self.fail(phrase("it has more than the {JOINTS} joints of any character", JOINTS=JOINTS), line)
+            self.fail(
+                phrase("it has more than {JOINTS} joints, the maximum for a character", JOINTS=JOINTS), line
+            )
         self.found.append(_Joint(" ".join(name), self.stack[-1] if self.stack else -1, line))
         self.opened = len(self.found) - 1
 
@@ -174,9 +176,9 @@ class _Header:
             self.fail(phrase("'{' without a joint"), line)
         if len(self.stack) >= JOINTS_DEEP:
             self.fail(
-                phrase("its joints hang on each other more than {most} deep", most=JOINTS_DEEP),
+                phrase("its joint hierarchy is more than {most} levels deep", most=JOINTS_DEEP),
                 line,
-                phrase("Leave out ropes, hair and cloth, or export the character alone."),
+                phrase("Remove ropes, hair and cloth, or export only the character."),
             )
         self.stack.append(self.opened)
         self.opened = None
@@ -199,7 +201,7 @@ class _Header:
         joint = self.found[self.stack[-1]]
         word, _ = self.next()
         if not word.isdecimal() or len(word) > 9 or int(word) > 64:
-            self.fail(phrase("'{word}' is not a number of channels", word=word[:40]), line)
+            self.fail(phrase("'{word}' is not a channel count", word=word[:40]), line)
         if joint.channels:
             self.fail(phrase("joint '{name}' has CHANNELS twice", name=joint.name), line)
         for _ in range(int(word)):
@@ -208,10 +210,10 @@ class _Header:
                 self.fail(
                     phrase("'{channel}' is not a channel", channel=channel[:40]),
                     at,
-                    phrase("Make the number after CHANNELS fit the names that follow."),
+                    phrase("Make the number after CHANNELS match the names that follow it."),
                 )
             if channel.lower() in joint.channels and channel[1].lower() == "p":
-                self.fail(phrase("channel {channel} comes twice", channel=channel), at)
+                self.fail(phrase("channel {channel} is listed twice", channel=channel), at)
             joint.channels.append(channel.lower())
 
     def _whole(self) -> None:
@@ -247,7 +249,7 @@ def _motion(path: Path, data: bytes, at: int, channels: int, notes: list[str]) -
     if not FRAME_SECONDS[0] <= step <= FRAME_SECONDS[1]:
         raise FileError(
             path,
-            phrase("a frame time of {step:g} s makes no sense", step=step),
+            phrase("a frame time of {step:g} s is not plausible", step=step),
             phrase("line {line}", line=_line(data, head.start(2))),
             phrase("Write the seconds per frame, such as 0.0333333."),
         )
@@ -274,7 +276,7 @@ def _motion(path: Path, data: bytes, at: int, channels: int, notes: list[str]) -
     if (rest and rows + 1 < promised) or abs(rows - promised) > 1:
         line = _uneven_row(data, start, channels)
         cause = (
-            phrase("this row does not hold {channels} numbers", channels=channels)
+            phrase("this row does not have {channels} numbers", channels=channels)
             if line
             else phrase(
                 "'Frames:' says {promised} but {rows} rows of {channels} numbers follow",
@@ -287,14 +289,14 @@ def _motion(path: Path, data: bytes, at: int, channels: int, notes: list[str]) -
             path,
             cause,
             phrase("line {line}", line=line) if line else where,
-            phrase("Make it say {rows}, or export the file again.", rows=rows) if not line else _DAMAGED,
+            phrase("Change it to {rows}, or export the file again.", rows=rows) if not line else _DAMAGED,
         )
     if rest:
         line = _uneven_row(data, start, channels)
         if line and line < _line(data, len(data.rstrip())):
             raise FileError(
                 path,
-                phrase("this row does not hold {channels} numbers", channels=channels),
+                phrase("this row does not have {channels} numbers", channels=channels),
                 phrase("line {line}", line=line),
                 _DAMAGED,
             )
@@ -351,13 +353,13 @@ def _numbers(path: Path, data: bytes, start: int, channels: int) -> Array:
                 text = word[:40].decode("utf-8", "replace")
                 raise FileError(
                     path,
-                    phrase("'{text}' is not a sensible number", text=text),
+                    phrase("'{text}' is not a plausible number", text=text),
                     phrase("line {value}", value=first + i),
                     _DAMAGED,
                 )
     raise FileError(
         path,
-        phrase("it holds bytes that are not numbers"),
+        phrase("it contains bytes that are not numbers"),
         phrase("line {line}", line=first),
         _DAMAGED,
     )

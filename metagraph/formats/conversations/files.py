@@ -76,20 +76,20 @@ def read_conversation(
     """
     if not 1 <= len(audio) <= most:
         raise ValueError(
-            phrase("a conversation has up to {most} sound files, one for each who speaks", most=most)
+            phrase("a conversation has up to {most} sound files, one for each speaker", most=most)
         )
     if len(transcripts) > 1 and len(audio) > 1 and len(transcripts) != len(audio):
         raise ValueError(
             phrase(
-                "there are {count} sounds and {count2} transcripts: give one transcript, or one for "
-                "each sound",
+                "there are {count} sounds and {count2} transcripts: add one transcript, or "
+                "one for each sound",
                 count=len(audio),
                 count2=len(transcripts),
             )
         )
     if len(transcripts) > most:
         raise ValueError(
-            phrase("a conversation has one transcript, or one for each of up to {most} who speak", most=most)
+            phrase("a conversation has one transcript, or one for each of up to {most} speakers", most=most)
         )
     reading = ConversationReading(cancelled=cancelled)
     said = [(path, read_transcript(path)) for path in transcripts]
@@ -104,7 +104,7 @@ def read_conversation(
                 count=len(voices),
                 count2=len(said),
             ),
-            remedy=phrase("Give one transcript that names the speakers, or one for each channel."),
+            remedy=phrase("Add one transcript that names the speakers, or one for each channel."),
         )
     found = sides_of(reading.notes, voices, said, most)
     length = max(length_of(v) for v, _ in found)
@@ -214,7 +214,7 @@ def _kept(
     if len(out) < len(given):
         reading.notes.append(
             phrase(
-                "{called}: {count} left out, past the end of the sound at {length:.1f} s.",
+                "{called}: {count} skipped, past the end of the sound at {length:.1f} s.",
                 called=called,
                 count=count(len(given) - len(out), "segment"),
                 length=length,
@@ -234,7 +234,7 @@ def _tell_wordless(
     if shared:
         reading.notes.append(
             phrase(
-                "{called}: no words are known of this side, so it says nothing. Add a transcript "
+                "{called}: this side has no words, so it says nothing. Add a transcript "
                 "that names {value} speakers.",
                 called=called,
                 value=phrase("both" if sides == 2 else "all"),
@@ -244,9 +244,9 @@ def _tell_wordless(
     if found:
         reading.notes.append(
             phrase(
-                "{called}: no words, so loudness tells: {count} between pauses; short sounds while "
-                "the partner talks count as responses, and hesitations are not found. Add a "
-                "transcript to tell them apart.",
+                "{called}: no words, so the loudness was used: {count} between pauses. "
+                "Short sounds while the partner talks count as responses, and hesitations "
+                "are not found. Add a transcript to tell them apart.",
                 called=called,
                 count=count(len(found), "segment"),
             )
@@ -257,11 +257,9 @@ def _tell_wordless(
     if top < HUSH:
         why = phrase("it is silent. Check the microphone, or choose another channel")
     elif top - floor < LEAST:
-        why = phrase(
-            "nothing stands out of a steady noise. Check the microphone, or record closer to the speaker"
-        )
+        why = phrase("the recording is a steady noise. Check the microphone, or record closer to the speaker")
     elif activity(voice.heard, None, None):
-        why = phrase("what is heard there is the partner, or no voice. Add a transcript if somebody speaks")
+        why = phrase("it contains the partner, or no voice. Add a transcript if someone speaks")
     else:
-        why = phrase("no speech was found. Add a transcript if somebody speaks")
+        why = phrase("no speech was found. Add a transcript if someone speaks")
     reading.notes.append(phrase("{called}: {why}.", called=called, why=why))

@@ -15,8 +15,9 @@ from metagraph.speech.language_detection import SpokenLanguage, detect_language
 from metagraph.speech.language_packs import ENGLISH, LanguagePack, list_language_packs
 
 _BY_LISTS = phrase(
-    "responses, hesitations and clauses go by that language's lists, lips by its letters as English spells. "
-    "Choose another language if that is wrong."
+    "that language's lists decide on responses, hesitations and clauses, and "
+    "its letters, read as in English, move the lips. Choose another language "
+    "if that is wrong."
 )
 Lists = tuple[tuple[str, ...], tuple[str, ...]]  # responses and hesitations
 
@@ -37,8 +38,8 @@ class Speaking:
         if self.language not in (AUTO, *self.packs):
             raise ValueError(
                 phrase(
-                    "there are no words of '{language}': known are {names}; choose one, 'auto', or "
-                    "give a list of words of your own",
+                    "there are no words of '{language}'. Known languages are {names}. Choose "
+                    "one of them, 'auto', or a list of your own words",
                     language=self.language[:40],
                     names=", ".join(self.packs),
                 )
@@ -69,7 +70,7 @@ def languages_of(
                 assert found.language is not None
                 notes.append(
                     phrase(
-                        "{name}: its words look {called}; they are read as {called2}, as was chosen.",
+                        "{name}: its words look {called}, but they are read as {called2}, as you chose.",
                         name=name,
                         called=found.language.called,
                         called2=chosen.called,
@@ -114,9 +115,9 @@ def _all_alike(spoken: Sequence[SpokenLanguage]) -> list[str]:
     of = join_as_list([phrase("{known:,} of {words:,}", known=s.known, words=s.words) for s in spoken])
     return [
         phrase(
-            "Both speak {language}, as {of} words tell; {lists}"
+            "Both speak {language}, judging by {of} words; {lists}"
             if len(spoken) == 2
-            else "All speak {language}, as {of} words tell; {lists}",
+            else "All speak {language}, judging by {of} words; {lists}",
             language=spoken[0].language.called,
             of=of,
             lists=_BY_LISTS,
@@ -140,8 +141,8 @@ def _told(
     if read is None and found.how != "unknown":
         return [
             phrase(
-                "{name}: {count} do not tell the language; as the other's is not known, sound tells clauses "
-                "and short answers here, too.",
+                "{name}: {count} do not show the language. The other side's is unknown, "
+                "too, so clauses and short answers come from the sound.",
                 name=name,
                 count=count(found.words, "word"),
             )
@@ -150,9 +151,10 @@ def _told(
         known = ", ".join(speaking.packs)
         return [
             phrase(
-                "{name}: its words are of no language that there are lists for ({known}), so sound tells "
-                "clauses and short answers, and no word is taken for a response or a hesitation. Choose the "
-                "language, or give a list of its words.",
+                "{name}: there are no lists for the language of its words (only for "
+                "{known}), so clauses and short answers come from the sound, and no word "
+                "counts as a response or a hesitation. Choose the language, or add a list "
+                "of its words.",
                 name=name,
                 known=known,
             )
@@ -162,7 +164,7 @@ def _told(
             return []
         return [
             phrase(
-                "{name}: its words are {language}, as {known:,} of {words:,} tell; {lists}",
+                "{name}: its words are {language}, judging by {known:,} of {words:,}; {lists}",
                 name=name,
                 language=read.called,
                 known=found.known,
@@ -171,18 +173,16 @@ def _told(
             )
         ]
     if partner is not None and partner.language is read:
-        why = phrase("as the other's are")
+        why = phrase("like the other side's")
     elif speaking.otherwise == read.code:
-        why = phrase("which the project is set to")
+        why = phrase("the language of the project")
     else:
-        why = phrase("which is taken then")
+        why = phrase("the default")
     return [
         phrase(
-            "{name}: {count} are too few to tell the language by; undecided, they are read as {language}, "
-            "{why}."
+            ("{name}: the language is undecided from only {count}; read as {language}, {why}.")
             if found.words < 12
-            else "{name}: {count} do not tell the language by; undecided, they are read as {language}, "
-            "{why}.",
+            else "{name}: {count} do not show the language, so it is undecided; read as {language}, {why}.",
             name=name,
             count=count(found.words, "word"),
             language=read.called,

@@ -59,13 +59,13 @@ def read_side_voices(
     _tell_kind(reading, path, read.really)
     channels = len(read.samples)
     if channels > most:
-        asks = phrase("a conversation of two has one for each")
+        asks = phrase("a conversation of two has one for each speaker")
         if most != 2:
             asks = phrase("a conversation has up to {most}", most=most)
         raise FileError(
             path,
             phrase("has {channels} channels, {asks}", channels=channels, asks=asks),
-            remedy=phrase("Save the speakers' channels as one file, or as one for each."),
+            remedy=phrase("Save the speakers' channels as one file, or each as its own."),
         )
     called = [
         phrase("{name}, {channel}", name=path.name, channel=_channel(n, channels)) for n in range(channels)
@@ -76,8 +76,9 @@ def read_side_voices(
             here, silent = (_SIDES[n] for n in (sounding[0], 1 - sounding[0]))
             reading.notes.append(
                 phrase(
-                    "{name}: the {silent} channel is silent. If both speak in the {here} one, save "
-                    "that alone and add a transcript that names the speakers; else check the microphone.",
+                    "{name}: the {silent} channel is silent. If both speak in the {here} one, "
+                    "save only that channel and add a transcript that names the speakers. "
+                    "Otherwise check the microphone.",
                     name=path.name,
                     silent=silent,
                     here=here,
@@ -86,7 +87,7 @@ def read_side_voices(
         elif len(sounding) < channels:
             gone = join_phrases([_channel(n, channels) for n in range(channels) if n not in sounding], ", ")
             reading.notes.append(
-                phrase("{name}: {gone} left out, which nothing is heard in.", name=path.name, gone=gone)
+                phrase("{name}: {gone} skipped, because nothing is heard in it.", name=path.name, gone=gone)
             )
         kept = range(channels) if channels == 2 else sounding
         for n in kept:
@@ -97,7 +98,7 @@ def read_side_voices(
         raise FileError(
             path,
             phrase("is silent"),
-            remedy=phrase("Check the microphone, or what was exported, and save the sound anew."),
+            remedy=phrase("Check the microphone or the export, and save the sound again."),
         )
     why = phrase(
         "has the same sound in both channels" if channels == 2 else "has one sound in all its channels"
@@ -107,13 +108,15 @@ def read_side_voices(
     if not worded:
         raise FileError(
             path,
-            phrase("{why}, so that nobody can tell who speaks", why=why),
-            remedy=phrase("Give a channel or a file for each, or a transcript that names the speakers."),
+            phrase("{why}, so the speakers cannot be told apart", why=why),
+            remedy=phrase(
+                "Add a channel or a file for each speaker, or a transcript that names the speakers."
+            ),
         )
     _tell_clipped(reading, path.name, max(read.clipped))
     reading.notes.append(
         phrase(
-            "{name} {why}: all sides share it, and only the transcript tells who speaks.",
+            "{name} {why}: all sides share it, and only the transcript shows who speaks.",
             name=path.name,
             why=why,
         )
@@ -144,8 +147,8 @@ def _tell_kind(reading: ConversationReading, path: Path, really: str) -> None:
     if really:
         reading.notes.append(
             phrase(
-                "{name} is {really} in spite of its ending; it was read as that. Other programs may "
-                "refuse it: rename it.",
+                "{name} is {really} despite its extension, and was read as such. Rename "
+                "it: other programs may refuse it.",
                 name=path.name,
                 really=really,
             )
@@ -163,7 +166,7 @@ def _files(reading: ConversationReading, audio: list[Path]) -> tuple[SideVoice, 
         if channels > 1:
             reading.notes.append(
                 phrase(
-                    "{name} has {channels} channels; as it is one of {count} files, they are mixed.",
+                    "{name} has {channels} channels. They are mixed, because it is one of {count} files.",
                     name=path.name,
                     channels=channels,
                     count=count,
@@ -178,8 +181,8 @@ def _files(reading: ConversationReading, audio: list[Path]) -> tuple[SideVoice, 
         other = next(n for n, rate in enumerate(rates) if rate != rates[0])
         reading.notes.append(
             phrase(
-                "{name} has {rates} samples a second and {name2} {rates2}; each is read at its own. "
-                "If one runs away from the other, record both at the same rate.",
+                "{name} has {rates} samples per second and {name2} {rates2}; each is read "
+                "at its own rate. If they drift apart, record both at the same rate.",
                 name=audio[0].name,
                 rates=rates[0],
                 name2=audio[other].name,
@@ -191,8 +194,8 @@ def _files(reading: ConversationReading, audio: list[Path]) -> tuple[SideVoice, 
     if lengths[longest] - lengths[shortest] > UNLIKE:
         reading.notes.append(
             phrase(
-                "{name} lasts {lengths:.1f} s and {name2} {lengths2:.1f} s; the shorter one is "
-                "silent then. Check that both begin at the same moment.",
+                "{name} lasts {lengths:.1f} s and {name2} {lengths2:.1f} s, so the shorter "
+                "one is silent at the end. Check that both begin at the same moment.",
                 name=audio[longest].name,
                 lengths=lengths[longest],
                 name2=audio[shortest].name,
@@ -215,8 +218,8 @@ def _tell_clipped(reading: ConversationReading, called: str, clipped: float) -> 
     if clipped > CLIPPED:
         reading.notes.append(
             phrase(
-                "{called}: {value:.2g} % of the samples are cut off at full scale; loudness and "
-                "pitch are less sure. Record softer.",
+                "{called}: {value:.2g} % of the samples clip at full scale, so loudness "
+                "and pitch are less reliable. Record at a lower level.",
                 called=called,
                 value=100 * clipped,
             )

@@ -88,8 +88,8 @@ def _sharing(
         out.append((voices[loud.index(max(loud))], one))
     notes.append(
         phrase(
-            "{name} names {count} speakers of {count2} channels: some share one, and there only the "
-            "transcript tells who speaks.",
+            "{name} names {count} speakers for {count2} channels. Some share a "
+            "channel, and there only the transcript shows who speaks.",
             name=path.name,
             count=len(speakers),
             count2=len(voices),
@@ -123,11 +123,11 @@ def _speakers(notes: list[str], path: Path, transcript: Transcript, most: int) -
         kept = sorted(found, key=lambda s: -(len(s.words) or len(s.segments or ())))[:most]
         left = [s for s in found if s not in kept]
         gone = join_phrases(
-            [f"'{s.name[:40]}'" if s.name else phrase("one without a name") for s in left[:8]], ", "
+            [f"'{s.name[:40]}'" if s.name else phrase("an unnamed speaker") for s in left[:8]], ", "
         )
         notes.append(
             phrase(
-                "{name}: it has {count} speakers; left out of a conversation of {value}: {gone}.",
+                "{name} has {count} speakers; skipped in a conversation of {value}: {gone}.",
                 name=path.name,
                 count=len(found),
                 value=phrase("two") if most <= 2 else most,
@@ -159,8 +159,8 @@ def _one_a_side(
         fits = join_as_list(each)
         notes.append(
             phrase(
-                "{fits} better than the other way round; they were not swapped. Give them in the "
-                "order of the sides.",
+                "{fits} better than the other way round, but they were not swapped. Give "
+                "them in the order of the sides.",
                 fits=fits,
             )
         )
@@ -174,8 +174,8 @@ def _one_speaker(
     if len(voices) == 1:
         notes.append(
             phrase(
-                "{name} names no two speakers, and the sound is one: all is taken for the first's. "
-                "Name the speakers in the transcript.",
+                "{name} does not name two speakers, and there is only one sound, so the "
+                "first speaker gets all words. Name the speakers in the transcript.",
                 name=path.name,
             )
         )
@@ -188,8 +188,8 @@ def _one_speaker(
         if max(shares) < 0.9:
             notes.append(
                 phrase(
-                    "{name} names no two speakers; each word is given to the side whose channel is "
-                    "louder then.",
+                    "{name} does not name two speakers, so each word goes to the side whose "
+                    "channel is louder at that moment.",
                     name=path.name,
                 )
             )
@@ -203,12 +203,12 @@ def _one_speaker(
                 for n, v in enumerate(voices)
             )
         first = shares.index(max(shares))
-    rest = phrase("the other side has none, so its loudness tells what it says")
+    rest = phrase("the other side has none, so its loudness shows when it speaks")
     if len(voices) > 2:
-        rest = phrase("the others have none, so their loudness tells what they say")
+        rest = phrase("the others have none, so their loudness shows when they speak")
     notes.append(
         phrase(
-            "{name} has the words of one speaker, of {called}; {rest}.",
+            "{name} has the words of one speaker only, {called}; {rest}.",
             name=path.name,
             called=voices[first].called,
             rest=rest,
@@ -258,19 +258,19 @@ def cut_words_to_sound(notes: list[str], called: str, said: TranscribedSide, len
     cut = sum(w.end > length + 0.05 for w in words[: len(out)])
     if gone and not out and said.path is not None:
         cause = phrase(
-            "all its {count} lie past the end of the sound, which lasts {length:.1f} s",
+            "all of its {count} are past the end of the sound, which lasts {length:.1f} s",
             count=count(gone, "word"),
             length=length,
         )
-        raise FileError(said.path, cause, said.name, phrase("Choose this sound's own transcript."))
+        raise FileError(said.path, cause, said.name, phrase("Choose the transcript of this sound."))
     if gone or cut:
-        parts = [phrase("{count} left out", count=count(gone, "word"))] if gone else []
+        parts = [phrase("{count} skipped", count=count(gone, "word"))] if gone else []
         parts += [phrase("{count} cut", count=count(cut, "word"))] if cut else []
         does = join_as_list(parts)
         notes.append(
             phrase(
-                "{called}: {does}, past the end of the sound at {length:.1f} s. Check that the "
-                "transcript is of this sound.",
+                "{called}: {does}, past the end of the sound at {length:.1f} s. Check that "
+                "the transcript belongs to this sound.",
                 called=called,
                 does=does,
                 length=length,
@@ -286,8 +286,8 @@ def tell_unheard(notes: list[str], called: str, words: Sequence[Word], voice: Si
     if len(words) >= 5 and heard < 0.5 * len(words):
         notes.append(
             phrase(
-                "{called}: {count} of {count2} lie where nothing is heard. Check that transcript and "
-                "sound belong together and begin at the same moment.",
+                "{called}: {count} of {count2} are where nothing is heard. Check that "
+                "transcript and sound belong together and begin at the same moment.",
                 called=called,
                 count=len(words) - heard,
                 count2=count(len(words), "word"),

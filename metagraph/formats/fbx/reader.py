@@ -67,7 +67,7 @@ def _converted(path: Path, timeout: float) -> bytes:
     except OSError as error:
         raise FileError(
             path,
-            phrase("the reader of FBX files did not start ({strerror})", strerror=error.strerror),
+            phrase("the FBX reader did not start ({strerror})", strerror=error.strerror),
             phrase("on opening it"),
             phrase("Install Metagraph again."),
         ) from error
@@ -93,7 +93,7 @@ def _told(path: Path, error: ReaderError, timeout: float) -> FileError:
         )
     if code == fbx_child.REFUSED:
         return FileError(
-            path, phrase("it is not a sound FBX file ({words})", words=words), phrase("its content"), _AGAIN
+            path, phrase("it is not a valid FBX file ({words})", words=words), phrase("its content"), _AGAIN
         )
     if code < 0:
         return FileError(

@@ -197,7 +197,10 @@ def _clip(
 def _key_times(gltf: Gltf, accessor: int, where: str) -> Array:
     times = np.asarray(gltf.array(accessor, where, "SCALAR"), np.float64)
     if not len(times):
-        gltf.fail(phrase("accessor {accessor} holds no key times", accessor=accessor), where)
+        gltf.fail(phrase("accessor {accessor} has no key times", accessor=accessor), where)
     if not np.isfinite(times).all() or (np.diff(times) < 0).any():
-        gltf.fail(phrase("the key times of accessor {accessor} do not ascend", accessor=accessor), where)
+        gltf.fail(
+            phrase("the key times of accessor {accessor} are not in ascending order", accessor=accessor),
+            where,
+        )
     return times

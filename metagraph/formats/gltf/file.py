@@ -123,7 +123,7 @@ class Gltf:
             return self._named[name]
         if (why := explain_refusal(name, self.path.parent)) is not None:  # never: its files lie beside it
             self.fail(
-                phrase("'{name}' is not opened: {why}", name=name[:80], why=why),
+                phrase("'{name}' was not opened: {why}", name=name[:80], why=why),
                 where,
                 phrase("Put that file beside the glTF file."),
             )
@@ -287,7 +287,7 @@ class Gltf:
         if sparse.indices.byte_offset + sparse.count * places_type.itemsize > len(
             data
         ) or sparse.values.byte_offset + sparse.count * width * dtype.itemsize > len(values):
-            self.fail(phrase("its sparse values lie beyond their buffer view"), where)
+            self.fail(phrase("its sparse values are beyond their buffer view"), where)
         places = np.frombuffer(data, places_type, sparse.count, sparse.indices.byte_offset)
         if sparse.count and int(places.max()) >= len(base):
             self.fail(
@@ -323,7 +323,7 @@ def parse_gltf(path: Path, data: bytes) -> Gltf:
             path,
             phrase("it is neither a binary nor a text glTF file"),
             phrase("its first bytes"),
-            phrase("Check that the file has the right ending."),
+            phrase("Check that the file has the right extension."),
         )
     try:
         document = decode_columns(text)

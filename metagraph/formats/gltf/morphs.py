@@ -71,5 +71,5 @@ def morph_weights(
         return (), None
     weights = np.stack(list(columns.values()), 1)
     if not np.isfinite(weights).all() or np.abs(weights).max() > 1e6:
-        gltf.fail(phrase("a morph weight is not a sensible number"), where)
+        gltf.fail(phrase("a morph weight is not a plausible number"), where)
     return tuple(columns), weights

@@ -93,7 +93,7 @@ def build_rig(gltf: Gltf, as_is: Collection[str] = ()) -> GltfRig:
         gltf.fail(
             phrase("it has more than {NODES:,} nodes", NODES=NODES),
             phrase("its nodes"),
-            phrase("Export the character alone."),
+            phrase("Export only the character."),
         )
     parents, order = _tree(gltf, nodes)
     members = _members(gltf, nodes, parents, order)
@@ -153,7 +153,7 @@ def _build(
         and np.isfinite(rest_translations).all()
         and np.abs(rest_translations).max() < 1e9
     ):
-        gltf.fail(phrase("its joints are scaled beyond all bounds"), phrase("its nodes"))
+        gltf.fail(phrase("its joints have an extreme scale"), phrase("its nodes"))
     unit, repairs = _unit(rest_matrices, as_is)
     if unit != 1.0:
         lift, shift, rest_translations = lift * unit, shift * unit, rest_translations * unit
@@ -184,12 +184,12 @@ def _joints(gltf: Gltf, members: set[int], parents: list[int], order: list[int])
     if len(joints) > JOINTS:
         gltf.fail(
             phrase(
-                "it has {count} joints, more than the {JOINTS} of any character",
+                "it has {count} joints, more than the maximum of {JOINTS} for a character",
                 count=len(joints),
                 JOINTS=JOINTS,
             ),
             phrase("its nodes"),
-            phrase("Export the character alone."),
+            phrase("Export only the character."),
         )
     places = {node: i for i, node in enumerate(joints)}
     above = np.array([places.get(parents[n], -1) for n in joints])
@@ -198,9 +198,9 @@ def _joints(gltf: Gltf, members: set[int], parents: list[int], order: list[int])
         depths.append(depths[parent] + 1 if parent >= 0 else 1)
     if max(depths) > JOINTS_DEEP:
         gltf.fail(
-            phrase("its joints hang on each other more than {most} deep", most=JOINTS_DEEP),
+            phrase("its joint hierarchy is more than {most} levels deep", most=JOINTS_DEEP),
             phrase("its nodes"),
-            phrase("Leave out ropes, hair and cloth, or export the character alone."),
+            phrase("Remove ropes, hair and cloth, or export only the character."),
         )
     return joints, above
 
@@ -292,7 +292,7 @@ def _transforms(gltf: Gltf, nodes: list[Node]) -> tuple[Array, Array, Array]:
                 or np.abs(node.matrix).max() > _LARGEST
             ):
                 gltf.fail(
-                    phrase("its matrix is not 16 sensible numbers"),
+                    phrase("its matrix does not have 16 plausible numbers"),
                     phrase("node {i} '{name}'", i=i, name=node.name),
                 )
             translations[i], rotations[i], scales[i] = decompose(np.array(node.matrix).reshape(4, 4).T)

@@ -256,7 +256,7 @@ class Journal:
                 sync = self._base is not None or self.path.exists()
                 self._file.begin(content, self._like, sync)
             except OSError as error:
-                raise unwritten(self.path, error, phrase("on beginning it")) from None
+                raise unwritten(self.path, error, phrase("while creating it")) from None
             self._begun, self._number = True, len(records)
         if self._register is not None:
             self._register.add(self.path, self._saved, self._head)
@@ -337,7 +337,7 @@ class Journal:
             finally:
                 os.close(handle)
         except OSError as error:
-            self.error = unwritten(self.path, error, phrase("on looking after it"))
+            self.error = unwritten(self.path, error, phrase("while checking it"))
             return False
         return whole
 
@@ -348,7 +348,7 @@ class Journal:
                 self._number += 1
                 self._look()  # an edit in a file that was removed is no edit that was kept
             except OSError as error:
-                raise unwritten(self.path, error, phrase("on adding to it")) from None
+                raise unwritten(self.path, error, phrase("while adding to it")) from None
 
     def _look(self) -> None:
         """Look whether the file is in its place, and put it there again. Raises OSError."""

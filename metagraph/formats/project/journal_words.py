@@ -15,7 +15,7 @@ def unwritten(path: Path, error: OSError, where: str) -> FileError:
         path,
         phrase("cannot be written ({value})", value=error.strerror or error),
         where,
-        phrase("Make room on the disk and save the project, or save it in another place."),
+        phrase("Free some disk space and save the project, or save it in another place."),
     )
 
 
@@ -30,13 +30,14 @@ def describe_displacement(what: str, was: Path, now: Path) -> str:
     """Return what to say of a journal that was "removed" or has "moved"."""
     if what == "moved":
         return phrase(
-            "The folder {folder} is now {place}. Your unsaved edits are kept there; saving asks for the "
-            "place.",
+            "The folder {folder} is now {place}. Your unsaved edits are kept there. "
+            "Saving asks you where to save.",
             folder=was.parent.name,
             place=now.parent,
         )
     return phrase(
-        "Another program removed or replaced the file in {folder} in which Metagraph keeps your unsaved "
-        "edits. It has been written again, with all of them.",
+        "Another program removed or replaced the file in {folder} in which "
+        "Metagraph keeps your unsaved edits. Metagraph has written it again, with "
+        "all of them.",
         folder=was.parent.name,
     )

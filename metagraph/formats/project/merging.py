@@ -187,7 +187,7 @@ class _Merger:
             gone, left = (self.here, self.there) if mine is _GONE else (self.there, self.here)
             self.kept.append(
                 phrase(
-                    "{what}: removed {gone}, changed {left}; kept as it is {left}",
+                    "{what}: removed {gone}, changed {left}; kept the version {left}",
                     what=place.words,
                     gone=gone,
                     left=left,
@@ -219,7 +219,7 @@ class _Merger:
             )
         else:
             words = phrase(
-                "{what}: changed {here} and {there}; kept as it is {here}",
+                "{what}: changed {here} and {there}; kept the version {here}",
                 what=place.words,
                 here=self.here,
                 there=self.there,

@@ -45,9 +45,9 @@ def read_other_project(
     if into is not None and path.resolve() == into.resolve():
         raise FileError(
             path,
-            phrase("is this project itself"),
+            phrase("is the open project itself"),
             phrase("the file"),
-            phrase("Choose another project's file."),
+            phrase("Choose the file of another project."),
         )
     opened = open_project(path, progress)
     return ProjectPiece(_at(opened.project, path, into), None, opened.notes)
@@ -86,7 +86,7 @@ def read_piece(text: str, into: Path | None) -> ProjectPiece:
     except (msgspec.DecodeError, DataError, KeyError, TypeError, ValueError, RecursionError) as error:
         raise FileError(
             CLIPBOARD,
-            phrase("holds nothing that can be pasted ({error})", error=error),
+            phrase("contains nothing that can be pasted ({error})", error=error),
             phrase("its text"),
             phrase("Copy stances or actions in another window first."),
         ) from None

@@ -72,8 +72,8 @@ def write_project(path: Path, content: bytes, versions: int, like: Access | None
         except (OSError, FileError) as error:
             cause = error.cause if isinstance(error, FileError) else error.strerror or str(error)
             note = phrase(
-                "{name} is saved, but its earlier version could not be kept ({cause}). Make room on the disk "
-                "and check that you may write there.",
+                "{name} was saved, but its earlier version could not be kept ({cause}). "
+                "Free some disk space, and check that you may write there.",
                 name=path.name,
                 cause=cause,
             )

@@ -15,8 +15,8 @@ from metagraph.errors import FileError
 from metagraph.formats.transcripts.words import Collected, Transcript
 
 _REMEDY = phrase(
-    "Whisper writes 'segments', with 'words' where word timestamps were asked for; IBM writes "
-    "'results' with 'timestamps'."
+    "Whisper writes 'segments', with 'words' if word timestamps were "
+    "requested; IBM writes 'results' with 'timestamps'."
 )
 
 
@@ -29,11 +29,11 @@ def read_json(path: Path, text: str) -> Transcript:
             path,
             phrase("is not JSON ({msg})", msg=error.msg),
             phrase("line {lineno}, column {colno}", lineno=error.lineno, colno=error.colno),
-            phrase("Save the transcript anew."),
+            phrase("Save the transcript again."),
         ) from None
     except (RecursionError, ValueError):
         raise FileError(
-            path, phrase("lists lie too deep in it, or its numbers are too long"), "", _REMEDY
+            path, phrase("its lists are nested too deep, or its numbers are too long"), "", _REMEDY
         ) from None
     out = Collected(path)
     if isinstance(data, dict) and "sides" in data:
@@ -63,7 +63,7 @@ def read_json(path: Path, text: str) -> Transcript:
         names = ", ".join(f"'{str(k)[:30]}'" for k in list(data)[:6]) or "nothing"
         raise FileError(
             path,
-            phrase("is JSON, but of no transcript that is known; it holds {names}", names=names),
+            phrase("is JSON, but not of a known transcript format; it contains {names}", names=names),
             "",
             _REMEDY,
         )
@@ -79,7 +79,7 @@ def _ours(out: Collected, text: str) -> Transcript:
         read = msgspec.json.decode(text, type=Conversation)
     except (msgspec.ValidationError, msgspec.DecodeError, ValueError) as error:
         raise out.fail(
-            phrase("is no conversation as 'metagraph speech' writes it: {error}", error=error)
+            phrase("is not a conversation as 'metagraph speech' writes it: {error}", error=error)
         ) from None
     names = [side.name or str(n + 1) for n, side in enumerate(read.sides)]
     if len(set(names)) < len(names):
@@ -93,13 +93,13 @@ def _ours(out: Collected, text: str) -> Transcript:
 
 def _list(out: Collected, value: Any, where: str) -> Sequence[Any]:
     if not isinstance(value, list):
-        raise out.fail(phrase("is no list but {kind}", kind=_kind(value)), f"'{where}'", _REMEDY)
+        raise out.fail(phrase("is {kind}, not a list", kind=_kind(value)), f"'{where}'", _REMEDY)
     return value
 
 
 def _dict(out: Collected, value: Any, where: str) -> Mapping[str, Any]:
     if not isinstance(value, dict):
-        raise out.fail(phrase("is no object but {kind}", kind=_kind(value)), f"'{where}'", _REMEDY)
+        raise out.fail(phrase("is {kind}, not an object", kind=_kind(value)), f"'{where}'", _REMEDY)
     return value
 
 
@@ -232,17 +232,17 @@ def _ibm(out: Collected, data: Mapping[str, Any]) -> None:
         for m, stamp in enumerate(stamps):
             place = f"{where}.timestamps[{m}]"
             if not isinstance(stamp, list) or len(stamp) < 3 or not isinstance(stamp[0], str):
-                raise out.fail(phrase("is no word with its start and end"), place, _REMEDY)
+                raise out.fail(phrase("is not a word with its start and end"), place, _REMEDY)
             start, end = _time(out, stamp[1], place), _time(out, stamp[2], place)
             if start is None or end is None:
-                raise out.fail(phrase("is no word with its start and end"), place, _REMEDY)
+                raise out.fail(phrase("is not a word with its start and end"), place, _REMEDY)
             out.add(labels.get(round(start, 2), next(iter(labels.values()), "")), stamp[0], start, end, place)
             words += 1
     if untimed and not words:
         raise out.fail(
             phrase("its words have no times"),
             "'results'",
-            phrase("Ask the service for timestamps (timestamps=true)."),
+            phrase("Request timestamps from the service (timestamps=true)."),
         )
     if untimed:
-        out.notes.append(phrase("{untimed} results have no times and were left out", untimed=untimed))
+        out.notes.append(phrase("skipped {untimed} results without times", untimed=untimed))

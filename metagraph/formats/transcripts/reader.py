@@ -33,7 +33,7 @@ def read_transcript(path: str | Path) -> Transcript:
     if not head:
         return Transcript({}, {}, ("it is empty",))
     if "\0" in head[:200]:
-        raise FileError(path, phrase("is no text"), phrase("its beginning"), REMEDY)
+        raise FileError(path, phrase("is not text"), phrase("its beginning"), REMEDY)
     if head.startswith(('File type = "ooTextFile', '"ooTextFile')) or path.suffix.casefold() == ".textgrid":
         return read_textgrid_tiers(path)
     if head.startswith("<"):
@@ -46,6 +46,4 @@ def read_transcript(path: str | Path) -> Transcript:
         return read_word_table(path, text)
     if is_ctm(text):
         return read_ctm(path, text)
-    raise FileError(
-        path, phrase("is none of the transcripts that can be read"), phrase("its beginning"), REMEDY
-    )
+    raise FileError(path, phrase("is not a transcript in a known format"), phrase("its beginning"), REMEDY)

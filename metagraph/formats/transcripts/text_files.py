@@ -73,7 +73,7 @@ def _cues(out: Collected, text: str) -> Iterator[_Cue]:
         if found is None:
             raise out.fail(
                 phrase(
-                    "'{value}' are not the times of a cue, as 00:00:01.500 --> 00:00:04.000",
+                    "'{value}' are not the times of a cue, such as 00:00:01.500 --> 00:00:04.000",
                     value=lines[n].strip()[:60],
                 ),
                 phrase("line {n}", n=n + 1),
@@ -252,6 +252,8 @@ def read_word_table(path: Path, text: str) -> Transcript:
             continue
         row = _table_row(line)
         if row is None:
-            raise out.fail(phrase("has no start, end and word, parted by tabs"), phrase("line {n}", n=n + 1))
+            raise out.fail(
+                phrase("has no start, end and word, separated by tabs"), phrase("line {n}", n=n + 1)
+            )
         out.add("", row[2], row[0], row[1], f"line {n + 1}")
     return out.finished()

@@ -136,13 +136,13 @@ def _from_tiers(path: Path, tiers: Sequence[_Tier], notes: Iterable[str]) -> Tra
             raise out.fail(
                 phrase("it has no tiers"),
                 "",
-                phrase("Save it anew with a tier of words for each speaker, or go on without words."),
+                phrase("Save it again with a tier of words for each speaker, or continue without words."),
             )
         names = ", ".join(f"'{t.name[:40]}'" for t in tiers[:8])
         raise out.fail(
-            phrase("no tier holds words; its tiers are {names}", names=names),
+            phrase("no tier contains words; its tiers are {names}", names=names),
             "",
-            phrase("Name the tier that does 'words', or 'Ann - words' of two speakers."),
+            phrase("Name the tier with the words 'words', or 'Ann - words' if there are two speakers."),
         )
     worded = _one_each(out, worded)
     ours = {t.whose for t in tiers if t.role == "segments"}
@@ -174,7 +174,7 @@ def _one_each(out: Collected, tiers: Sequence[_Tier]) -> list[_Tier]:
         if tier is not best[tier.whose] and any(not is_silent(x) for x, *_ in tier.rows):
             out.notes.append(
                 phrase(
-                    "tier '{name}' left out, as '{name2}' holds more words of the same speaker",
+                    "tier '{name}' skipped, because '{name2}' has more words of the same speaker",
                     name=tier.name,
                     name2=best[tier.whose].name,
                 )
@@ -232,7 +232,7 @@ def _segments(out: Collected, tier: _Tier, tiers: Sequence[_Tier]) -> tuple[Segm
         kinds = ", ".join(SPOKEN)
         out.notes.append(
             phrase(
-                "tier '{name}': {count} left out, as '{unknown}' is none of {kinds}",
+                "tier '{name}': {count} skipped, because '{unknown}' is none of {kinds}",
                 name=tier.name,
                 count=count(len(unknown), "segment"),
                 unknown=unknown[0],
@@ -242,7 +242,7 @@ def _segments(out: Collected, tier: _Tier, tiers: Sequence[_Tier]) -> tuple[Segm
     if over:
         out.notes.append(
             phrase(
-                "tier '{name}': {count} overlapped the one before and were cut or left out",
+                "tier '{name}': {count} overlapped the one before and were cut or skipped",
                 name=tier.name,
                 count=count(over, "segment"),
             )

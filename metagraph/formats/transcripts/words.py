@@ -12,7 +12,7 @@ from pathlib import Path
 
 from metagraph.common.budgets import MARKS, TEXT_FILE
 from metagraph.common.files import read_file
-from metagraph.common.wording import Phrase, join_phrases, phrase
+from metagraph.common.wording import Phrase, join_phrases, phrase, plural_phrase
 from metagraph.errors import FileError
 from metagraph.graph.conversation.model import SHORTEST, Segment, Word
 
@@ -21,10 +21,10 @@ TO_ALL = "all"  # in "clause to all: ...", as our exports write whom a segment i
 _TEXT = 1000  # characters of a word
 SUFFIXES = (".TextGrid", ".eaf", ".vtt", ".srt", ".json", ".ctm", ".tsv")
 REMEDY = phrase(
-    "Known are {names}: TextGrid, ELAN, WebVTT, SRT, JSON of Whisper or IBM, CTM, tables.",
+    "Known formats are {names}: TextGrid, ELAN, WebVTT, SRT, JSON of Whisper or IBM, CTM, tables.",
     names=", ".join(SUFFIXES),
 )
-_CORRECT = phrase("Correct it there, or save the transcript anew.")
+_CORRECT = phrase("Correct it there, or save the transcript again.")
 _SILENT = frozenset(
     (
         "",
@@ -125,19 +125,20 @@ class Collected:
         if self.wrong:
             notes.append(
                 phrase(
-                    "{count} ended before beginning; so long as letters take is kept",
+                    "{count} ended before they began; their length now comes from their letters",
                     count=count(self.wrong, "word"),
                 )
             )
         if self.spread:
             notes.append(
                 phrase(
-                    "{count} had no times of their own; they share those of their sentence by their letters",
+                    "{count} had no times of their own; they share those of their sentence in "
+                    "proportion to their letters",
                     count=count(self.spread, "word"),
                 )
             )
         if not any(out.values()):
-            notes.append(phrase("it holds no words"))
+            notes.append(phrase("it contains no words"))
         return Transcript(out, dict(segments or {}), tuple(notes))
 
 
@@ -149,10 +150,9 @@ def join_as_list(words: Sequence[str]) -> str:
 
 def count(number: int, what: str) -> Phrase:
     """Return how many words or segments, in words."""
-    one = number == 1
     if what == "word":
-        return phrase("{number:,} word" if one else "{number:,} words", number=number)
-    return phrase("{number:,} segment" if one else "{number:,} segments", number=number)
+        return plural_phrase("{count:,} word", "{count:,} words", number)
+    return plural_phrase("{count:,} segment", "{count:,} segments", number)
 
 
 def is_silent(text: str) -> bool:
@@ -191,13 +191,16 @@ def settle_words(words: Iterable[Word]) -> tuple[tuple[Word, ...], list[str]]:
             out[n] = Word(text=out[n].text, start=out[n].start, end=out[n + 1].start)
     notes: list[str] = []
     if moved:
-        notes.append(phrase("{count} out of order, sorted by time", count=count(moved, "word")))
+        notes.append(phrase("{count} were out of order and were sorted by time", count=count(moved, "word")))
     if over:
         notes.append(
-            phrase("{count} overlapped the one before, which ends there now", count=count(over, "word"))
+            phrase(
+                "{count} overlapped the previous one, which now ends where they begin",
+                count=count(over, "word"),
+            )
         )
     if gone:
-        notes.append(phrase("{count} lay wholly within another and were left out", count=count(gone, "word")))
+        notes.append(phrase("{count} were wholly inside another and were skipped", count=count(gone, "word")))
     return tuple(out), notes
 
 

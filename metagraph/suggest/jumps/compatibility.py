@@ -338,16 +338,20 @@ def propose_times(
         )
     elif enter:
         reason = phrase(
-            "leaving costs {cost:.1f} times what is usual: a jump would be seen", cost=out.leave_cost
+            "its exit jumps: no moment late enough fits "
+            "its stance (best match {cost:.1f} times the visible threshold)",
+            cost=out.leave_cost,
         )
     elif leave:
         reason = phrase(
-            "entering costs {cost:.1f} times what is usual: a jump would be seen", cost=into.enter_cost
+            "its entry jumps: no moment early enough fits "
+            "its stance (best match {cost:.1f} times the visible threshold)",
+            cost=into.enter_cost,
         )
     else:
         reason = phrase(
-            "entering costs {cost:.1f} times what is usual and leaving costs {more:.1f} times what is usual: "
-            "a jump would be seen",
+            "its entry and exit jump: no moment early or late enough "
+            "fits its stance (best matches {cost:.1f} and {more:.1f} times the visible threshold)",
             cost=into.enter_cost,
             more=out.leave_cost,
         )
@@ -373,8 +377,19 @@ def loop_times(stats: Statistics, clip: Clip, roles: Mapping[str, int] | None = 
         0.0,
         None,
         good,
-        phrase("its seam costs {seam:.2f} times what is usual between frames", seam=seam),
+        _seam_words(seam, good),
     )
+
+
+def _seam_words(seam: float, good: bool) -> str:
+    """Say how visible a loop's seam is. seam: its cost beside the threshold. good: a blend hides it."""
+    if seam <= 1:
+        return phrase("its loop seam is smooth, {seam:.2f} of the visible threshold", seam=seam)
+    if good:
+        return phrase(
+            "a blend hides its loop seam, which is {seam:.1f} times the visible threshold", seam=seam
+        )
+    return phrase("its loop seam jumps: it is {seam:.1f} times the visible threshold", seam=seam)
 
 
 def _at(cost: Array, seconds: float) -> float:

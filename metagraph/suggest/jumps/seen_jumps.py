@@ -91,9 +91,9 @@ def words_at(project: Project, action: Action, seen: SeenJumps, seconds: float) 
     stance = project.stance(action.stance if entering or action.end_stance is None else action.end_stance)
     name = phrase("'{name}'", name=stance.name) if stance is not None else phrase("its stance")
     if cost <= 1:
-        verdict = phrase("{cost:.1f} of what shows as a jump", cost=cost)
+        verdict = phrase("no jump, {cost:.1f} of the visible threshold", cost=cost)
     else:
-        verdict = phrase("{cost:.1f} times what shows as a jump", cost=cost)
+        verdict = phrase("jumps, {cost:.1f} times the visible threshold", cost=cost)
     if blend > 0:
         verdict = phrase("{verdict}, blended over {blend:.2f} s", verdict=verdict, blend=blend)
     if seen.loops:
@@ -110,7 +110,8 @@ def words_at(project: Project, action: Action, seen: SeenJumps, seconds: float) 
 
 
 def describe_ends(costs: Mapping[str, float], far: Mapping[str, str] | None = None) -> str:
-    """Say what beginning and ending cost: "Begins without a jump, ends 2.7 times what shows as one". far: of
+    """Say what beginning and ending cost: "Begins without a jump, ends with one, 2.7 times the
+    visible threshold". far: of
     those that begin or end too far from their stance, what the problems say of it.
     """
     far = far or {}
@@ -126,17 +127,17 @@ def _cost_words(what: str, cost: float, again: bool) -> str:
     """Say what one of both costs. again: whether a jump was spoken of before."""
     if what == "Repeats":
         if cost <= 1:
-            return phrase("Repeats without a jump")
-        return phrase("Repeats {cost:.1f} times what shows as a jump", cost=cost)
+            return phrase("Loops smoothly")
+        return phrase("Loop seam jumps, {cost:.1f} times the visible threshold", cost=cost)
     if what == "Begins":
         if cost <= 1:
             return phrase("Begins without a jump")
-        return phrase("Begins {cost:.1f} times what shows as a jump", cost=cost)
+        return phrase("Begins with a jump, {cost:.1f} times the visible threshold", cost=cost)
     if cost <= 1:
         return phrase("ends without one") if again else phrase("ends without a jump")
     if again:
-        return phrase("ends {cost:.1f} times what shows as one", cost=cost)
-    return phrase("ends {cost:.1f} times what shows as a jump", cost=cost)
+        return phrase("ends with one, {cost:.1f} times the visible threshold", cost=cost)
+    return phrase("ends with a jump, {cost:.1f} times the visible threshold", cost=cost)
 
 
 def far_ends(project: Project, action: Action) -> dict[str, str]:
@@ -161,10 +162,10 @@ def describe_times(seen: SeenJumps) -> str:
     p = seen.proposed
     if seen.loops:
         if p.blend_in > 0:
-            return phrase("All of it, its seam blended over {blend:.2f} s", blend=p.blend_in)
-        return phrase("All of it, without a blend")
+            return phrase("The whole clip, its loop seam blended over {blend:.2f} s", blend=p.blend_in)
+        return phrase("The whole clip, without a blend")
     return phrase(
-        "{start:.2f} to {end:.2f} s, blended over {blend_in:.2f} and {blend_out:.2f} s",
+        "{start:.2f} to {end:.2f} s, blended in over {blend_in:.2f} s and out over {blend_out:.2f} s",
         start=p.start,
         end=p.end,
         blend_in=p.blend_in,

@@ -54,7 +54,7 @@ def snaps_of(
         found = list(_blend(project, action, handle))
     else:
         found = list(_moment(project, action, handle, np.asarray(speeds, float), entry.fps))
-    found += [Snap(at, phrase("the line is stressed here")) for at in stresses]
+    found += [Snap(at, phrase("the line has a stress here")) for at in stresses]
     if playhead is not None:
         found.append(Snap(playhead, phrase("the playhead")))
     return tuple(s for s in found if -1e-6 <= s.at <= entry.duration + 1e-6)
@@ -76,7 +76,7 @@ def _edge(seen: SeenJumps | None, handle: str) -> Iterator[Snap]:
     if seen is None:
         return
     if seen.loops:
-        proposed = phrase("proposed: it repeats without a jump")
+        proposed = phrase("proposed: it loops smoothly")
     elif handle == "start":
         proposed = phrase("proposed: it begins without a jump")
     else:
@@ -117,7 +117,7 @@ def _moment(project: Project, action: Action, handle: str, speeds: Array, fps: f
         bare = replace(action.timing, ready=None, stroke_end=None, relax=None, stroke=None)
         found = phases(project, replace(action, timing=bare))
         by = {"ready": found.ready, "hold": found.stroke_end, "relax": found.relax, "stroke": found.stroke}
-        yield Snap(round(by[handle], 3), phrase("as found from the motion"))
+        yield Snap(round(by[handle], 3), phrase("as detected from the motion"))
     if handle == "exit":
         relax = handle_times(project, action)["relax"]
         if relax is not None:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final, TypeVar, cast
 
-from metagraph.common.wording import change_quoted, phrase
+from metagraph.common.wording import change_quoted, phrase, plural_phrase
 from metagraph.graph.words import Kind, Layer, Limb
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.words.cut import as_written
@@ -308,12 +308,12 @@ class _Reader:
         if found is None:
             return None
         value, words, count = found
-        said = (
-            phrase("'{words}' was corrected to {value} once", words=words, value=value)
-            if count == 1
-            else phrase(
-                "'{words}' was corrected to {value} {count} times", words=words, value=value, count=count
-            )
+        said = plural_phrase(
+            "'{words}' was corrected to {value} {count:,} time",
+            "'{words}' was corrected to {value} {count:,} times",
+            count,
+            words=words,
+            value=value,
         )
         return Belief(value, 1 - 0.2 / (count + 1), said)
 
@@ -363,7 +363,7 @@ class _Reader:
         if parse.stance and parse.own:
             words = " ".join(parse.words[parse.at : parse.at + parse.own])
             begins = (
-                phrase('name comes from "{stance}"', stance=parse.stance.text)
+                phrase('name says that it comes from "{stance}"', stance=parse.stance.text)
                 if parse.joined
                 else phrase("name has '{words}'", words=words)
                 if parse.at
@@ -372,7 +372,7 @@ class _Reader:
             sure = min(0.85 if parse.at else 0.97, parse.stance.confidence + 0.05)
             return Belief(parse.stance.text, sure, begins)
         if parse.stance:
-            joins = phrase("name says '{words}', which begins there", words=parse.joined)
+            joins = phrase("name says '{words}', which starts from this stance", words=parse.joined)
             return Belief(self._called(parse.stance), 0.8, joins)
         usual = self._stances.usual()
         if kind is None or kind.value in ("stance", "transition") or usual is None:
@@ -380,7 +380,7 @@ class _Reader:
         return Belief(
             self._called(usual[0]),
             usual[1],
-            phrase("no other stance is named and '{words}' is the plain one", words=usual[0].text),
+            phrase("name mentions no other stance, and '{words}' is the default one", words=usual[0].text),
         )
 
     def _end_stance(self, parse: _Parse) -> Belief[str] | None:
@@ -415,7 +415,7 @@ class _Reader:
             return _layer(from_act, 0.85)
         side = next(iter(phrases(parse.act, self._patterns.meanings["limbs"])), None)
         if side and not (kind and kind.value == "stance"):
-            return Belief("arms", 0.8, phrase("name says '{words}', a hand", words=side.text))
+            return Belief("arms", 0.8, phrase("name says '{words}', which is a hand", words=side.text))
         if from_stance:  # what is done there may well be another layer's
             still = parse.joined or (kind and kind.value == "stance")
             return _layer(from_stance, (0.95 if len(stood) > 1 else 0.85) if still else 0.45)

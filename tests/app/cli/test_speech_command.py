@@ -113,7 +113,7 @@ def test_a_language_can_be_chosen_brought_or_is_what_the_project_says(
     shutil.copy(SAMPLE / "sample.metagraph.yaml", project)
     project.write_text(project.read_text(encoding="utf-8") + "language: fr\n", encoding="utf-8")
     code, data, error = run(capsys, *given, "--project", project)
-    assert [s["language"] for s in data["sides"]] == ["fr", "fr"] and "as was chosen" in error
+    assert [s["language"] for s in data["sides"]] == ["fr", "fr"] and "as you chose" in error
     kept = open_project(project).project
     assert kept.language == "fr" and kept.conversations[data["kept"]].sides[0].language == "fr"
 

@@ -30,7 +30,7 @@ def conversation() -> Annotation:
 def test_an_annotation_with_nothing_in_it_says_so_and_changes_nothing_but_the_memory() -> None:
     reading = begin_reading(Annotation((tier("words", "hello"),)))
     assert reading.observed == {} and reading.labels == ()
-    assert "tiers" in describe_doubts(reading)[0]
+    assert "tier" in describe_doubts(reading)[0]
     made = work_into_project(Project(), reading, LAYERS, True, "talk")
     assert (made.learned, made.performance) == ((), None)
     assert made.project == Project(tiers={"words": "ignore"})
@@ -86,7 +86,7 @@ def test_models_are_learned_of_the_layers_that_are_wanted_and_were_seen(conversa
 def test_few_actions_are_doubted(conversation: Annotation) -> None:
     (doubt,) = describe_doubts(begin_reading(conversation))
     assert "12 actions" in doubt and "body" in doubt
-    assert "hold nothing that counts" in describe_doubts(begin_reading(Annotation((tier("LH", "rest"),))))[0]
+    assert "contain no usable labels" in describe_doubts(begin_reading(Annotation((tier("LH", "rest"),))))[0]
     assert describe_doubts(begin_reading(Annotation((), notes=("one left out",))))[0] == "one left out"
 
 

@@ -120,7 +120,7 @@ def test_changes_may_be_discarded_or_kept(desk, person, answer, leaves):
     change_seed(desk)
     person.next = [answer]
     assert desk.may_leave() is leaves
-    assert "not saved" in person.asked[0]
+    assert "unsaved changes" in person.asked[0]
 
 
 def test_changes_may_be_saved_first(desk, person, tmp_path):
@@ -243,7 +243,7 @@ def test_edits_since_the_last_save_are_offered(desk, person, saved, qtbot, answe
     desk.document.load(Project(), None)
     desk.open(saved)
     qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3)
-    assert "2 edits" in person.asked[0]
+    assert "2 unsaved edits" in person.asked[0]
     taken = answer == "recover"
     assert desk.document.project.settings.seed == (8 if taken else 1)
     assert desk.document.dirty is taken
@@ -305,7 +305,7 @@ def test_edits_of_another_state_of_the_file_are_offered_and_can_be_merged(
     desk.document.load(Project(), None)
     desk.open(saved)
     qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3 and bool(noticed))
-    assert "saved by somebody else" in person.asked[0]
+    assert "Someone else has saved" in person.asked[0]
     assert desk.document.project.settings.seed == 7 and desk.document.project.name == "mine"
     monkeypatch.setattr(questions, "ask_changed", lambda *a: "merge")
     noticed[0][2]()
@@ -347,7 +347,7 @@ def test_a_journal_of_before_journals_held_what_they_build_on_is_worked_into_the
     desk.document.load(Project(), None)
     desk.open(saved)
     qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3)
-    assert "worked into" in person.asked[0]
+    assert "merged into" in person.asked[0]
     assert (desk.document.project.name, desk.document.project.settings.seed) == ("renamed", 7)
 
 
@@ -473,7 +473,7 @@ def test_a_folder_with_a_bad_file_brings_in_the_rest_and_says_what_failed(desk, 
     desk.importing.ended.connect(ended.append)
     qtbot.waitUntil(lambda: bool(ended))
     assert sorted(e.name for e in desk.document.project.clips.values()) == ["idle", "nod", "wave"]
-    assert any("3 clips" in words and "1 file" in words for words in desk.words)
+    assert any("3 clips" in words and "1 unusable file" in words for words in desk.words)
     assert "broken.bvh" in ended[0].failures[0] and not desk.reports
     assert desk.document.undo_stack.count() == 1, "one import is one step"
     desk.document.undo()
@@ -625,4 +625,4 @@ def test_a_full_disk_leaves_the_list_of_recent_projects_as_it_was(desk, tmp_path
     monkeypatch.setattr(os, "fsync", full)
     desk.saver.saved.emit(tmp_path / "b.metagraph.yaml", False)
     assert desk.recent() == [place]
-    assert any("could not be written" in words for words in desk.words)
+    assert any("could not be saved" in words for words in desk.words)

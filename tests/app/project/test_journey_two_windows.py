@@ -176,7 +176,9 @@ def test_the_second_window_says_who_has_it_and_takes_over_what_a_killed_one_left
 
         third = start()
         question = third.tells("asks")
-        latest = {"2 edits": 8, "1 edit ": 6}[min(("2 edits", "1 edit "), key=question.index)]
+        latest = {"2 unsaved edits": 8, "1 unsaved edit,": 6}[
+            min(("2 unsaved edits", "1 unsaved edit,"), key=question.index)
+        ]
         third.do("choose recover copy")
         seed = latest
         assert third.tells("opened") == f"show[*] - Metagraph {seed}"

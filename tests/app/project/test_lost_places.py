@@ -103,12 +103,12 @@ def test_a_deleted_projects_edits_are_offered_and_saving_writes_it_again(desk, s
     crashed(desk, saved, qtbot)
     saved.unlink()
     assert recovered(desk, qtbot, desk.recover) == 8
-    assert "not there any more" in desk.asked[0]
+    assert "no longer exists" in desk.asked[0]
     assert desk.document.path == saved and desk.document.dirty
     desk.save()
     qtbot.waitUntil(lambda: desk.idle() and not desk.document.dirty)
     assert read_project(saved).settings.seed == 8
-    assert "has been written again" in desk.words[-1]
+    assert "has written it again" in desk.words[-1]
 
 
 @pytest.mark.parametrize("content", [b"", b"\x00" * 5000, b"a: [", b"metagraph: 1\nsettings: 3\n"])
@@ -124,7 +124,7 @@ def test_a_renamed_file_finds_its_edits(desk, saved, qtbot):
     renamed = saved.with_name("renamed.metagraph.yaml")
     saved.rename(renamed)
     assert recovered(desk, qtbot, lambda: desk.open(renamed)) == 8
-    assert "called show.metagraph.yaml" in desk.asked[0]
+    assert "named show.metagraph.yaml" in desk.asked[0]
 
 
 @pytest.mark.skipif(os.name == "nt", reason="links need rights on Windows")
@@ -297,4 +297,4 @@ def test_a_removed_journal_is_written_again_and_told(desk, saved, qtbot):
     assert desk.document.secured() and place.exists()
     qtbot.waitUntil(lambda: bool(desk.notices))
     desk.notices[0][2]()
-    assert "written again" in desk.reports[-1][1][0]
+    assert "written it again" in desk.reports[-1][1][0]

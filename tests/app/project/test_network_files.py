@@ -76,7 +76,7 @@ def test_they_are_opened_when_the_user_says_so_and_not_asked_about_again(drive, 
 
 
 def test_they_stay_closed_when_the_user_says_no_and_can_be_opened_later(drive, project: Path) -> None:
-    answer = Answer("Leave them closed")
+    answer = Answer("Keep them closed")
     _opened(drive, project)
     drive.wait(lambda: bool(answer.asked), 30)
     drive.files.new()

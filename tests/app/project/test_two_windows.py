@@ -241,7 +241,9 @@ def test_each_of_two_sittings_that_crashed_is_offered_and_none_is_lost(windows, 
     crashed(saved, 20, 2)
     person.next = [("recover", "copy")]
     one = opened(qtbot, windows(), saved)
-    assert person.asked[0].index("2 edits") < person.asked[0].index("1 edit "), "the latest first"
+    assert person.asked[0].index("2 unsaved edits") < person.asked[0].index("1 unsaved edit,"), (
+        "the latest first"
+    )
     assert one.document.project.settings.seed == 21 and one.document.dirty
     copy = saved.with_name("show recovered.metagraph.yaml")
     assert on_disk(copy) == 10
@@ -267,7 +269,7 @@ def test_what_was_recovered_is_there_still_after_a_second_crash_without_an_edit(
     kill_sittings(saved.parent)
     person.next = [("recover",)]
     two = opened(qtbot, windows(), saved)
-    assert "3 edits" in person.asked[-1]
+    assert "3 unsaved edits" in person.asked[-1]
     assert two.document.project.settings.seed == 12
     one.document._journal = one.document.lock = None
 
@@ -286,7 +288,7 @@ def test_a_read_only_windows_edits_survive_its_crash_though_the_file_went_on(win
     kill_sittings(saved.parent)
     person.next = [("recover",)]
     three = opened(qtbot, windows(), saved)
-    assert "saved by somebody else" in person.asked[-1]
+    assert "Someone else has saved" in person.asked[-1]
     assert three.document.project.settings.seed == 6
     person.next = ["Cancel"]
     three.save()
@@ -310,7 +312,7 @@ def test_a_project_never_saved_in_each_of_two_windows_is_kept_apart(windows, per
     person.next = [("recover", "later")]
     three.recover_untitled()
     qtbot.waitUntil(lambda: three.document.dirty)
-    assert "1 kept" in three.words[-1]
+    assert "Kept 1 project" in three.words[-1]
     four = windows()
     person.next = [("recover",)]
     four.recover_untitled()
@@ -389,8 +391,8 @@ def test_the_differences_are_listed_side_by_side_before_choosing(windows, person
     one.save()
     qtbot.waitUntil(lambda: not person.next)
     assert seen == [
-        ("Done on disk", ["Settings changed: seed 1 → 99"]),
-        ("Done here", ["Settings changed: seed 1 → 7"]),
+        ("Changed on disk", ["Settings changed: seed 1 → 99"]),
+        ("Changed here", ["Settings changed: seed 1 → 7"]),
     ]
 
 
@@ -411,7 +413,7 @@ def test_a_file_that_changes_while_it_is_open_is_told_of_once(windows, person, s
     qtbot.wait(100)
     assert len(notices) == 1
     words, _, show = notices[0]
-    assert ("look…" if dirty else "reload…") in words
+    assert ("Compare…" if dirty else "Reload…") in words
     person.next = ["Reload"]
     show()
     qtbot.waitUntil(lambda: one.document.project.settings.seed == 99)

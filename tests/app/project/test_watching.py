@@ -115,7 +115,7 @@ def test_a_file_that_was_missing_when_the_project_was_opened_and_is_put_back_is_
     drive.watcher.told.connect(said.append)
     shutil.move(drive.place / "wave.kept", drive.place / "wave.glb")
     drive.wait(lambda: drive.document.project.clips[clip].motion is not None)
-    assert said == ["Back again: wave"]
+    assert said == ["Found again: wave"]
     assert not drive.document.dirty, "nothing that is saved has changed"
     drive.wait(lambda: not any(p.clip == clip for p in drive.problems.problems))
 

@@ -286,7 +286,7 @@ def test_a_point_is_put_somewhere_and_looked_at(stage):
 
     drive = stage
     menu = make_request_menu(drive.timeline, drive.performance, 2.0)
-    drive.pick(menu, "Look at", "Another point…")
+    drive.pick(menu, "Look at", "New point…")
     drive.wait(lambda: QApplication.activeModalWidget() is not None)
     editor = QApplication.activeModalWidget()
     QTest.keyClicks(editor.name, "door")

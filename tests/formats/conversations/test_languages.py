@@ -55,7 +55,7 @@ def test_each_may_speak_another_language() -> None:
 def test_too_few_words_are_undecided_and_read_as_the_others_are() -> None:
     codes, notes = read(side("fr"), told("ok mh"))
     assert codes == ["fr", "fr"]
-    assert "Ben: 2 words" in notes[1] and "undecided" in notes[1] and "as the other's" in notes[1]
+    assert "Ben: 2 words" in notes[1] and "undecided" in notes[1] and "like the other" in notes[1]
     assert read(side("fr"), TranscribedSide())[0] == ["fr", "fr"]  # the lists are one
 
 
@@ -63,13 +63,13 @@ def test_too_few_words_of_both_are_read_as_the_project_is_set_to() -> None:
     codes, notes = read(told("ok"), told("mhm oh"), Speaking(otherwise="it"))
     assert codes == ["it", "it"] and all("project" in n for n in notes)
     codes, notes = read(told("ok"), told("mhm oh"))
-    assert codes == ["en", "en"] and "1 word " in notes[0] and "undecided" in notes[0]
+    assert codes == ["en", "en"] and "1 word;" in notes[0] and "undecided" in notes[0]
     assert read(told("ok"), told("oh"), Speaking(otherwise="xx"))[0] == ["en", "en"]  # a pack not at hand
 
 
 def test_what_nobody_knows_is_told_and_left_to_sound() -> None:
     codes, notes = read(side("Swedish"), side("en", 1))
-    assert codes == [None, "en"] and "(en, de" in notes[0]
+    assert codes == [None, "en"] and "for en, de" in notes[0]
     codes, notes = read(side("Korean"), told("네"))
     assert codes == [None, None] and "not known" in notes[1]
 

@@ -84,7 +84,7 @@ def test_the_next_edit_writes_all_of_it_again(sitting: Sitting, harm) -> None:
     harm(sitting.journal.path)
     sitting.edit("second")
     assert sitting.kept() == "second"
-    assert len(sitting.journal.notes) == 1 and "written again" in str(sitting.journal.notes[0])
+    assert len(sitting.journal.notes) == 1 and "written it again" in str(sitting.journal.notes[0])
     sitting.edit("third")
     assert sitting.kept() == "third" and len(sitting.journal.notes) == 1, "it is said once"
 

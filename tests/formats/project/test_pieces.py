@@ -88,7 +88,7 @@ def test_a_clip_whose_file_is_gone_is_reported_and_comes_without_motion(two: tup
 
 
 def test_a_project_is_not_taken_into_itself(two: tuple[Path, Path]) -> None:
-    with pytest.raises(FileError, match="is this project itself"):
+    with pytest.raises(FileError, match="is the open project itself"):
         read_other_project(two[0], two[0])
 
 

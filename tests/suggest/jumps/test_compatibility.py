@@ -167,7 +167,7 @@ def test_a_clip_that_ends_elsewhere_cannot_be_left(toy: Any) -> None:
     found = propose_times(
         stats, away, transition_costs(stats, away, stance_frames(stats, [(still, 0.0, 1.0)]))
     )
-    assert not found.good and "leaving" in found.reason and "jump" in found.reason
+    assert not found.good and "exit" in found.reason and "jump" in found.reason
 
 
 def test_a_longer_way_is_blended_longer() -> None:

@@ -49,7 +49,7 @@ def test_a_blend_rests_where_it_is_long_enough_for_its_way(wide, action):
 def test_a_stroke_rests_where_the_hand_is_fastest(wide, action):
     speeds, _ = speed_of(wide, action)
     found = snaps_of(wide, action, "stroke", speeds=speeds)
-    assert found[0].why == "as found from the motion"
+    assert found[0].why == "as detected from the motion"
     fastest = [s for s in found if s.why.startswith("fastest here, ")]
     assert fastest and all(0 <= s.at <= 1.5 for s in fastest), "what is outside the action is no place"
 
@@ -57,7 +57,7 @@ def test_a_stroke_rests_where_the_hand_is_fastest(wide, action):
 def test_stresses_and_the_playhead_are_places_for_every_handle(wide, action):
     for handle in ("start", "in", "stroke", "hold", "exit"):
         whys = [s.why for s in snaps_of(wide, action, handle, stresses=[0.7, 99.0], playhead=0.4)]
-        assert whys.count("the line is stressed here") == 1 and "the playhead" in whys
+        assert whys.count("the line has a stress here") == 1 and "the playhead" in whys
 
 
 def test_the_nearest_is_taken_only_within_reach(wide):

@@ -226,7 +226,7 @@ def test_another_layer_and_no_stance_say_so_and_searching_narrows(opened):
     drive.session.place.set_layer("head")
     assert (
         dialog.model.rows is None
-        and "Make a stance first" in dialog.words.text()
+        and "Create a stance first" in dialog.words.text()
         and not dialog.go.isEnabled()
     )
     drive.session.place.set_layer("arms")

@@ -133,7 +133,7 @@ def test_words_of_other_languages_are_shown_by_what_they_stand_for_and_taken_awa
     assert shown(dialog) == [("schulterzucken", "same as", "shrug", "built in")]
     dialog.table.selectRow(0)
     dialog.remove.click()
-    assert shown(dialog) == [("schulterzucken", "same as", "nothing any more", "you")]
+    assert shown(dialog) == [("schulterzucken", "same as", "nothing (removed)", "you")]
     dialog.search.setText("zwischen")
     assert shown(dialog) == []
 
@@ -147,8 +147,8 @@ def test_a_built_in_word_that_is_taken_away_says_so_and_comes_back(dialog: Patte
     dialog.search.clear()
     dialog.every.click()
     assert (
-        shown(dialog) == [("wave", "kind", "nothing any more", "you")]
-        and "nothing any more" in dialog.words.text()
+        shown(dialog) == [("wave", "kind", "nothing (removed)", "you")]
+        and "no longer means anything" in dialog.words.text()
     )
     dialog.table.selectRow(0)
     dialog.remove.click()

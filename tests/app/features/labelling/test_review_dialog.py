@@ -325,7 +325,7 @@ def test_with_everything_placed_there_is_nothing_to_label(practice):
     QTest.mouseClick(dialog.queue.sure, Qt.MouseButton.LeftButton)
     while dialog.current is not None:
         press(dialog, K.Key_Return)
-    assert "Every clip is placed" in dialog.stage.words.text() and dialog.go.text() == "Done"
+    assert "All clips are placed" in dialog.stage.words.text() and dialog.go.text() == "Done"
     assert not drive.actions["propose"].isEnabled()
     dialog.close()
 
@@ -356,10 +356,10 @@ def test_clips_left_aside_stand_at_the_end_with_the_reason_and_are_labelled_all_
     assert not set(aside) & set(dialog.work.clips) and dialog.work.waiting() == list(dialog.work.clips)
     tree = dialog.queue.list
     texts = [tree.topLevelItem(n).text(0) for n in range(tree.topLevelItemCount())]
-    assert texts[len(dialog.work.clips)] == "Left aside (14)" and texts[-1].startswith("–  ")
+    assert texts[len(dialog.work.clips)] == "Skipped (14)" and texts[-1].startswith("–  ")
     walks = next(c for c in aside if "walk" in project.clips[c].name)
     row = next(n for n, text in enumerate(texts) if text.endswith(project.clips[walks].name))
-    assert "left aside" in tree.topLevelItem(row).toolTip(0)
+    assert "skipped" in tree.topLevelItem(row).toolTip(0)
     press(dialog, K.Key_Backtab)  # before the first there is none
     dialog.go_to(dialog.work.clips[-1])
     press(dialog, K.Key_Tab)
@@ -369,8 +369,8 @@ def test_clips_left_aside_stand_at_the_end_with_the_reason_and_are_labelled_all_
     drive.pause(100)
     target, root = dialog.stage.view.camera.target, dialog.stage.shown.pose(dialog.stage.seconds).root
     assert abs(root[0] - target[0]) < 0.6 and abs(root[2] - target[2]) < 0.6  # it is in the picture
-    assert "Left aside" in dialog.stage.words.text() and "walk" in dialog.stage.words.text()
-    assert [row.name for row in dialog.fields.rows] == ["kind"] and dialog.go.text() == "Leave aside"
+    assert "Skipped" in dialog.stage.words.text() and "walk" in dialog.stage.words.text()
+    assert [row.name for row in dialog.fields.rows] == ["kind"] and dialog.go.text() == "Skip"
     assert not dialog.tags.isEnabled()
     press(dialog, K.Key_BracketLeft, K.Key_N, K.Key_Down, K.Key_C, K.Key_C)  # nothing to correct yet
     press(dialog, K.Key_Return)
@@ -414,7 +414,7 @@ def test_when_all_but_those_left_aside_is_placed_that_is_said(toys):
     press(dialog, K.Key_A)
     while dialog.current is not None:
         press(dialog, K.Key_Return)
-    assert "14 clips" in dialog.stage.words.text() and dialog.go.text() == "Done"
+    assert "14 skipped clips" in dialog.stage.words.text() and dialog.go.text() == "Done"
     assert not dialog.queue.bridge.isVisible()  # one stance: there is nothing to bridge
     press(dialog, K.Key_Tab)
     assert dialog.current == dialog.work.aside[0]
@@ -453,7 +453,7 @@ def test_stances_no_clip_leads_to_are_told_after_all_were_accepted_and_bridged_w
     assert drive.document.undo_stack.count() == count + 1
     assert find_missing_bridges(drive.document.project) == []
     drive.wait(lambda: not dialog.queue.bridge.isVisible())
-    assert dialog.queue.parted.text() == "1 transition made by blending."
+    assert dialog.queue.parted.text() == "Added 1 blended transition."
     assert "blended in" in dialog.queue.parted.toolTip()
     press(dialog, K.Key_Backspace)
     assert len(list(drive.document.project.actions())) == placed
@@ -499,7 +499,7 @@ def test_all_clips_are_watched_through_a_correction_holds_and_they_are_accepted_
         if dialog.current is None:
             break
         press(dialog, K.Key_Return)
-    assert "watched" in dialog.stage.words.text() and dialog.work.waiting()
+    assert "Watched" in dialog.stage.words.text() and dialog.work.waiting()
     press(dialog, K.Key_Return)
     assert not dialog.work.waiting() and not dialog.watching.on
     assert drive.document.project.uses[second][0].kind == wanted

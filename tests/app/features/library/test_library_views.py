@@ -310,7 +310,7 @@ def test_a_filter_is_kept_under_a_name_chosen_again_and_deleted(toys, panel, mon
     panel.narrow(layer="arms")
     wanted = [e.id for e in panel.rows.entries]
     panel.menu.fill_kept()
-    toys.pick(panel.menu.kept, "Save this one as…")
+    toys.pick(panel.menu.kept, "Save this filter as…")
     panel.forget()
     assert len(panel.rows.entries) > len(wanted)
     panel.menu.fill_kept()

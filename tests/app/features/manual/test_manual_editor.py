@@ -204,7 +204,7 @@ def test_clips_are_dropped_links_are_dragged_and_all_of_it_plays_is_undone_saved
     )
     drive.actions["export"].trigger()
     dialog = drive.window.findChild(ExportDialog)
-    assert "differs from what was drawn" in dialog.losses.text()
+    assert "differs from the drawn states" in dialog.losses.text()
     dialog.folder.setText(str(tmp_path / "out"))
     assert dialog.go.isEnabled(), dialog.trouble.text()
     QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)

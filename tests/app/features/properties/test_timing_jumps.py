@@ -78,7 +78,7 @@ def test_words_name_cost_and_blend(toy, wide):
         and "times what shows" in words
         and "0.05 s" in words
     )
-    assert " of what shows as a jump" in words_at(wide, action, seen, 2.4)
+    assert "no jump, " in words_at(wide, action, seen, 2.4)
 
 
 def test_a_loop_shows_its_seam(toy, wide):
@@ -92,10 +92,16 @@ def test_a_loop_shows_its_seam(toy, wide):
     ("costs", "words"),
     [
         ({"Begins": 0.1, "ends": 1.0}, "Begins and ends without a jump"),
-        ({"Begins": 0.1, "ends": 2.71}, "Begins without a jump, ends 2.7 times what shows as one"),
-        ({"Begins": 1.2, "ends": 0.3}, "Begins 1.2 times what shows as a jump, ends without one"),
-        ({"Repeats": 0.0}, "Repeats without a jump"),
-        ({"Repeats": 1.6}, "Repeats 1.6 times what shows as a jump"),
+        (
+            {"Begins": 0.1, "ends": 2.71},
+            "Begins without a jump, ends with one, 2.7 times the visible threshold",
+        ),
+        (
+            {"Begins": 1.2, "ends": 0.3},
+            "Begins with a jump, 1.2 times the visible threshold, ends without one",
+        ),
+        ({"Repeats": 0.0}, "Loops smoothly"),
+        ({"Repeats": 1.6}, "Loop seam jumps, 1.6 times the visible threshold"),
     ],
 )
 def test_the_verdict_is_one_sentence(costs, words):

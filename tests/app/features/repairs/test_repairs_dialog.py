@@ -78,7 +78,7 @@ def test_an_import_tells_each_repair_and_one_is_left_out_in_one_step(drive, fold
     assert project.clips["c1"].frames == before + 1 and project.clips["c1"].as_is == ("bind_pose",)
     assert project.clips["c2"].as_is == ()
     assert not dialog.go.isEnabled()
-    assert drive.document.undo_stack.undoText() == "Leave out 1 repair"
+    assert drive.document.undo_stack.undoText() == "Revert 1 repair"
     drive.actions["undo"].trigger()
     assert drive.document.project.clips["c1"].frames == before
 
@@ -163,4 +163,4 @@ def test_clips_without_repairs_say_so(drive, toy, tmp_path):
     assert not shown(drive) and not drive.notice.isVisible()
     drive.actions["repairs"].trigger()
     (dialog,) = shown(drive)
-    assert "Nothing had to be put right" in dialog.words.text()
+    assert "needed no repairs" in dialog.words.text()

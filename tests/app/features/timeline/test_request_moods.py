@@ -44,6 +44,6 @@ def test_moods_can_be_asked_for_and_are_told_in_words(drive: Any) -> None:
     menu = make_request_menu(drive.timeline, drive.performance, 1.0, "stage")
     if not menu.isEmpty() and menu.actions()[0].isEnabled():
         names = [x.text() for x in menu.actions() if x.menu() is not None]
-        assert "Be in a mood" in names
+        assert "Mood" in names
     menu.close()
     assert describe_mood("sad", 1.5) == "sad × 1.5" and describe_mood((0.3, -0.5), None) == "mood 0.3, -0.5"

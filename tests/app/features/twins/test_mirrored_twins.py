@@ -54,7 +54,7 @@ def test_an_action_gets_a_twin_of_the_other_side_that_is_selected_and_told(saved
     assert entry.path == f"{FOLDER}/wave lf.glb" and (drive.place / entry.path).is_file()
     assert entry.name == "wave lf" and len(entry.digest) == 64
     message = drive.window.statusBar().currentMessage()
-    assert message.startswith("1 mirrored twin: wave lf. Written to ")
+    assert message.startswith("Made 1 mirrored twin: wave lf. Saved in ")
     first = drive.document.project.clips[drive.action("wave rt").clip].motion
     skeleton = first.skeleton
     left, right = skeleton.index("LeftHand"), skeleton.index("RightHand")
