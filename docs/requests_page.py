@@ -1,4 +1,4 @@
-"""The page on requests that exports carry beside a runtime, cut from `agents/live.md`: `python
+"""The page on requests that exports carry beside a runtime, made of pages in `agents/`: `python
 docs/requests_page.py`.
 """
 
@@ -9,7 +9,8 @@ from pathlib import Path
 
 from metagraph import engines
 
-LIVE = Path(__file__).with_name("agents") / "live.md"
+AGENTS = Path(__file__).with_name("agents")
+PARTS = ("requests", "moods", "speech")  # what every runtime takes
 PAGE = Path(engines.__file__).with_name("runtimes") / "requests.md"
 SESSION_ONLY = {
     "bml",
@@ -26,12 +27,14 @@ SESSION_ONLY = {
 
 
 def page() -> str:
-    """Return the page: what `agents/live.md` says of requests that every runtime takes."""
-    text = LIVE.read_text(encoding="utf-8")
-    section = text[text.index("\n## Requests\n") : text.index("\n## Replies\n")]
-    lines = [line for line in section.splitlines() if not _of_sessions(line)]
-    body = "\n".join(lines[lines.index("Every ask may have these fields:") :])
-    body = re.sub(r"\[([^\]]+)\]\([^)]*\)", r"\1", body)  # pages that are not there
+    """Return the page: what `agents/` says of requests that every runtime takes."""
+    requests, *others = ((AGENTS / f"{part}.md").read_text(encoding="utf-8") for part in PARTS)
+    requests = requests[requests.index("\n## Fields of every request\n") :]
+    parts = [requests, *(re.sub(r"^#", "##", _without_aim(text), flags=re.M) for text in others)]
+    lines = [
+        line for line in "\n\n".join(part.strip() for part in parts).splitlines() if not _of_sessions(line)
+    ]
+    body = re.sub(r"\[([^\]]+)\]\([^)#]+[^)]*\)", r"\1", "\n".join(lines))  # pages that are not there
     return f"""# Requests
 
 What may be asked of a character, as objects whose `do` says which; `after` counts seconds from now and wins
@@ -39,6 +42,11 @@ over `at`. `describe` tells what there is to ask for.
 
 {body.strip()}
 """
+
+
+def _without_aim(text: str) -> str:
+    """Return a page without the sentence on what its reader can do."""
+    return re.sub(r"\n\nAfter this page .*?(?=\n\n)", "", text, count=1, flags=re.S)
 
 
 def _of_sessions(line: str) -> bool:

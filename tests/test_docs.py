@@ -17,8 +17,9 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from app.cli.parser import main
+from app.cli.parser import COMMANDS, main
 from metagraph.engines import vectors
+from metagraph.engines.targets import registry
 from metagraph.formats.language_files import read_pack
 from metagraph.formats.store import parse_project
 from metagraph.research.study.perceive.perceive_plan import PerceivePlan
@@ -189,6 +190,58 @@ def test_the_page_of_requests_that_exports_carry_is_what_the_docs_say() -> None:
     assert written["PAGE"].read_text(encoding="utf-8") == written["page"]()
 
 
+RUNTIMES = ROOT / "metagraph" / "engines" / "runtimes"
+RUN_AS_TEST = ROOT / "tests" / "engines" / "run"
+SHOWN_ELSEWHERE = ("js", "html", "gdscript", "csharp", "cpp", "py")
+
+
+@pytest.mark.parametrize("page", sorted((ROOT / "docs" / "engines").glob("*.md")), ids=lambda page: page.name)
+def test_first_lines_for_engines_are_lines_that_tests_run(page: Path) -> None:
+    """Those of READMEs are run, compiled or parsed by the runtimes' tests; the others are parts of these."""
+    run = {code for readme in RUNTIMES.rglob("README.md") for _, code in blocks(readme)}
+    drivers = "".join(path.read_text(encoding="utf-8") for path in sorted(RUN_AS_TEST.glob("*.mjs")))
+    guide = (ROOT / "metagraph" / "engines" / "targets" / "unity_controller.py").read_text(encoding="utf-8")
+    for language, code in blocks(page):
+        if language not in SHOWN_ELSEWHERE or code in run:
+            continue
+        if "SetTrigger" in code:  # numbers and names are the project's
+            assert all(line.split("(")[0] in guide for line in code.splitlines()), code
+        else:
+            assert all(line in drivers for line in code.splitlines()), code
+
+
+def test_every_target_is_in_the_table_and_exported_on_a_page() -> None:
+    pages = {p.name: p.read_text(encoding="utf-8") for p in (ROOT / "docs" / "engines").glob("*.md")}
+    rows = re.findall(r"^\| `([\w-]+)` \| .*\]\(([\w-]+\.md)", pages["index.md"], re.M)
+    assert sorted(name for name, _ in rows) == sorted(registry.targets())
+    for name, page in rows:
+        assert name == registry.DEFAULT or f"--target {name}" in pages[page], name
+        (row,) = (line for line in pages["index.md"].splitlines() if line.startswith(f"| `{name}` |"))
+        if registry.target(name).untried:
+            assert re.search(r"\bnot (at hand|run)\b", row), name
+
+
+def test_readmes_of_runtimes_name_no_file_that_is_not_there() -> None:
+    """Files in backticks beside the user's own (sample.*) are the runtime's, or are told to be made."""
+    for readme in RUNTIMES.rglob("README.md"):
+        text = BLOCK.sub("", readme.read_text(encoding="utf-8"))
+        for name in re.findall(r"`([\w./-]+\.(?:m?js|gd|cs|hpp|py))`", text):
+            folders = (readme.parent, readme.parent / "addons" / "metagraph", RUNTIMES / "web")
+            made = name == "metagraph-character.js"  # by the export, of modules
+            there = any((f / name).is_file() or [*f.rglob(Path(name).name)] for f in folders)
+            assert made or there, (readme, name)
+
+
+def test_the_pages_of_commands_are_what_the_parsers_say() -> None:
+    """Else: `.venv/bin/python docs/command_line_page.py`."""
+    written = runpy.run_path(str(ROOT / "docs" / "command_line_page.py"))["pages"]()
+    assert len(written) == 2
+    for path, text in written.items():
+        assert path.read_text(encoding="utf-8") == text, path.name
+    every = "".join(written.values())
+    assert not [name for name in COMMANDS if f"## metagraph {name}\n" not in every]
+
+
 def test_the_readme_shows_the_window_and_the_pictures_are_pictures() -> None:
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     assert "docs/images/screens/graph-1680x1050-dark.webp" in text
@@ -199,11 +252,9 @@ def test_the_readme_shows_the_window_and_the_pictures_are_pictures() -> None:
 
 
 def test_every_field_of_the_schema_is_described() -> None:
-    text = (ROOT / "docs" / "reference" / "format.md").read_text(encoding="utf-8")
     schema = json.loads((ROOT / "metagraph" / "engines" / "metagraph.schema.json").read_bytes())
-    export = text[text.index("## The export") : text.index("## Composing poses")]
-    asks = (ROOT / "docs" / "agents" / "live.md").read_text(encoding="utf-8")
-    export += asks[asks.index("## Requests") : asks.index("## Replies")]
+    pages = ("reference/export", "reference/export-rigs", "agents/requests", "agents/moods", "agents/speech")
+    export = "".join((ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8") for page in pages)
     fields = {name for part in schema["$defs"].values() for name in part["properties"]}
     assert not {f for f in fields if not re.search(rf"`{f}[\[`]", export)}
     assert not {part for part in schema["$defs"] if part not in export}
@@ -231,9 +282,20 @@ def test_every_field_of_a_perceptual_study_is_described() -> None:
 def test_every_field_of_a_project_file_is_described() -> None:
     from metagraph.formats.project import data
 
-    text = (ROOT / "docs" / "reference" / "format.md").read_text(encoding="utf-8")
+    pages = ("project-file", "export")  # actions have the export's fields
+    text = "".join((ROOT / "docs" / "reference" / f"{p}.md").read_text(encoding="utf-8") for p in pages)
     fields = data._PROJECT_FIELDS | data._CLIP_FIELDS | data._ACTION_FIELDS
     assert not {f for f in fields if not re.search(rf"(`{f}`|^{f}:|[{{ ]{f}: )", text, re.M)}
+
+
+def test_random_generators_are_only_where_the_page_on_randomness_says() -> None:
+    text = (ROOT / "docs" / "reference" / "randomness.md").read_text(encoding="utf-8")
+    using = {
+        path.relative_to(ROOT).parts[1]
+        for path in (ROOT / "metagraph").rglob("*.py")
+        if re.search(r"default_rng\(|\brandom\.Random\(|manual_seed\(", path.read_text(encoding="utf-8"))
+    }
+    assert using == set(re.findall(r"`metagraph\.(\w+)`", text))
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

@@ -70,6 +70,7 @@ TABLE_OF_THE_TREE = DOCS / "contributing" / "architecture.md"
 MADE_UP = (
     "greeting",
     "_",
+    "metagraph/metagraph.hpp",  # in an export
 )  # what recipes tell readers to make: app/features/greeting, tests/formats/test_<format>.py
 IN_TESTS = "papers.md"  # whose tests are named from tests/ on; tests/test_papers.py reads them
 

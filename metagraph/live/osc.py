@@ -1,5 +1,5 @@
 """OSC over UDP: messages in, and for those who ask replies, events and poses out. The addresses are listed in
-docs/agents/live.md.
+docs/agents/osc.md.
 """
 
 from __future__ import annotations

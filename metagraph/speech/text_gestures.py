@@ -78,7 +78,7 @@ def read_gesture_words(path: str | Path) -> GestureWords:
             path,
             f"it is no lexicon of gestures ({error})",
             "its content",
-            "See docs/agents/live.md, 'Words to gestures'.",
+            "See docs/agents/text-to-gestures.md.",
         ) from None
 
 

@@ -1,7 +1,8 @@
 """How large an export is beside the state machine it stands for: python tests/benchmarks/bench_export_size.py
 
 Graphs of 10 to 10,000 actions in the proportions of the sample project, its number of stances growing with
-the square root. Prints the table of docs/reference/format.md, with medians of five writings and readings.
+the square root. Prints the table of docs/reference/export-size.md, with medians of five writings and
+readings.
 """
 
 from __future__ import annotations

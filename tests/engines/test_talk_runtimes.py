@@ -293,7 +293,7 @@ def test_a_lexicon_that_is_none_is_an_error_with_a_remedy_in_c_sharp(core: Path,
     )
     program = csharp_runtime.compiled(core.with_name("none.exe"), source, references=(core,))
     told = csharp_runtime.mono(program).stdout
-    assert "'rules' should be a list" in told and "docs/agents/live.md" in told
+    assert "'rules' should be a list" in told and "docs/agents/text-to-gestures.md" in told
 
 
 @cpp_program.needs_compiler

@@ -1,4 +1,4 @@
-"""What docs/agents/live.md says of the live session is true, and its clients run."""
+"""What docs/agents/ says of the live session is true, and its clients run."""
 
 from __future__ import annotations
 
@@ -20,12 +20,17 @@ from metagraph.live.live_session import LiveSession
 from tests.processes import metagraph, started
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGE = (ROOT / "docs" / "agents" / "live.md").read_text(encoding="utf-8")
+AGENTS = ROOT / "docs" / "agents"
+PAGE = "\n".join(path.read_text(encoding="utf-8") for path in sorted(AGENTS.glob("*.md")))
 CLIENTS = ROOT / "docs" / "clients"
 
 
-def section(title: str) -> str:
-    return PAGE.split(f"\n## {title}\n")[1].split("\n## ")[0]
+def page(name: str) -> str:
+    return (AGENTS / f"{name}.md").read_text(encoding="utf-8")
+
+
+def section(name: str, title: str) -> str:
+    return page(name).split(f"\n## {title}\n")[1].split("\n## ")[0]
 
 
 def test_the_published_schemas_are_those_of_the_code() -> None:
@@ -34,7 +39,7 @@ def test_the_published_schemas_are_those_of_the_code() -> None:
 
 
 def test_every_request_and_its_fields_are_in_the_table() -> None:
-    rows = section("Requests")
+    rows = page("requests")
     common = {"id", "at", "in", "priority", "told", "do"}
     parts = messages.live_schema()["$defs"]
     for name in (ref["$ref"].rpartition("/")[2] for ref in parts["Request"]["anyOf"]):
@@ -50,7 +55,7 @@ def test_every_request_and_its_fields_are_in_the_table() -> None:
 def test_what_synthesisers_tell_is_said_as_the_page_shows_it(sample: Project) -> None:
     session = LiveSession(sample, idle=False)
     session.join(1)
-    blocks = re.findall(r"```jsonl\n(.*?)```", section("Speech synthesisers"), re.S)
+    blocks = re.findall(r"```jsonl\n(.*?)```", page("speech"), re.S)
     lines = [line for block in blocks for line in block.splitlines()]
     assert len(lines) == 7
     for n, line in enumerate(lines):
@@ -61,16 +66,16 @@ def test_what_synthesisers_tell_is_said_as_the_page_shows_it(sample: Project) ->
     assert speech.text == "Hello there my friend"
 
 
-@pytest.mark.parametrize(("part", "title"), [("Reply", "Replies"), ("Event", "Events"), ("Poses", "Poses")])
+@pytest.mark.parametrize(("part", "title"), [("Reply", "Replies"), ("Event", "Events"), ("Poses", "")])
 def test_every_field_that_is_sent_back_is_described(part: str, title: str) -> None:
-    text = section(title)
+    text = section("replies", title) if title else page("poses")
     assert not [
         field for field in messages.live_schema()["$defs"][part]["properties"] if f"`{field}`" not in text
     ]
 
 
 def test_every_address_is_listed_and_understood() -> None:
-    text = section("OSC")
+    text = page("osc")
     for word in re.findall(r"`/metagraph/(\w+)`", text):
         if word in ("pose", "root", "joint", "weight", "reply", "event", "json", "replies"):
             continue
@@ -82,7 +87,7 @@ def test_every_address_is_listed_and_understood() -> None:
 
 
 def test_the_limits_are_the_codes() -> None:
-    text = section("Limits")
+    text = page("access")
     kib = 1024
     for number in (
         f"{messages.LONGEST // kib} KiB",
@@ -99,13 +104,15 @@ def test_the_limits_are_the_codes() -> None:
         f"{tape.MOST // kib // kib} MiB",
     ):
         assert number in text, number
-    assert f"up to {messages.FASTEST:g}" in section("Poses") and f"within {hub.PROVE:g} seconds" in section(
-        "Who may ask"
-    )
+    assert f"up to {messages.FASTEST:g}" in page("poses")
+    assert f"within {hub.PROVE:g} seconds" in section("access", "Who may ask")
 
 
 def test_the_examples_are_json_as_it_is_sent() -> None:
-    reply, pose, client = (json.loads(x) for x in re.findall(r"^```json\n(.*?)\n```$", PAGE, re.S | re.M))
+    (reply,), (pose,), (client,) = (
+        [json.loads(x) for x in re.findall(r"^```json\n(.*?)\n```$", page(name), re.S | re.M)]
+        for name in ("index", "poses", "language-models")
+    )
     (command,) = client["mcpServers"].values()
     assert command["command"] == "metagraph" and _parser("live").parse_args(command["args"]).mcp
     assert set(reply) <= set(messages.Reply.__struct_fields__) and {

@@ -44,7 +44,7 @@ def test_a_voice_begins_is_stressed_where_it_is_highest_and_ends() -> None:
     assert [n.what for _, n in news] == ["begins", "stress", "stress", "ends"]
     assert np.allclose([n.at for _, n in news], [10.5, 11.1, 11.9, 12.5], atol=0.06)
     late = [at - n.at for at, n in news]
-    assert late[0] <= 0.09 and max(late[1:3]) <= 0.2 and late[3] <= 0.25  # as docs/agents/live.md says
+    assert late[0] <= 0.09 and max(late[1:3]) <= 0.2 and late[3] <= 0.25  # as docs/agents/long-takes.md says
 
 
 def test_noise_that_begins_while_somebody_speaks_does_not_speak_on() -> None:

@@ -13,7 +13,10 @@ from metagraph.engines.targets.target import ExportedFiles, ExportOrder, ExportT
 from metagraph.errors import FileError
 
 RUNTIMES = Path(engines.__file__).with_name("runtimes")
-REQUESTS = "../../../../docs/agents/live.md"  # where a README finds them here; an export carries them along
+REQUESTS = (
+    "../../../../docs/agents/requests.md"  # where a README finds them here; an export carries them along
+)
+SPEECH = "../../../../docs/agents/speech.md"
 BML = Loss(phrase("requests in Behaviour Markup Language are read by the desktop alone"))
 
 
@@ -44,10 +47,11 @@ def copy_runtime(source: Path, target: Path, leave: tuple[str, ...] = ()) -> lis
             place.parent.mkdir(parents=True, exist_ok=True)
             if path.name == "README.md":
                 text = path.read_text(encoding="utf-8")
-                if REQUESTS in text:
+                if REQUESTS in text or SPEECH in text:
                     page = place.with_name("requests.md")
                     shutil.copyfile(RUNTIMES / page.name, page)
                     out.append(page)
+                text = text.replace(SPEECH, "requests.md#speech-synthesisers")
                 place.write_text(text.replace(REQUESTS, "requests.md"), encoding="utf-8")
             else:
                 shutil.copyfile(path, place)

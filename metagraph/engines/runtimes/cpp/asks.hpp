@@ -1,4 +1,4 @@
-// What can be asked of a character, as JSON: `do` says which ask it is; docs/agents/live.md describes all of them. Times are
+// What can be asked of a character, as JSON: `do` says which ask it is; docs/agents/requests.md describes all of them. Times are
 // seconds, points metres in the character's space (Y up, the character looks along +Z).
 #pragma once
 

@@ -12,7 +12,7 @@ struct Manner {
     double saccades = 1.0, saccade_rate = 1.0, blinks = 1.0;
 };
 
-/// The settings; docs/reference/format.md says what each means. manners: of idle, listening, talking.
+/// The settings; docs/reference/export-rigs.md says what each means. manners: of idle, listening, talking.
 struct Life {
     bool on = true;
     double stillness = 0.0, breathing = 1.0, breath_rate = 14.0, gaze = 1.0, head_share = 0.6;

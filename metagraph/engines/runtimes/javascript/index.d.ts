@@ -22,7 +22,7 @@ export interface Felt {
   intensity?: number | null;
 }
 
-/** What can be asked for; docs/agents/live.md says what each means. */
+/** What can be asked for; docs/agents/requests.md says what each means. */
 export type Ask = Common &
   (
     | ({

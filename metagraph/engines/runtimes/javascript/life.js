@@ -2,7 +2,7 @@
 
 import { MODES, inRange } from "./words.js";
 
-/** The life layers' settings: the usual where the export says nothing, the least and the most; docs/reference/format.md says what each means. */
+/** The life layers' settings: the usual where the export says nothing, the least and the most; docs/reference/export-rigs.md says what each means. */
 const LIFE = {
   stillness: [0, 0, 1], breathing: [1, 0, 2], breath_rate: [14, 0, 40], gaze: [1, 0, 1], head_share: [0.6, 0, 1], aversion_rate: [12, 0, 40],
   aversion_length: [0.93, 0, 5], aversion_angle: [14, 0, 40], saccades: [1, 0, 2], saccade_rate: [60, 0, 180], lids: [1, 0, 2],

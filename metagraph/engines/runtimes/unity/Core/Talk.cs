@@ -53,7 +53,7 @@ namespace Metagraph
             var fields = Json.Parse(own ?? known) as JsonObject;
             if (fields == null || !(Field(fields, "rules") is List<object>))
             {
-                throw new MetagraphException("the lexicon", "'rules' should be a list", "See docs/agents/live.md, 'Words to gestures'");
+                throw new MetagraphException("the lexicon", "'rules' should be a list", "See docs/agents/text-to-gestures.md");
             }
             List<GestureRule> rules = ((List<object>)fields["rules"]).Select(Rule).ToList();
             var words = new GestureWords(

@@ -1,4 +1,4 @@
-# The life layers' dials and what each mode makes of them, see docs/reference/format.md.
+# The life layers' dials and what each mode makes of them, see docs/reference/export-rigs.md.
 
 const DIALS = {
 	on = true, stillness = 0.0, breathing = 1.0, breath_rate = 14.0, gaze = 1.0, head_share = 0.6, aversion_rate = 12.0,
