@@ -165,7 +165,7 @@ def timing() -> None:
     out = on_sample(size=(1680, 1050))
     found = selected(out, "shrug_bt_01")
     out.document.edit("Hold", lambda p: set_hold(p, found.clip, 0.95, 0.4))
-    out.document.edit("Keep hand", lambda p: keep_hand(p, found.clip, "right", 0.6, 0.95))
+    out.document.edit("Pin hand", lambda p: keep_hand(p, found.clip, "right", 0.6, 0.95))
     out.workspaces.choose("time")
     subject = out.shell.panel("timing").subject
     subject.show(onion=True, dope=True, heard=next(iter(out.document.project.lines)))

@@ -67,7 +67,7 @@ LIGHTS: Mapping[str, Light | None] = {
         dark=0.9,
     ),
     "rim": Light(
-        "Rim, from behind",
+        "Rim light, from behind",
         toward=(0.55, 0.75, -0.62),
         key=(1.20, 1.22, 1.28),
         above=(0.42, 0.45, 0.52),
@@ -99,9 +99,9 @@ BACKDROPS: Mapping[str, BackdropLook | None] = {
     "neutral": _plain("Neutral grey, for recording", (0.46, 0.46, 0.46)),
     "white": _plain("White", (1.0, 1.0, 1.0)),
     "black": _plain("Black", (0.0, 0.0, 0.0)),
-    "green": _plain("Green, to be cut out", (0.0, 0.69, 0.25), False),
+    "green": _plain("Green, for keying", (0.0, 0.69, 0.25), False),
 }
-NAMES_OF_KEPT = {STUDIO: "Studio", STAGE: "Stage, as the window"}
+NAMES_OF_KEPT = {STUDIO: "Studio", STAGE: "Stage, as in the window"}
 
 
 def look_name(name: str) -> str:

@@ -79,7 +79,7 @@ def describe_jumps(project: Project, judged: JudgedJumps) -> dict[Problem, Fix |
             continue  # it went meanwhile
         if jump.edge == "loops":
             words = tr(
-                "'{name}' jumps where it repeats, {cost:.1f} times what shows as a jump",
+                "'{name}' has a visible jump at its loop seam: {cost:.1f} times the limit",
                 name=action.name,
                 cost=jump.cost,
             )
@@ -87,14 +87,14 @@ def describe_jumps(project: Project, judged: JudgedJumps) -> dict[Problem, Fix |
             name, far, of = action.name, jump.cost, stance.name
             words = (
                 tr(
-                    "'{name}' begins {far:.1f} times what shows as a jump from '{of}'",
+                    "'{name}' begins with a visible jump from '{of}': {far:.1f} times the limit",
                     name=name,
                     far=far,
                     of=of,
                 )
                 if jump.edge == "begins"
                 else tr(
-                    "'{name}' ends {far:.1f} times what shows as a jump from '{of}'",
+                    "'{name}' ends with a visible jump to '{of}': {far:.1f} times the limit",
                     name=name,
                     far=far,
                     of=of,
@@ -118,9 +118,10 @@ def _few(layer: Layer, measured: Measured) -> Problem:
 
     much = tr_plural("{count:,} clip", "{count:,} clips", measured.labelled)
     if measured.labelled >= FEWEST_CLIPS:
-        much += tr(" of together {seconds:.0f} s", seconds=measured.stats.count / RATE)
+        much += tr(" ({seconds:.0f} s in total)", seconds=measured.stats.count / RATE)
     words = tr(
-        "jumps of the {layer} layer are not looked for: {much} cannot tell what is usual motion",
+        "jumps in the {layer} layer are not checked: {much} are too few to learn what normal "
+        "motion looks like",
         layer=tr(layer),
         much=much,
     )
@@ -129,7 +130,7 @@ def _few(layer: Layer, measured: Measured) -> Problem:
         "few-clips",
         words,
         tr(
-            "Place at least {count} clips, ten seconds in all, on this layer.",
+            "Place at least {count} clips with ten seconds in total on this layer.",
             count=FEWEST_CLIPS,
         ),
         layer,
@@ -139,21 +140,21 @@ def _few(layer: Layer, measured: Measured) -> Problem:
 def _remedy(project: Project, action: Action, jump: Jump) -> tuple[str, Fix | None]:
     fits = project.stance(jump.fits)
     if jump.better is not None:
-        return tr("At {seconds:.2f} s it would not.", seconds=jump.better), Fix(
+        return tr("At {seconds:.2f} s it would not jump.", seconds=jump.better), Fix(
             tr("Use {seconds:.2f} s", seconds=jump.better), action.id, {"timing": dict(jump.change)}
         )
     if fits is not None and action.kind == "transition" and jump.edge == "ends" and fits.id != action.stance:
-        return tr("It looks like '{name}' there: end it in that stance.", name=fits.name), Fix(
+        return tr("It looks like '{name}' there. End it in that stance.", name=fits.name), Fix(
             tr("End in '{name}'", name=fits.name), action.id, end=fits.id
         )
     if jump.change:
         seconds = next(iter(jump.change.values()))
-        return tr("Blended over {seconds:.2f} s it would not.", seconds=seconds), Fix(
+        return tr("With a blend of {seconds:.2f} s it would not jump.", seconds=seconds), Fix(
             tr("Blend {seconds:.2f} s", seconds=seconds), action.id, {"timing": dict(jump.change)}
         )
     if fits is not None:
-        return tr("It looks like '{name}' there: place it on that stance.", name=fits.name), None
-    return tr("Trim it, blend it longer, or place it on a stance it fits."), None
+        return tr("It looks like '{name}' there. Move it to that stance.", name=fits.name), None
+    return tr("Trim it, lengthen its blend, or move it to a stance that it fits."), None
 
 
 def merge_problems(problems: Iterable[Problem], flags: Iterable[Problem]) -> tuple[Problem, ...]:
@@ -246,7 +247,7 @@ class Compatibility(QObject):
 
     def _gave_up(self, error: Exception) -> None:
         self._over()
-        self.failed.emit(tr("Jumps could not be looked for: {error}", error=error))
+        self.failed.emit(tr("Jumps could not be checked: {error}", error=error))
 
     def _done(self, result: tuple[JudgedJumps, dict[Problem, Fix | None]]) -> None:
         self._over()
@@ -321,7 +322,7 @@ class Compatibility(QObject):
                 self.document.edit(tr("Use proposed times"), lambda p: edits.update_each(p, changes))
 
         self.jobs.start(
-            tr("Proposing times"), work, done, lambda e: self.failed.emit(str(e)), quick=len(chosen) < 20
+            tr("Finding better times"), work, done, lambda e: self.failed.emit(str(e)), quick=len(chosen) < 20
         )
 
     def mend(self, fixes: Iterable[Fix]) -> None:
@@ -334,7 +335,11 @@ class Compatibility(QObject):
             return project
 
         if todo:
-            text = todo[0].words if len(todo) == 1 else tr("Mend {count} problems", count=len(todo))
+            text = (
+                todo[0].words
+                if len(todo) == 1
+                else tr_plural("Fix {count:,} problem", "Fix {count:,} problems", len(todo))
+            )
             self.document.edit(text, all_of)
 
     # --- matrices

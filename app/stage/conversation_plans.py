@@ -95,11 +95,14 @@ class ConversationPlans:
             try:
                 found = open_whole(whole)
             except (FileError, OSError) as error:
-                notes.append(tr("{error} This side moves with the graph at hand.", error=error))
+                notes.append(tr("{error} This speaker uses the graph of this project instead.", error=error))
                 return project
             if found.project.skeleton is None:
                 notes.append(
-                    tr("{name} has no clips: this side moves with the graph at hand.", name=whole.name)
+                    tr(
+                        "{name} has no clips. This speaker uses the graph of this project instead.",
+                        name=whole.name,
+                    )
                 )
                 return project
             self._projects[key] = found.project
@@ -114,7 +117,11 @@ class ConversationPlans:
         whole = folder / path
         if not whole.is_file():
             notes.append(
-                tr("There is no character at {whole}. This side is drawn with its project's.", whole=whole)
+                tr(
+                    "There is no character at {whole}. This speaker uses the character of their project "
+                    "instead.",
+                    whole=whole,
+                )
             )
             return project
         drawn = replace(project, character=str(whole), hidden=())
@@ -132,8 +139,8 @@ def _motion(project: Project, side: Side, notes: list[str]) -> str | None:
     if entry is None or entry.motion is None or entry.motion.skeleton != project.skeleton:
         notes.append(
             tr(
-                "The new motion of {name} is missing: it moves with its graph.",
-                name=side.name or tr("a side"),
+                "The new motion of {name} is missing. The graph's motion is used instead.",
+                name=side.name or tr("a speaker"),
             )
         )
         return None

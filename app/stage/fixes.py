@@ -81,6 +81,6 @@ def fix_unreachable(project: Project, problems: Iterable[Problem]) -> dict[Probl
             after, made = bridges.bridge_stance(project, problem.stance)
             if made:
                 tip = "; ".join(bridges.describe_bridges(after, made))
-                words = tr("{what}. One step that can be undone", what=tip[:1].upper() + tip[1:])
+                words = tr("{what}. You can undo this in one step.", what=tip[:1].upper() + tip[1:])
                 out[problem] = Fix(tr(BRIDGE), stance=problem.stance, tip=words)
     return out

@@ -167,7 +167,7 @@ class Sound(QObject):
             self.told.emit(
                 tr("No sound: {cause}. On Debian and Ubuntu: apt install libportaudio2", cause=cause)
                 if missing
-                else tr("No sound: {cause}. Is a sound device there?", cause=cause)
+                else tr("No sound: {cause}. Check that a sound device is connected.", cause=cause)
             )
             return False
         return True

@@ -220,13 +220,13 @@ class LiveStage(QObject):
     def words(self) -> str:
         """Say who can connect and how busy it is."""
         if self.error:
-            return tr("Live, but nobody can connect: {error}", error=self.error)
+            return tr("Live, but no program can connect: {error}", error=self.error)
         ready = self.relay.ready if self.relay is not None else None
         if ready is None:
-            return tr("Live, opening the lines…")
+            return tr("Going live…")
         clients = len(self.session.clients) - 1
         who = (
-            tr("nobody is connected yet")
+            tr("no clients connected")
             if clients == 0
             else tr(
                 "{clients}, {rate:.0f} requests/s",
@@ -235,7 +235,7 @@ class LiveStage(QObject):
             )
         )
         lacks = (
-            tr("; its takes make no motion graph: {error}", error=self.graph_error)
+            tr("; no motion graph can be built from its takes: {error}", error=self.graph_error)
             if self.graph_error
             else ""
         )

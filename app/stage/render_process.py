@@ -110,7 +110,7 @@ def write_rendering(project: Project, folder: Path, wanted: RenderOrder, job: Wi
             raise RuntimeError(
                 said[-1].removeprefix("metagraph: ")
                 if said
-                else tr("the drawing process ended without a word")
+                else tr("the render process stopped without an error message")
             )
     return wanted.out
 

@@ -12,7 +12,7 @@ from app.look.plural import list_in_words
 from app.project.document import Document
 from app.stage.live_control import LiveControl
 from app.stage.session import StageSession
-from app.translation import tr, tr_error
+from app.translation import tr, tr_error, tr_plural
 from metagraph.graph.edit_error import EditError
 from metagraph.graph.editing import performances as performance_edits
 from metagraph.graph.model import Project
@@ -65,7 +65,9 @@ class RequestEdits:
         still = self.still()
         out = tuple(i for i in idents if i not in still)
         if len(out) < len(idents):
-            self.document.failed.emit(tr("Their layer is locked: the padlock beside its name opens it."))
+            self.document.failed.emit(
+                tr("The layer of these requests is locked. To unlock it, click the padlock beside its name.")
+            )
         return out
 
     def with_following(self, idents: tuple[str, ...]) -> tuple[str, ...]:
@@ -95,7 +97,7 @@ class RequestEdits:
                 project, made = performance_edits.add_performance(project, kept)
             return performance_edits.add_request(project, made, ask)
 
-        self.document.edit(text or tr("Ask for something"), edit)
+        self.document.edit(text or tr("Add request"), edit)
         self.session.onstage.set_performance(made)
         if made is not None:
             self.session.onstage.select_requests((self.document.project.performances[made].asks[-1].id,))
@@ -135,9 +137,7 @@ class RequestEdits:
                 project, stage, {x.id for x in project.performances[stage].asks[number:]}, by
             )
 
-        self.document.edit(
-            tr("Copy request") if len(copies) == 1 else tr("Copy {count} requests", count=len(copies)), edit
-        )
+        self.document.edit(tr_plural("Copy {count:,} request", "Copy {count:,} requests", len(copies)), edit)
         self.session.onstage.select_requests(tuple(x.id for x in (self.kept or kept).asks[number:]))
 
     def withdraw(self, *idents: str) -> None:
@@ -148,7 +148,7 @@ class RequestEdits:
         gone = self.free(idents or tuple(x.id for x in kept.asks))
         if gone:
             self.document.edit(
-                tr("Withdraw request"), lambda p: performance_edits.remove_requests(p, stage, gone)
+                tr("Remove request"), lambda p: performance_edits.remove_requests(p, stage, gone)
             )
 
     def to_clipboard(self, idents: tuple[str, ...], cut: bool = False) -> None:
@@ -170,7 +170,7 @@ class RequestEdits:
         text = QGuiApplication.clipboard().text()
         at, done = round(self.session.transport.seconds, 3), cast("Pasted | None", None)
         if self.live.stage is not None or not holds_requests(text):
-            self.document.failed.emit(tr("There are no requests on the clipboard."))
+            self.document.failed.emit(tr("The clipboard contains no requests."))
             return
         stage = self.session.onstage.performance
 
@@ -213,6 +213,6 @@ class RequestEdits:
         ]
         still = self.still()
         self.document.edit(
-            tr("Withdraw request and close up"),
+            tr("Remove request and close the gap"),
             lambda p: performance_edits.close_up_after(p, stage, gone, spans, still),
         )

@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject, Signal
 
 from app.project.document import Document
 from app.stage.session import StageSession
-from app.translation import tr
+from app.translation import tr, tr_plural
 from metagraph.graph import timeline_edits as notes
 from metagraph.graph.conversation.model import Conversation
 from metagraph.graph.model import Project
@@ -149,7 +149,7 @@ class TimelineEdits(QObject):
     def remove_marker(self, *idents: str) -> None:
         """Take markers away; all where none is named."""
         key, gone = self.key, idents or tuple(m.id for m in self.now.markers)
-        text = tr("Remove marker") if len(gone) == 1 else tr("Remove {count} markers", count=len(gone))
+        text = tr_plural("Remove {count:,} marker", "Remove {count:,} markers", len(gone))
         self.document.edit(text, lambda p: notes.remove_markers(p, key, gone))
 
     def jump(self, step: int) -> None:

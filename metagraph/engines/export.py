@@ -95,7 +95,7 @@ def require_exportable(project: Project) -> tuple[str, ...]:
         words = "{message}. {remedy} (and {rest} more)" if rest else "{message}. {remedy}"
         raise ExportError(phrase(words, message=first.message, remedy=first.remedy, rest=rest))
     if project.skeleton is None or not any(True for _ in project.actions()):
-        raise ExportError(phrase("no action is placed yet: there is nothing to export"))
+        raise ExportError(phrase("there is nothing to export: place an action first"))
     return tuple(
         phrase("{message}. {remedy}", message=p.message, remedy=p.remedy)
         for p in problems
@@ -162,7 +162,7 @@ def _sounds(
             if not is_inside(source, base) and not chosen(source):
                 remedy = "Move it there, or choose the line's sound by hand."
                 raise FileError(
-                    source, phrase("lies outside the project's folder"), phrase("its sound"), remedy
+                    source, phrase("is outside the project's folder"), phrase("its sound"), remedy
                 )
             inside = f"lines/{name}{ending}" if line.channel is None else f"lines/{name}.wav"
             content = (
@@ -212,9 +212,9 @@ def _write_glb(
     except OSError as error:
         raise FileError(
             path.parent,
-            phrase("cannot be made ({strerror})", strerror=error.strerror),
-            phrase("on making the folder"),
-            phrase("Choose a folder you may write to."),
+            phrase("cannot be created ({strerror})", strerror=error.strerror),
+            phrase("creating the folder"),
+            phrase("Choose a folder that you can write to."),
         ) from None
     shown, notes = mesh_on(skeleton, character, project.hidden)
     presets = presets_of(shown.morphs, project.face.channels) if shown is not None else {}

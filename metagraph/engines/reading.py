@@ -175,7 +175,7 @@ def glb_beside(path: Path, document: c.Export) -> Path:
             glb,
             phrase("is not the GLB that {name} was written with", name=path.name),
             phrase("its content"),
-            phrase("Export it again, and copy both files."),
+            phrase("Export again, and copy both files."),
         )
     return glb
 

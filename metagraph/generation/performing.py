@@ -115,7 +115,7 @@ def side_sound(conversation: Conversation, side: int, folder: Path) -> tuple[Arr
         if of.audio is None:
             notes.append(
                 phrase(
-                    "{side_name} has no sound: who speaks when is all that is heard.",
+                    "{side_name} has no sound: only the speech times are used.",
                     side_name=side_name(conversation, n),
                 )
             )

@@ -166,8 +166,8 @@ def make_take(
     if abs(len(poses) - frames_of(sound.shape[1])) > FPS:
         notes.append(
             phrase(
-                "{who}: motion lasts {count:.1f} s, sound {shape:.1f} s; what is over is left out. "
-                "Check that both begin at the same moment.",
+                "{who}: the motion lasts {count:.1f} s but the sound {shape:.1f} s; the rest is "
+                "skipped. Check that both start at the same moment.",
                 who=who,
                 count=len(poses) / FPS,
                 shape=sound.shape[1] / RATE,
@@ -179,7 +179,9 @@ def make_take(
         sound = np.concatenate([sound, np.zeros_like(sound)])
     if conversation is None:
         notes.append(
-            phrase("{who} has no words: loudness tells who speaks, and strokes cannot be judged.", who=who)
+            phrase(
+                "{who} has no words: speech is detected from loudness, and strokes cannot be judged.", who=who
+            )
         )
         partner = sound[1] if len(sound) > 1 else None
         activity, marks = voice_activity(sound[0], partner, RATE, count), TakeMarks()
@@ -189,9 +191,9 @@ def make_take(
     if activity[:, NONE].sum() / FPS > count / FPS - SPOKEN:
         raise TakeError(f"{who}: nobody speaks in it. Check which sound belongs to it")
     if own < SPOKEN:
-        notes.append(phrase("{who}: this side hardly speaks: it teaches listening alone.", who=who))
+        notes.append(phrase("{who}: this speaker hardly speaks and teaches only listening.", who=who))
     elif not activity[:, PARTNER].any():
-        notes.append(phrase("{who}: the partner never speaks: it teaches speaking alone.", who=who))
+        notes.append(phrase("{who}: the partner never speaks, so it teaches only speaking.", who=who))
     gains = [gain_of(channel, RATE) for channel in sound]
     audio = compute_features(sound, activity, tracks, gains)[:count]
     if float(poses[:count].std(0).max()) < 1e-3:
@@ -207,21 +209,25 @@ def _check_sound(who: str, sound: Array, clipped: Sequence[float], shared: bool,
         raise TakeError(f"{who}: its sound is silent. Check the microphone, or which channel is its own")
     if len(sound) == 1 and not shared:
         notes.append(
-            phrase("{who} has one voice only: it is its own, and the partner never speaks.", who=who)
+            phrase("{who} has only one voice: the speaker's own. The partner never speaks.", who=who)
         )
     elif len(sound) == 1:
         notes.append(
-            phrase("{who}: both voices are in one channel; neither is brought to its own loudness.", who=who)
+            phrase(
+                "{who}: both voices are in one channel, so their loudness cannot be evened out separately.",
+                who=who,
+            )
         )
     elif silent[0]:
         notes.append(
             phrase(
-                "{who}: its own channel is silent: it teaches listening alone. Are the channels swapped?",
+                "{who}: the speaker's own channel is silent, so it teaches only listening. Check "
+                "whether the channels are swapped.",
                 who=who,
             )
         )
     elif silent[1]:
-        notes.append(phrase("{who} has one voice only: the partner's channel is silent.", who=who))
+        notes.append(phrase("{who} has only one voice: the partner's channel is silent.", who=who))
     worst = max(clipped, default=0.0)
     if worst > 0.02:
         raise TakeError(
@@ -229,9 +235,7 @@ def _check_sound(who: str, sound: Array, clipped: Sequence[float], shared: bool,
             "export it anew"
         )
     if worst > 1e-4:
-        notes.append(
-            phrase("{who}: {value:.2g} % of its sound is cut off at full scale.", who=who, value=100 * worst)
-        )
+        notes.append(phrase("{who}: {value:.2g} % of the sound is clipped.", who=who, value=100 * worst))
 
 
 def _marks(conversation: Conversation, side: int) -> TakeMarks:

@@ -36,7 +36,7 @@ def check_project(project: Project) -> list[Problem]:
                 "hint",
                 "no-stance",
                 phrase("nothing plays yet"),
-                phrase("Drop a resting clip on the middle of a layer to make its first stance."),
+                phrase("Drop a resting clip in the middle of a layer to make its first stance."),
             )
         )
     order = {"error": 0, "warning": 1, "hint": 2}
@@ -59,13 +59,14 @@ def _why_missing(entry: ClipEntry) -> tuple[str, str]:
     path = original_path(entry.path)
     if path != entry.path:
         return (
-            phrase("the file of clip '{name}' is not opened: {why} ({path})",
+            phrase("the file of clip '{name}' was not opened: {why} ({path})",
                  name=entry.name, why=explain_refusal(path) or ANOTHER, path=path),
-            phrase("If you trust the project, choose 'Files on other computers' or give --network."),
+            phrase("If you trust the project, choose 'Files on other computers', or use --network on the "
+                   "command line."),
         )  # fmt: skip
     return (
         phrase("the file of clip '{name}' is missing ({path})", name=entry.name, path=path),
-        phrase("Put the file back, or choose 'Find missing files' and show where it is now."),
+        phrase("Put the file back, or choose 'Find missing files' and select its new location."),
     )
 
 
@@ -84,12 +85,12 @@ def _clips(project: Project) -> Iterator[Problem]:
                 "error" if project.uses.get(entry.id) else "warning",
                 "other-skeleton",
                 phrase(
-                    "clip '{name}' has another skeleton ({count} joints, the project has {own})",
+                    "clip '{name}' has a different skeleton (it has {count} joints, the project has {own})",
                     name=entry.name,
                     count=len(entry.motion.skeleton),
                     own=len(project.skeleton),
                 ),
-                phrase("Import its file again to retarget it, or remove it."),
+                phrase("Import its file again to retarget it, or remove the clip."),
                 clip=entry.id,
             )
 
@@ -103,8 +104,8 @@ def _character(project: Project) -> Iterator[Problem]:
             yield Problem(
                 "warning",
                 "no-part",
-                phrase("no joint of the skeleton was recognised as {part}", part=phrase(part)),
-                phrase("Open 'Skeleton' and say which joints they are."),
+                phrase("no joint of the skeleton is recognised as {part}", part=phrase(part)),
+                phrase("Open 'Skeleton' and assign the joints."),
             )
 
 
@@ -122,7 +123,7 @@ def _graph(project: Project, graph: MetaGraph) -> Iterator[Problem]:
             yield at(
                 "error",
                 "no-loop",
-                phrase("stance '{name}' has no loop to rest in", name=stance.name),
+                phrase("stance '{name}' has no loop", name=stance.name),
                 phrase("Drop a resting clip on the middle node."),
             )
         for kind in KINDS[1:3]:
@@ -133,9 +134,9 @@ def _graph(project: Project, graph: MetaGraph) -> Iterator[Problem]:
                     phrase("stance '{name}' has no gestures", name=stance.name)
                     if kind == "gesture"
                     else phrase("stance '{name}' has no fidgets", name=stance.name),
-                    phrase("Drop clips on its node of gestures.")
+                    phrase("Drop clips on its gestures node.")
                     if kind == "gesture"
-                    else phrase("Drop clips on its node of fidgets."),
+                    else phrase("Drop clips on its fidgets node."),
                 )
         if len(graph.stances) > 1 and not any(
             a.end_stance in graph.stances for a in graph.of(stance.id, "transition")
@@ -143,22 +144,22 @@ def _graph(project: Project, graph: MetaGraph) -> Iterator[Problem]:
             yield at(
                 "warning",
                 "dead-end",
-                phrase("stance '{name}' cannot be left", name=stance.name),
-                phrase("Drop a clip on its transition node."),
+                phrase("stance '{name}' has no transition out of it", name=stance.name),
+                phrase("Drop a clip on its transitions node."),
             )
         if graph.start in graph.stances and stance.id not in led_to:
             yield at(
                 "warning",
                 "unreachable",
                 phrase("stance '{name}' cannot be reached", name=stance.name),
-                phrase("Drop a transition that ends in it on another stance."),
+                phrase("Add a transition from another stance that ends in it."),
             )
     if graph.actions and graph.start not in graph.stances:
         yield Problem(
             "error",
             "no-start",
-            phrase("the {layer} layer has no stance to begin in", layer=phrase(layer)),
-            phrase("Choose a stance and 'Start here'."),
+            phrase("the {layer} layer has no start stance", layer=phrase(layer)),
+            phrase("Right-click a stance and choose 'Start here'."),
             layer,
         )
     for part, weight in graph.weights.items():
@@ -167,7 +168,7 @@ def _graph(project: Project, graph: MetaGraph) -> Iterator[Problem]:
                 "error",
                 "weight",
                 phrase(
-                    "the {layer} layer's weight on {part} is {weight:g}",
+                    "the {layer} layer's weight for {part} is {weight:g}",
                     layer=phrase(layer),
                     part=part,
                     weight=weight,
@@ -209,11 +210,14 @@ class _ActionCheck:
                 "error",
                 "swapped-clip",
                 phrase(
-                    "was made of clip '{was}', and now plays '{name}'",
+                    "was made from clip '{was}' but now plays '{name}'",
                     was=self.action.clip_name,
                     name=entry.name,
                 ),
-                phrase("Choose in Problems which of the two it plays: by the button, or in the row's menu."),
+                phrase(
+                    "In Problems, choose which of the two clips it plays, with the button or in the row's "
+                    "menu."
+                ),
             )
         end = entry.duration if self.timing.end is None else self.timing.end
         yield from self.played(entry, end)
@@ -228,7 +232,7 @@ class _ActionCheck:
             yield self.at(
                 "error",
                 "lost-stance",
-                phrase("belongs to a stance that is not there"),
+                phrase("belongs to a stance that no longer exists"),
                 phrase("Move it to a stance, or remove it."),
             )
         if action.kind != "transition":
@@ -237,22 +241,22 @@ class _ActionCheck:
             yield self.at(
                 "error",
                 "no-end",
-                phrase("is a transition that ends nowhere"),
-                phrase("Choose its end stance."),
+                phrase("is a transition without an end stance"),
+                phrase("Choose the stance that it ends in."),
             )
         elif action.end_stance not in graph.stances:
             yield self.at(
                 "error",
                 "lost-end",
-                phrase("ends in a stance that is not there"),
+                phrase("ends in a stance that no longer exists"),
                 phrase("Choose another end stance."),
             )
         elif action.end_stance == action.stance:
             yield self.at(
                 "warning",
                 "circle",
-                phrase("ends in the stance it starts from"),
-                phrase("Choose another end stance, or make it a gesture."),
+                phrase("ends in the stance that it starts from"),
+                phrase("Choose another end stance, or turn it into a gesture."),
             )
 
     def choice(self) -> Iterator[Problem]:
@@ -262,17 +266,15 @@ class _ActionCheck:
             yield self.at(
                 "error",
                 "likelihood",
-                phrase(
-                    "has the likelihood {likelihood:g} and can never be chosen", likelihood=action.likelihood
-                ),
-                phrase("Set it above 0."),
+                phrase("has likelihood {likelihood:g} and never plays", likelihood=action.likelihood),
+                phrase("Set it to more than 0."),
             )
         if unknown := anatomy.unknown_joints(self.project.skeleton, action):
             yield self.at(
                 "error",
                 "mask",
                 phrase("moves joint '{unknown}', which the skeleton does not have", unknown=unknown[0]),
-                phrase("Correct its joints."),
+                phrase("Choose its joints again."),
             )
 
     def played(self, entry: ClipEntry, end: float) -> Iterator[Problem]:
@@ -286,28 +288,30 @@ class _ActionCheck:
                 "error",
                 "trim",
                 phrase(
-                    "plays {start:.2f}-{end:.2f} s of a clip of {duration:.2f} s",
+                    "plays {start:.2f} to {end:.2f} s, but its clip is {duration:.2f} s long",
                     start=timing.start,
                     end=end,
                     duration=entry.duration,
                 ),
-                phrase("Bring start and end inside the clip."),
+                phrase("Move start and end inside the clip."),
             )
         elif end <= timing.start and entry.frames > 1:
             yield self.at(
                 "error",
                 "empty",
                 phrase(
-                    "ends at {end:.2f} s, not after its start at {start:.2f} s", end=end, start=timing.start
+                    "ends at {end:.2f} s, which is not after its start at {start:.2f} s",
+                    end=end,
+                    start=timing.start,
                 ),
-                phrase("Move its end behind its start."),
+                phrase("Move its end after its start."),
             )
         elif self.action.kind != "stance" and _sound(blends) and blends > end - timing.start + tolerance:
             yield self.at(
                 "warning",
                 "blend",
                 phrase(
-                    "blends for {blends:.2f} s of its {length:.2f} s",
+                    "blends for {blends:.2f} s but is only {length:.2f} s long",
                     blends=blends,
                     length=end - timing.start,
                 ),
@@ -321,14 +325,14 @@ class _ActionCheck:
             yield self.at(
                 _severity(blend_in),
                 "blend",
-                phrase("blends in for {blend:g} s", blend=blend_in),
+                phrase("has a blend in of {blend:g} s", blend=blend_in),
                 phrase("Set its blend in to 0 s or more."),
             )
         if not _sound(blend_out):
             yield self.at(
                 _severity(blend_out),
                 "blend",
-                phrase("blends out for {blend:g} s", blend=blend_out),
+                phrase("has a blend out of {blend:g} s", blend=blend_out),
                 phrase("Set its blend out to 0 s or more."),
             )
 
@@ -339,8 +343,11 @@ class _ActionCheck:
             yield self.at(
                 "warning",
                 "exit",
-                phrase("may be left at {earliest_exit:.2f} s, outside what plays", earliest_exit=earliest),
-                phrase("Bring the earliest exit inside."),
+                phrase(
+                    "has its earliest exit at {earliest_exit:.2f} s, outside the part that plays",
+                    earliest_exit=earliest,
+                ),
+                phrase("Move the earliest exit between start and end."),
             )
 
     def ends(self) -> Iterator[Problem]:
@@ -352,8 +359,11 @@ class _ActionCheck:
                 yield self.at(
                     "warning",
                     "open-loop",
-                    phrase("does not close: its ends are {far:.0f} cm apart", far=gap.metres * 100),
-                    phrase("Blend its seam (blend in), or trim it to a loop."),
+                    phrase(
+                        "does not loop smoothly: its start and end are {far:.0f} cm apart",
+                        far=gap.metres * 100,
+                    ),
+                    phrase("Blend the loop seam (blend in), or trim the clip so that it loops."),
                 )
             return
         for gap in end_gaps.find_end_gaps(project, graph, action):
@@ -362,7 +372,7 @@ class _ActionCheck:
                     "warning",
                     "far-start" if gap.edge == "begins" else "far-end",
                     end_gaps.describe_gap(gap, stance_name(project, gap.stance)),
-                    phrase("Trim it, lengthen the blend, or place it on the stance it fits."),
+                    phrase("Trim it, lengthen its blend, or move it to a stance that it fits."),
                 )
 
 

@@ -173,17 +173,17 @@ def find_placing_refusal(
             and project.skeleton is not None
             and entry.motion.skeleton != project.skeleton
         ):
-            return phrase("'{name}' has another skeleton than this project", name=entry.name)
+            return phrase("'{name}' has a different skeleton from this project", name=entry.name)
     graph = project.graphs[layer]
     if kind == "stance":
         return None
     if stance is None or stance not in graph.stances:
         return phrase(
-            "make a stance first: drop a clip on the middle of the {layer} layer", layer=phrase(layer)
+            "make a stance first: drop a clip in the middle of the {layer} layer", layer=phrase(layer)
         )
     if kind == "transition":
         if end is None or end not in graph.stances:
-            return phrase("choose the stance this transition ends in first")
+            return phrase("first choose the stance that this transition ends in")
         if end == stance:
             return phrase("a transition must end in another stance")
     return None
@@ -360,7 +360,9 @@ def set_weight(project: Project, layer: Layer, part: Part, weight: float) -> Pro
     if part not in PARTS:
         raise EditError(
             phrase(
-                "there is no body part '{part}'; there are {names}", part=phrase(part), names=", ".join(PARTS)
+                "there is no body part '{part}'; choose from {names}",
+                part=phrase(part),
+                names=", ".join(PARTS),
             )
         )
     graph = project.graphs[layer]

@@ -69,7 +69,7 @@ def paste_requests(project: Project, performance: str, text: str, at: float) -> 
         asks = [a.request_from(x) for x in data["requests"]]
         names: dict[str, Any] = dict(data.get("names", {}))
     except (a.RequestError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        raise EditError(phrase("there are no requests on the clipboard that can be read")) from None
+        raise EditError(phrase("the clipboard contains no requests")) from None
     kept: list[a.AnyRequest] = []
     left_out: list[str] = []
     for ask in asks:

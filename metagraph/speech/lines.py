@@ -73,11 +73,11 @@ def voice_from_phones(phones: str | Path) -> Voice:
     duration = max([grid.end, *(p.end for p in pieces)])
     if duration > LINE_SECONDS:
         why = phrase(
-            "lasts {duration:.0f} s, a line at most {most:.0f} s",
+            "lasts {duration:.0f} s, but a line can last at most {most:.0f} s",
             duration=duration,
             most=LINE_SECONDS,
         )
-        raise FileError(phones, why, phrase("its end"), phrase("Cut it into lines."))
+        raise FileError(phones, why, phrase("its end"), phrase("Cut it into shorter lines."))
     if not pieces:
         return silent(max(duration, 0.0))
     vowels = [

@@ -120,7 +120,7 @@ def read_sound(
         raise FileError(
             path,
             phrase("has {count}; there is no channel {channel}", count=count, channel=channel + 1),
-            remedy=phrase("Choose the sound anew."),
+            remedy=phrase("Choose the sound again."),
         )
     return samples[channel], read.rate
 
@@ -164,8 +164,8 @@ def read_recording(path: str | Path, longest: float = LONGEST, most: int | None 
     if not is_file(path) and not path.exists():
         raise FileError(
             path,
-            phrase("there is no such sound file"),
-            remedy=phrase("Check where it is, or choose the file anew."),
+            phrase("the sound file does not exist"),
+            remedy=phrase("Find the file, or choose another one."),
         )
     check_file(path, SOUND_FILE)
     try:
@@ -175,48 +175,52 @@ def read_recording(path: str | Path, longest: float = LONGEST, most: int | None 
                 raise FileError(
                     path,
                     phrase(
-                        "lasts {lasts:.0f} s, at most {longest:.0f} s are read",
+                        "lasts {lasts:.0f} s, but at most {longest:.0f} s can be read",
                         lasts=file.frames / rate,
                         longest=longest,
                     ),
-                    remedy=phrase("Cut it into pieces."),
+                    remedy=phrase("Cut it into shorter pieces."),
                 )
             if not file.frames or rate < SOUND_RATES[0]:
                 why = (
-                    phrase("holds no sound")
+                    phrase("contains no sound")
                     if not file.frames
-                    else phrase("has {rate} samples a second, too few for speech", rate=rate)
+                    else phrase("has a sample rate of {rate} Hz, too low for speech", rate=rate)
                 )
                 raise FileError(
                     path,
                     why,
                     remedy=phrase(
-                        "Save it as {endings}, with 16000 samples a second or more.", endings=_SUFFIXES
+                        "Save it as {endings}, with a sample rate of 16000 Hz or more.", endings=_SUFFIXES
                     ),
                 )
             if rate > SOUND_RATES[1] or file.channels > SOUND_CHANNELS:
                 why = (
                     phrase(
-                        "has {rate:,} samples a second, more than any recorder's {most:,}",
+                        "has a sample rate of {rate:,} Hz; the highest that can be read is {most:,} Hz",
                         rate=rate,
                         most=SOUND_RATES[1],
                     )
                     if rate > SOUND_RATES[1]
                     else phrase(
-                        "has {channels} channels, at most {most} are read",
+                        "has {channels} channels, but at most {most} can be read",
                         channels=file.channels,
                         most=SOUND_CHANNELS,
                     )
                 )
                 raise FileError(
-                    path, why, remedy=phrase("Save it anew as {endings}, with 48000.", endings=_SUFFIXES)
+                    path,
+                    why,
+                    remedy=phrase(
+                        "Save it again as {endings}, with a sample rate of 48000 Hz.", endings=_SUFFIXES
+                    ),
                 )
             every = 1 if most is None else max(1, -(-rate // most))
             if file.frames // every * file.channels > SOUND_SAMPLES:
                 raise FileError(
                     path,
-                    phrase("holds more samples than are read"),
-                    remedy=phrase("Cut it, or save it with 48000 a second."),
+                    phrase("has more samples than can be read"),
+                    remedy=phrase("Cut it, or save it with a sample rate of 48000 Hz."),
                 )
             return replace(_read_blocks(file, rate, every), really=explain_misnamed(path))
     except (soundfile.LibsndfileError, RuntimeError, TypeError, MemoryError, OSError) as error:
@@ -255,7 +259,7 @@ def sound_ending(path: str | Path) -> str:
     if not known and not any(own in endings for endings in _ENDINGS.values()):
         raise FileError(
             path,
-            phrase("is a sound of an unusual kind"),
+            phrase("has an unusual sound format"),
             phrase("its content"),
             phrase("Save it as {endings}.", endings=_SUFFIXES),
         )

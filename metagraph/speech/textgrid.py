@@ -21,7 +21,7 @@ from metagraph.errors import FileError
 _TOKEN = re.compile(
     r'"(?:[^"]|"")*"|<[a-z]+>|(?<![^\s=])[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?%?(?!\S)'
 )
-_REMEDY = phrase("Save it from Praat as a text file or a short text file.")
+_REMEDY = phrase("In Praat, save it as a text file or a short text file.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +90,7 @@ class _Reader:
         if token is None:
             raise self.fail(phrase("ends before its {what}", what=what))
         if not token.startswith('"'):
-            raise self.fail(phrase("{token} stands where {what} should be", token=token[:20], what=what))
+            raise self.fail(phrase("has {token} instead of its {what}", token=token[:20], what=what))
         return token[1:-1].replace('""', '"')
 
     def number(self, what: str) -> float:
@@ -101,7 +101,7 @@ class _Reader:
             value = float(token)
         except ValueError:
             raise self.fail(
-                phrase("{token} stands where {what} should be", token=token[:20], what=what)
+                phrase("has {token} instead of its {what}", token=token[:20], what=what)
             ) from None
         if not abs(value) < 1e7:
             raise self.fail(phrase("{what} is {token}", what=what, token=token[:20]))
@@ -118,7 +118,7 @@ class _Reader:
         what = self.word("object class")
         if kind != "ooTextFile" or not what.startswith("TextGrid"):
             raise self.fail(
-                phrase("it is no TextGrid but {kind!r}, {what!r}", kind=kind[:20], what=what[:20])
+                phrase("it is not a TextGrid but {kind!r}, {what!r}", kind=kind[:20], what=what[:20])
             )
         start, end = self.number("start"), self.number("end")
         exists = next(self.tokens, "")

@@ -54,7 +54,7 @@ def _state_joints(w: Handles, _: Path) -> None:
 
     layer = w.session.place.layer
     if not w.document.project.manual.get(layer) or not w.document.project.manual[layer].states:
-        w.document.edit("Add a state", lambda p: manual_edits.add_states(p, [next(iter(p.clips))], layer))
+        w.document.edit("Add state", lambda p: manual_edits.add_states(p, [next(iter(p.clips))], layer))
     w.session.set_mode("manual")
     w.session.selection.select_states(tuple(w.document.project.manual[layer].states)[:1])
     StateMask(w.document, w.session, w.editor).open()

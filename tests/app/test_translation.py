@@ -118,15 +118,11 @@ def test_what_checks_find_is_said_in_the_language_and_stays_english_for_programs
     project = toy.project()
     project = edits.update_actions(project, [toy.id(project, "rest beat lf")], likelihood=-1.0)
     (found,) = [p for p in check_project(project) if p.code == "likelihood"]
-    assert (
-        tr_phrase(found.message)
-        == found.message
-        == "'rest beat lf' has the likelihood -1 and can never be chosen"
-    )
+    assert tr_phrase(found.message) == found.message == "'rest beat lf' has likelihood -1 and never plays"
     translation.choose("de")
-    assert tr_phrase(found.message) == "'rest beat lf' hat die Häufigkeit -1 und kann nie gewählt werden"
-    assert tr_phrase(found.remedy) == "Setze sie über 0."
-    assert found.message == "'rest beat lf' has the likelihood -1 and can never be chosen"
+    assert tr_phrase(found.message) == "'rest beat lf' hat die Häufigkeit -1 und spielt nie"
+    assert tr_phrase(found.remedy) == "Setze den Wert auf mehr als 0."
+    assert found.message == "'rest beat lf' has likelihood -1 and never plays"
 
 
 def test_errors_are_said_in_the_language_as_far_as_they_know_their_templates(english: None) -> None:
@@ -168,10 +164,10 @@ def test_what_targets_write_and_lose_is_said_in_the_language(english: None) -> N
     for target in registry.targets().values():
         for said in (target.files, target.group, target.untried, *(loss.words for loss in target.losses)):
             assert not said or (isinstance(said, Phrase) and said.template in words), f"{target.name}: {said}"
-    (counted,) = [loss for loss in registry.target("scxml").losses if "with a seam" in loss.words]
+    (counted,) = [loss for loss in registry.target("scxml").losses if "blend their seam" in loss.words]
     loops = replace(counted, count=lambda project: 3).told(Project())
-    assert loops == "3 loops that play with a seam jump where they repeat"
-    assert tr_phrase(loops) == "3 Schleifen, die mit einer Naht spielen, springen an der Wiederholung"
+    assert loops == "3 loops blend their seam here but jump at the seam there"
+    assert tr_phrase(loops) == "3 Schleifen blenden hier ihre Naht, springen dort aber an ihr"
 
 
 def without_words(said: str, known: Collection[str]) -> Iterator[str]:

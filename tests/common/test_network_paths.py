@@ -149,7 +149,7 @@ def test_a_gltf_file_never_names_another_computer(
     looked: list[str] = []
     resolve = Path.resolve
     monkeypatch.setattr(Path, "resolve", lambda p, strict=False: looked.append(str(p)) or resolve(p, strict))
-    with pytest.raises(FileError, match="is not opened"):
+    with pytest.raises(FileError, match="was not opened"):
         read_gltf_clips(path)
     assert not any("server" in p for p in looked)
 

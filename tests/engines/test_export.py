@@ -327,10 +327,10 @@ def test_clips_of_one_frame_and_long_ones_come_back_as_themselves(tmp_path: Path
     ("spoil", "words"),
     [
         (lambda p: Project(), "nothing to export"),
-        (lambda p: edits.remove_actions(p, ["a5", "a6"]), "has no loop to rest in"),
+        (lambda p: edits.remove_actions(p, ["a5", "a6"]), "has no loop"),
         (lambda p: edits.remove_stance(p, "s4"), "nothing to export"),
         (lambda p: edits.update_actions(p, ["a6"], timing={"end": 99.0}), "'wave' plays 0.00-99.00 s"),
-        (lambda p: edits.update_actions(p, ["a6"], likelihood=0.0), "can never be chosen"),
+        (lambda p: edits.update_actions(p, ["a6"], likelihood=0.0), "never plays"),
         (
             lambda p: replace(p, clips={**p.clips, "c2": replace(p.clips["c2"], motion=None)}),
             "the file of clip 'wave' is missing",
@@ -376,7 +376,7 @@ def test_a_mesh_that_is_not_there_is_an_error(tmp_path: Path) -> None:
 
 def test_a_folder_that_cannot_be_made_is_an_error_in_words(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    with pytest.raises(FileError, match="cannot be made"):
+    with pytest.raises(FileError, match="cannot be created"):
         export_project(small(), tmp_path / "file" / "x")
 
 

@@ -120,8 +120,8 @@ def test_losses_count_what_the_project_has(sample: Project) -> None:
     partial = sum(a.limb != "both" or bool(a.joints) for a in sample.actions())
     assert any(words.startswith(f"{partial} actions") for words in registry.losses(sample, "playcanvas"))
     weighted = edits.set_weight(sample, "arms", "spine", 0.5)
-    assert any("1 weights" in words for words in registry.losses(weighted, "playcanvas"))
-    assert not any("weights" in words for words in registry.losses(sample, "playcanvas"))
+    assert any("1 layer weights" in words for words in registry.losses(weighted, "playcanvas"))
+    assert not any("layer weights" in words for words in registry.losses(sample, "playcanvas"))
 
 
 def test_a_target_that_does_not_exist_is_told_with_the_nearest(sample: Project, tmp_path: Path) -> None:
@@ -219,7 +219,7 @@ def test_an_animation_of_an_action_that_moves_a_joint_in_part_has_it_as_far_from
     far, gone = rotation.angle_between(rest, whole), rotation.angle_between(rest, half)
     assert far.max() > 0.1 and np.allclose(gone, far / 2, atol=1e-3)
     told = registry.losses(soft, "unity-controller")
-    assert any(words.startswith("soft weights of joints in 1 actions") for words in told)
+    assert any(words.startswith("1 actions have partial joint weights") for words in told)
 
 
 # --- engines

@@ -135,7 +135,7 @@ def test_words_tell_who_says_what(tmp_path):
     assert found[0].transcripts
     take = read_take_batch(found).takes[0]
     assert take.marks.peaks
-    assert not any("loudness tells who speaks" in note for note in take.notes)
+    assert not any("speech is detected from loudness" in note for note in take.notes)
 
 
 def test_both_voices_in_one_channel_are_told_apart_by_words(tmp_path):

@@ -85,14 +85,14 @@ def test_another_skeleton_and_one_that_does_not_move_are_refused():
 
 
 def test_what_can_be_learned_from_all_the_same_is_told():
-    assert "one voice only" in " ".join(_take(samples=babble(12, 1), talk=False).notes)
+    assert "only one voice" in " ".join(_take(samples=babble(12, 1), talk=False).notes)
     assert "one channel" in " ".join(_take(samples=babble(12, 1)).notes)
     assert "no words" in " ".join(_take(talk=False).notes)
     deaf = np.stack([babble(12, 1), np.zeros(12 * RATE)])
     assert "partner's channel is silent" in " ".join(_take(samples=deaf).notes)
     mute = deaf[::-1]
-    assert "channels swapped" in " ".join(_take(samples=mute).notes)
-    assert "cut off" in " ".join(_take(clipped=(0.001,)).notes)
+    assert "channels are swapped" in " ".join(_take(samples=mute).notes)
+    assert "is clipped" in " ".join(_take(clipped=(0.001,)).notes)
 
 
 def test_two_tracks_of_one_voice_leave_the_other_silent():

@@ -145,7 +145,7 @@ def test_base_twisted(healthy: Project, toy: Any) -> None:
     project = edits.add_stance(healthy, "body", "stand", [healthy.base.clip])
     project = edits.add_clips(project, [("base.glb", 0, "", lying(toy, 0, 0, np.radians(90)))])
     problem = only(edits.set_base(project, entry(project, "base")), "base-twisted")
-    assert "90 degrees" in problem.message and "'stand'" in problem.message
+    assert "90°" in problem.message and "'stand'" in problem.message
 
 
 def test_no_part(healthy: Project) -> None:

@@ -254,7 +254,7 @@ def test_moved_actions_keep_their_settings_and_a_moved_gesture_becomes_a_proper_
         .end_stance
         is None
     )
-    with pytest.raises(EditError, match="ends in first"):
+    with pytest.raises(EditError, match="first choose the stance"):
         edits.move_actions(project, [ident], "transition", up)
     with pytest.raises(EditError, match="nothing to place"):
         edits.move_actions(project, ["a999"], "gesture", up)

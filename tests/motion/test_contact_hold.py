@@ -64,7 +64,7 @@ def test_what_is_no_limb_is_left_out(toy, project):
 def test_an_arm_that_is_not_known_is_said(toy, project):
     with pytest.raises(EditError, match="find its file"):
         keep_hand(project, "gone", "left", 0, 1)
-    with pytest.raises(EditError, match="could stay with"):
+    with pytest.raises(EditError, match="could stay at"):
         keep_hand(project, toy.id(project, "wide"), "left", 1.0, 1.0)
 
 

@@ -210,7 +210,7 @@ def test_numbers_that_are_none_are_silence(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (None, "no such sound file"),
+        (None, "sound file does not exist"),
         (b"", "cannot be read as sound"),
         (b"RIFF....WAVEfmt nonsense" * 9, "cannot be read as sound"),
         (b"hello", "sound"),
@@ -230,7 +230,7 @@ def test_a_file_that_is_no_sound_is_refused_with_a_remedy(
 def test_a_sound_without_samples_and_one_too_coarse_are_refused(tmp_path: Path) -> None:
     soundfile.write(str(tmp_path / "empty.wav"), np.zeros(0), RATE)
     soundfile.write(str(tmp_path / "coarse.wav"), np.zeros(500), 1000)
-    for name, words in (("empty.wav", "holds no sound"), ("coarse.wav", "1000 samples a second")):
+    for name, words in (("empty.wav", "contains no sound"), ("coarse.wav", "sample rate of 1000 Hz")):
         with pytest.raises(FileError, match=words):
             read_sound(tmp_path / name)
 

@@ -34,7 +34,7 @@ def choose_character(shell: Shell) -> None:
         if found.why_not is not None:
             shell.tell(
                 tr(
-                    "{name} is no character to draw: its mesh {why}.",
+                    "{name} cannot be drawn as a character: its mesh {why}.",
                     name=Path(name).name,
                     why=found.why_not,
                 )

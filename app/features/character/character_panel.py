@@ -39,7 +39,7 @@ from preview.scene import Scene, SceneActor
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 1.5, 2.0)
 BASE_TIP = tr_noop(
-    "The pose all layers are added to. Right-click a clip in the library to take it from there."
+    "The neutral pose that all layers are added to. To set it, right-click a clip in the library."
 )
 FRAME = 16  # milliseconds between frames
 SOFT_FRAME = 33  # where the processor draws them, which has other things to do as well
@@ -94,7 +94,7 @@ class PreviewPanel(QWidget):
         self.view.setToolTip(tr(MOUSE))
         self.bare = False
         self._margins: list[QMargins] = []  # of what is hidden then
-        self.hint = QLabel(tr("F11 shows the rest again"), self.view)
+        self.hint = QLabel(tr("Press F11 to show the other panels again"), self.view)
         self.hint.setProperty("card", True)
         self.hint.setContentsMargins(8, 4, 8, 4)
         self.hint.hide()
@@ -103,7 +103,7 @@ class PreviewPanel(QWidget):
         self.no_mesh = NoMesh(self.view, choose, may_choose)
         self.mesh_button: QToolButton | None = None  # who makes the panel gives it
         self.watch_button = MoreButton(
-            self.session.look, tr("What is shown"), tr("What is shown, and how"), self.view, "eye"
+            self.session.look, tr("Display options"), tr("What the view shows, and how"), self.view, "eye"
         )
         self.watch_button.setProperty("over", True)
 
@@ -302,7 +302,7 @@ class PreviewPanel(QWidget):
         """Say what plays: the clip alone, or each layer's action and when the next begins."""
         shown = self.performance.shown
         if shown.clip is not None:
-            return tr("{name}, alone", name=plain_action_name(shown.project.clips[shown.clip].name))
+            return tr("{name}, clip only", name=plain_action_name(shown.project.clips[shown.clip].name))
         seconds, out = self.session.transport.seconds, []
         for layer in LAYERS:
             cue = shown.plan.layers[layer].cue_at(seconds)

@@ -25,8 +25,8 @@ SIDES = lazy_texts(lambda: (tr("Left foot"), tr("Right foot")))
 BELOW = 12.0  # pixels from a foot to its mark
 SIZE = 7.0  # pixels of half a mark
 LEGEND = tr_noop(
-    "Thick: the foot is held. Thin: it steps. Dots: it is in the air. Thicker, yellow: "
-    "it stands and slides, {speed:g} mm/s or more"
+    "Thick: the foot is planted. Thin: it steps. Dots: it is in the air. Thicker and "
+    "yellow: it is planted but slides, at {speed:g} mm/s or more."
 )
 
 
@@ -194,7 +194,7 @@ def describe_slide(seen: FeetSeen) -> str:
     """Say which foot slides fastest round now and when, or that none does."""
     worst = worst_slide(seen)
     if worst is None:
-        return tr("No foot that stands slides") if len(seen.times) > 1 else ""
+        return tr("No planted foot slides") if len(seen.times) > 1 else ""
     time, side, speed = worst
     return tr(
         "⚠ {foot} slides {speed:.0f} mm/s at {minutes}:{seconds:05.2f}",

@@ -32,7 +32,7 @@ class HandMarks(QWidget):
         super().__init__(panel.view)
         self.panel = panel
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
-        self.setAccessibleName(tr("Contacts of the hands"))
+        self.setAccessibleName(tr("Hand contacts"))
         self.hide()
         panel.view.painted.connect(self._follow)
         panel.session.watch.changed.connect(self.show_or_hide)
@@ -112,6 +112,6 @@ def describe_touch(touches: Sequence[HandTouch], skeleton: Skeleton | None) -> s
     if skeleton is None or not touches:
         return tr("No hand is in contact")
     return "; ".join(
-        tr("{hand} on {joint}", hand=HANDS[touch.side], joint=describe_plate(touch, skeleton))
+        tr("{hand} touches {joint}", hand=HANDS[touch.side], joint=describe_plate(touch, skeleton))
         for touch in touches
     )

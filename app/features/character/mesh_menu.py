@@ -83,7 +83,7 @@ class MeshButton(MoreButton):
         every.triggered.connect(
             lambda: document.edit(tr("Show all meshes"), lambda p: edits.hide_meshes(p, ()))
         )
-        menu.addAction(tr("In a window…")).triggered.connect(self._dialog)
+        menu.addAction(tr("Open the list…")).triggered.connect(self._dialog)
 
     def _show(self, mesh: str, on: bool) -> None:
         document = self.panel.performance.document

@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
 
 from app.project.document import Document
 from app.stage.figures import Figures
-from app.translation import tr
+from app.translation import tr, tr_plural
 from metagraph.graph import edits
 
 TICKED, OPEN = Qt.CheckState.Checked, Qt.CheckState.Unchecked
@@ -68,21 +68,17 @@ class MeshesDialog(QDialog):
         count = sum(mesh in hidden for mesh in meshes)
         self.words.setText(
             (
-                tr(
-                    "1 of {every} meshes is hidden, in the preview, on thumbnails, in pictures, videos and "
-                    "exports.",
-                    every=len(meshes),
-                )
-                if count == 1
-                else tr(
-                    "{count} of {every} meshes are hidden, in the preview, on thumbnails, in pictures, "
-                    "videos and exports.",
-                    count=count,
+                tr_plural(
+                    "{count:,} of {every:,} meshes is hidden in the preview, thumbnails, pictures, videos "
+                    "and exports.",
+                    "{count:,} of {every:,} meshes are hidden in the preview, thumbnails, pictures, videos "
+                    "and exports.",
+                    count,
                     every=len(meshes),
                 )
             )
             if meshes
-            else tr("No mesh of a character is drawn.")
+            else tr("No character mesh is drawn. Choose a character first.")
         )
         self.every.setEnabled(count > 0)
 
@@ -97,7 +93,9 @@ class MeshesDialog(QDialog):
         else:
             count = len(names)
             words = (
-                tr("Show {count} meshes", count=count) if shown else tr("Hide {count} meshes", count=count)
+                tr_plural("Show {count:,} mesh", "Show {count:,} meshes", count)
+                if shown
+                else tr_plural("Hide {count:,} mesh", "Hide {count:,} meshes", count)
             )
         self._hide_meshes(hidden if shown else [*hidden, *names], words)
 

@@ -33,7 +33,10 @@ class NoMesh(QFrame):
         self.words.setContentsMargins(6, 0, 0, 0)
         self.words.hide()
         self.button = make_widget(
-            QToolButton, self, text=tr("Choose character…"), toolTip=tr("The GLB, glTF or VRM that is drawn")
+            QToolButton,
+            self,
+            text=tr("Choose character…"),
+            toolTip=tr("Choose a GLB, glTF or VRM file with the character's mesh"),
         )
         self.button.setAccessibleName(tr("Choose character"))
         self.button.setFocusPolicy(Qt.FocusPolicy.TabFocus)

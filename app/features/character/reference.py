@@ -139,7 +139,7 @@ class Reference(QObject):
         self.picture, self.trouble = None, ""
         if path is not None and not path.is_file():
             self.trouble = tr(
-                "{name} is not there. Put it back, or choose it where it is now.", name=path.name
+                "{name} is missing. Put the file back, or choose it again where it is now.", name=path.name
             )
         elif path is not None:
             self._reader = _Reader(path)
@@ -207,7 +207,7 @@ class ReferencePicture(QWidget):
         self._from: tuple[float, float] | None = None  # where a drag began, and the offset then
         self.setMinimumSize(120, 100)
         self.setCursor(Qt.CursorShape.SizeHorCursor)
-        self.setToolTip(tr("Drag to the left or right to move the video in time against the character"))
+        self.setToolTip(tr("Drag left or right to shift the video in time relative to the character"))
         self.setAccessibleName(tr("Reference video"))
         reference.changed.connect(self._follow)
         reference.pictured.connect(self.update)
@@ -264,10 +264,10 @@ class ReferenceBar(QWidget):
         self.offset.setSuffix(" s")
         self.offset.setPrefix(tr("offset "))
         self.offset.setAccessibleName(tr("Offset of the reference video"))
-        self.offset.setToolTip(tr("How much later in the video than the playhead its picture is"))
+        self.offset.setToolTip(tr("How far the video runs ahead of the playhead"))
         self.offset.valueChanged.connect(reference.set_offset)
-        self.place = ComboBox(self, toolTip=tr("Where the video is seen"))
-        self.place.setAccessibleName(tr("Place of the reference video"))
+        self.place = ComboBox(self, toolTip=tr("Where the video is shown"))
+        self.place.setAccessibleName(tr("Position of the reference video"))
         self.place.addItems([tr("Beside"), tr("Behind")])
         self.place.activated.connect(lambda n: reference.set_behind(n == 1))
         self.gone = make_widget(QToolButton, self, toolTip=tr("Close the reference video"))

@@ -117,12 +117,12 @@ WATCH_COMMANDS = (
         "feet",
         VIEW,
         "watch",
-        tr_noop("Marks of the fee&t"),
+        tr_noop("Foo&t contacts"),
         WatchFeature.toggle_feet,
         ("Shift+G",),
         checked=WatchFeature.marks_feet,
         tip=tr_noop(
-            "Which foot is held (square), steps (diamond), is lifted (circle), and slides (triangle)"
+            "Mark feet that are planted (square), step (diamond), are lifted (circle) or slide (triangle)"
         ),
         study=True,
     ),
@@ -130,21 +130,23 @@ WATCH_COMMANDS = (
         "hands_touch",
         VIEW,
         "watch",
-        tr_noop("&Contacts of the hands"),
+        tr_noop("Hand &contacts"),
         WatchFeature.toggle_hands,
         ("Shift+J",),
         checked=WatchFeature.marks_hands,
-        tip=tr_noop("Where hands are kept: there (square), on the way (diamond), not reached (triangle)"),
+        tip=tr_noop(
+            "Mark hands that are pinned: in place (square), on the way (diamond), out of reach (triangle)"
+        ),
         study=True,
     ),
     Command(
         "next_slide",
         VIEW,
         "watch",
-        tr_noop("Next foot that sl&ides"),
+        tr_noop("Next foot sl&ide"),
         WatchFeature.go_to_next_slide,
         ("Ctrl+Shift+G",),
-        tip=tr_noop("Go to where a foot that stands slides next"),
+        tip=tr_noop("Go to the next moment when a planted foot slides"),
         study=True,
     ),
     Command(
@@ -155,7 +157,7 @@ WATCH_COMMANDS = (
         WatchFeature.toggle_stance,
         ("Shift+B",),
         checked=WatchFeature.shows_stance,
-        tip=tr_noop("How the character would stand without what it plays"),
+        tip=tr_noop("Show the character in its stance, without the action that plays"),
         study=True,
     ),
     Command(
@@ -166,7 +168,7 @@ WATCH_COMMANDS = (
         WatchFeature.toggle_onion_skin,
         ("Shift+O",),
         checked=WatchFeature.shows_onion_skin,
-        tip=tr_noop("Ghosts of moments before now, dark, and after it, light"),
+        tip=tr_noop("Show ghosts of earlier poses (dark) and later poses (light)"),
         study=True,
     ),
     Command(
@@ -177,7 +179,7 @@ WATCH_COMMANDS = (
         WatchFeature.toggle_four_views,
         ("Ctrl+Alt+Q",),
         checked=WatchFeature.shows_four_views,
-        tip=tr_noop("As it was, and three sides beside it, at one time"),
+        tip=tr_noop("Show the view and three other sides at once"),
         study=True,
     ),
     Command(
@@ -188,7 +190,7 @@ WATCH_COMMANDS = (
         WatchFeature.toggle_two_views,
         ("Ctrl+Alt+W",),
         checked=WatchFeature.shows_two_views,
-        tip=tr_noop("As it was, and one side beside it, at one time"),
+        tip=tr_noop("Show the view and one other side at once"),
         study=True,
     ),
     Command(
@@ -198,7 +200,7 @@ WATCH_COMMANDS = (
         tr_noop("Reference vi&deo…"),
         WatchFeature.choose_reference,
         ("Ctrl+Alt+R",),
-        tip=tr_noop("A video or a picture to compare with, beside the character or behind it"),
+        tip=tr_noop("Show a video or picture beside or behind the character, to compare"),
     ),
     Command(
         "no_reference",
@@ -217,7 +219,7 @@ WATCH_COMMANDS = (
         tr_noop("Ne&xt light"),
         WatchFeature.use_next_light,
         ("Shift+L",),
-        tip=tr_noop("Studio, day, evening, rim, flat"),
+        tip=tr_noop("Switch to the next light: studio, day, evening, rim, flat"),
         study=True,
     ),
     Command(
@@ -278,9 +280,9 @@ def fill_onion(shell: Shell, menu: QMenu) -> None:
     """Fill the menu of how many ghosts there are on each side and how far apart."""
     watch = shell.stage.session.watch
     for title, name, values, words in (
-        (tr("Before now"), "before", range(MOST_GHOSTS + 1), "{:d}"),
-        (tr("After now"), "after", range(MOST_GHOSTS + 1), "{:d}"),
-        (tr("Apart"), "spacing", SPACINGS, "{:g} s"),
+        (tr("Before"), "before", range(MOST_GHOSTS + 1), "{:d}"),
+        (tr("After"), "after", range(MOST_GHOSTS + 1), "{:d}"),
+        (tr("Spacing"), "spacing", SPACINGS, "{:g} s"),
     ):
         part = menu.addMenu(title)
         group = QActionGroup(part)
@@ -300,7 +302,7 @@ def go_to_next_slide(shell: Shell) -> None:
     session, shown = shell.stage.session, shell.stage.performance.shown
     watch, now = watch_of(shown), session.transport.seconds
     if watch is None:
-        shell.tell(tr("Nobody with two feet is shown."))
+        shell.tell(tr("No character with two feet is shown."))
         return
     session.transport.set_playing(False)
     end = min(shown.length, now + AHEAD)
@@ -326,7 +328,7 @@ def go_to_next_slide(shell: Shell) -> None:
         if found is None:
             shell.tell(
                 tr(
-                    "No foot that stands slides until {minutes}:{seconds:04.1f}.",
+                    "No planted foot slides up to {minutes}:{seconds:04.1f}.",
                     minutes=int(end // 60),
                     seconds=end % 60,
                 )
@@ -335,4 +337,4 @@ def go_to_next_slide(shell: Shell) -> None:
         session.watch.set(feet=True)
         session.transport.seek(found)
 
-    shell.jobs.start(tr("Searching feet that slide"), search, done, lambda error: shell.tell(tr_error(error)))
+    shell.jobs.start(tr("Searching for foot slides"), search, done, lambda error: shell.tell(tr_error(error)))

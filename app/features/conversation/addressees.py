@@ -23,7 +23,7 @@ def offer_addressees(menu: QMenu, editing: Editing) -> None:
         return
     side = next(iter(sides))
     now = {of.sides[side].segments[at].to for _, at in editing.chosen}
-    choices: list[tuple[str, int | None]] = [(tr("As it is inferred"), None), (tr("Everybody"), EVERYBODY)]
+    choices: list[tuple[str, int | None]] = [(tr("Automatic"), None), (tr("Everyone"), EVERYBODY)]
     choices += [(side_name(of, n), n) for n in others_of(of, side)]
     for words, to in choices:
         action = whom.addAction(words, partial(editing.address, to))
@@ -44,7 +44,7 @@ def describe_addressee(conversation: Conversation, side: int, at: int) -> str:
     to = segment.to if segment.to is not None else turn.to if turn is not None else None
     if to is None:
         return ""
-    whom = tr("everybody") if to == EVERYBODY else side_name(conversation, to)
+    whom = tr("everyone") if to == EVERYBODY else side_name(conversation, to)
     if segment.to is None:
-        return tr("\nTo {whom}, as it seems", whom=whom)
+        return tr("\nTo {whom} (detected)", whom=whom)
     return tr("\nTo {whom}", whom=whom)

@@ -48,7 +48,7 @@ def ask_for_conversation(shell: Shell, paths: Sequence[Path] = ()) -> None:
         start = str(shell.document.folder or Path.home())
         names, _ = QFileDialog.getOpenFileNames(
             shell.widget,
-            tr("Conversation from sound: one file, or one for each who speaks"),
+            tr("Conversation from sound: one file, or one file for each speaker"),
             start,
             _filter(),
         )
@@ -57,7 +57,7 @@ def ask_for_conversation(shell: Shell, paths: Sequence[Path] = ()) -> None:
     if not sounds:
         if paths:
             shell.tell(
-                tr("There is no sound among these files. Sounds are {names}.", names=", ".join(SOUNDS))
+                tr("None of these files is a sound. Choose sounds ({names}).", names=", ".join(SOUNDS))
             )
         return
     from app.features.conversation.conversation_dialog import ImportDialog
@@ -94,7 +94,7 @@ def remove_shown_conversation(shell: Shell) -> None:
         _edit(shell, tr("Remove conversation"), lambda p: conversation_edits.remove_conversation(p, found[0]))
         shell.tell(
             tr(
-                "Removed '{name}'. Undo brings it back; its sound files stay where they are.",
+                "Removed '{name}'. Undo restores it. Its sound files were not deleted.",
                 name=found[1].name,
             )
         )
@@ -118,7 +118,7 @@ def use_graph_again(shell: Shell) -> None:
                 project = conversation_edits.change_side(project, found[0], side, motion=None)
             return project
 
-        _edit(shell, tr("Move with the graph again"), everyone)
+        _edit(shell, tr("Use the graph's motion"), everyone)
 
 
 def edit_word_lists(shell: Shell) -> None:

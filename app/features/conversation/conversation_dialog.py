@@ -153,13 +153,13 @@ class ImportDialog(QDialog):
         """The row of what was found, with what can be done about the words."""
         row = QHBoxLayout()
         row.setSpacing(8)
-        row.addWidget(make_caption(tr("Found"), self, True))
+        row.addWidget(make_caption(tr("Detected"), self, True))
         self.files = QLabel(self, wordWrap=True)
         row.addWidget(self.files, 1)
         self.add_words = make_widget(
             QToolButton,
             self,
-            text=tr("Add words…"),
+            text=tr("Add text…"),
             toolTip=tr("A transcript: TextGrid, ELAN, WebVTT, SRT, JSON or CTM"),
         )
         self.add_words.clicked.connect(self.request_words)
@@ -167,14 +167,14 @@ class ImportDialog(QDialog):
             QToolButton,
             self,
             text=tr("Swap words"),
-            toolTip=tr("The words that were taken for the one's are the other's"),
+            toolTip=tr("Use this if each speaker was given the other's words"),
         )
         self.other_words.clicked.connect(self.swap_words)
         self.no_words = make_widget(
             QToolButton,
             self,
             text=tr("Without words"),
-            toolTip=tr("Read the sound alone: by loudness and pauses"),
+            toolTip=tr("Read only the sound: detect speech from loudness and pauses"),
         )
         self.no_words.clicked.connect(lambda: self.take_words(()))
         for button in (self.add_words, self.other_words, self.no_words):
@@ -190,12 +190,10 @@ class ImportDialog(QDialog):
         self.bar.setRange(0, 0)
         self.bar.setFixedWidth(150)
         self.stop = make_widget(
-            QToolButton, self, text=tr("Stop"), toolTip=tr("Stop reading; the dialog stays")
+            QToolButton, self, text=tr("Stop"), toolTip=tr("Stop reading, but keep the dialog open")
         )
         self.stop.clicked.connect(self.stop_reading)
-        self.again = make_widget(
-            QToolButton, self, text=tr("Read again"), toolTip=tr("Read the files once more")
-        )
+        self.again = make_widget(QToolButton, self, text=tr("Read again"), toolTip=tr("Read the files again"))
         self.again.clicked.connect(self.start)
         for widget in (self.bar, self.told, self.stop, self.again):
             row.addWidget(widget)
@@ -270,7 +268,7 @@ class ImportDialog(QDialog):
 
     def _failed(self, error: Exception) -> None:
         self.job = None
-        self._show(tr("It could not be read."), failure=tr_error(error))
+        self._show(tr("The files cannot be read."), failure=tr_error(error))
 
     def _show(self, told: str, busy: bool = False, failure: str = "") -> None:
         """Show how things are."""
@@ -329,7 +327,10 @@ class ImportDialog(QDialog):
                 for n in self.order
             ]
             self.whose[0].setText(
-                tr("Each has lists of its own, to be changed later: {each}", each=", ".join(each))
+                tr(
+                    "Each speaker has their own word lists, which you can change later: {each}",
+                    each=", ".join(each),
+                )
             )
             self.whose[0].setWordWrap(True)
             self.whose[0].setVisible(True)

@@ -95,7 +95,7 @@ COMMANDS = (
         tr_noop("Conversation from &sound…"),
         ConversationFeature.converse,
         menus=(SHORT,),
-        tip=tr_noop("Read what two or more say, and let a character each move with it"),
+        tip=tr_noop("Read the speech of two or more people, and move one character for each"),
     ),
     Command(
         "rename_conversation",
@@ -113,7 +113,7 @@ COMMANDS = (
         tr_noop("&Rates…"),
         partial(ConversationFeature.do, name="rates"),
         enabled=is_conversation_staged,
-        tip=tr_noop("How often each gestures and nods"),
+        tip=tr_noop("How often each speaker gestures and nods"),
         menus=(SHORT,),
     ),
     Command(
@@ -123,7 +123,7 @@ COMMANDS = (
         tr_noop("&Word lists…"),
         partial(ConversationFeature.do, name="word_lists"),
         enabled=is_conversation_staged,
-        tip=tr_noop("Which words are responses, which hesitations"),
+        tip=tr_noop("Choose which words count as responses and which as hesitations"),
         menus=(SHORT,),
     ),
     Command(
@@ -133,7 +133,7 @@ COMMANDS = (
         tr_noop("S&ounds and names…"),
         ConversationFeature.edit_sounds,
         enabled=is_conversation_staged,
-        tip=tr_noop("Who talks, which sound is whose, and where each stands"),
+        tip=tr_noop("Set the speakers, their sounds and where they stand"),
         menus=(SHORT,),
     ),
     Command(
@@ -143,25 +143,25 @@ COMMANDS = (
         tr_noop("C&haracters and voices"),
         fill=ConversationFeature.fill_partners,
         enabled=is_conversation_staged,
-        tip=tr_noop("Another character, body or voice for each who talks"),
+        tip=tr_noop("Change the character, body language or voice of each speaker"),
     ),
     Command(
         "other_side",
         MENU,
         "stage",
-        tr_noop("The &other's plan"),
+        tr_noop("&Next speaker's plan"),
         ConversationFeature.show_next_side,
         enabled=is_conversation_staged,
-        tip=tr_noop("Whose plan the timeline shows: of several the next one's"),
+        tip=tr_noop("Show the plan of the next speaker in the timeline"),
     ),
     Command(
         "graph_again",
         MENU,
         "stage",
-        tr_noop("Move with the &graph again"),
+        tr_noop("Use the &graph's motion"),
         partial(ConversationFeature.do, name="graph_again"),
         enabled=ConversationFeature.moves_without_graph,
-        tip=tr_noop("Instead of new motion that was found for it"),
+        tip=tr_noop("Stop using the new motion that was assembled for this conversation"),
     ),
     Command(
         "keep_conversation",
@@ -170,7 +170,9 @@ COMMANDS = (
         tr_noop("&Keep as performances"),
         ConversationFeature.keep_as_performances,
         enabled=is_conversation_staged,
-        tip=tr_noop("What all of them do, as requests that can be edited one by one, and exported"),
+        tip=tr_noop(
+            "Turn what each speaker does into a performance with requests that you can edit and export"
+        ),
     ),
     Command(
         "write_segments",
@@ -179,7 +181,7 @@ COMMANDS = (
         tr_noop("&Export segments…"),
         partial(ConversationFeature.do, name="write_segments"),
         enabled=is_conversation_staged,
-        tip=tr_noop("As ELAN or Praat TextGrid"),
+        tip=tr_noop("Save the segments as ELAN or Praat TextGrid"),
         menus=(SHORT,),
     ),
     Command(

@@ -67,14 +67,14 @@ class ConversationPanel(QWidget):
         row = QHBoxLayout()
         row.setContentsMargins(12, 0, 12, 2)
         row.setSpacing(8)
-        self.stage = ComboBox(self, toolTip=tr("Which conversation is on stage: it moves all its characters"))
+        self.stage = ComboBox(self, toolTip=tr("The conversation on stage. It moves all its characters."))
         self.stage.setAccessibleName(tr("Conversation on stage"))
         self.stage.setMinimumWidth(150)
         self.stage.activated.connect(
             lambda _: self.session.onstage.set_conversation(self.stage.currentData())
         )
         row.addWidget(self.stage)
-        tip = tr("Rename, rates, word lists, export, remove")
+        tip = tr("Rename, change, export and remove the conversation")
         self.more = MoreButton(self.session.look, tr("Conversations"), tip, self)
         self.more_menu = self.more.menu_of
         row.addWidget(self.more)
@@ -83,14 +83,14 @@ class ConversationPanel(QWidget):
         row.addWidget(self.title, 1)
         self.legend = QLabel(self, textFormat=Qt.TextFormat.RichText)
         self.legend.setToolTip(
-            tr("Clauses, responses and hesitations. Keys 1, 2 and 3 label the selected ones.")
+            tr("Clauses, responses and hesitations. Press 1, 2 or 3 to label the selected segments.")
         )
         row.addWidget(self.legend)
         self.add = make_widget(
             QToolButton,
             self,
             text=tr("From sound…"),
-            toolTip=tr("Read a conversation from sound files, and their words if there are any"),
+            toolTip=tr("Read a conversation from sound files, with transcripts if you have them"),
         )
         row.addWidget(self.add)
         return row
@@ -129,8 +129,8 @@ class ConversationPanel(QWidget):
         if self.session.onstage.mode == "manual":
             self.title.say(
                 tr(
-                    "Now the machine you draw moves one character. Back in the meta-graph, all who talk move "
-                    "with what is said."
+                    "The manual state machine now moves one character. Switch back to the meta-graph to "
+                    "move all speakers with the speech."
                 )
             )
             return
@@ -164,7 +164,7 @@ class ConversationPanel(QWidget):
         done, asked = (
             list_in_words([f"{100 * share:.0f} %" for share in some]) for some in zip(*shares, strict=True)
         )
-        return tr(". Gestures go with {done} of the clauses, {asked} were asked for", done=done, asked=asked)
+        return tr(". {done} of the clauses have a gesture; the rates ask for {asked}", done=done, asked=asked)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)

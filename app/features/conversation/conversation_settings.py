@@ -35,37 +35,40 @@ from metagraph.speech.gaze_shares import join_shares
 
 RATES = lazy_texts(
     lambda: {
-        "clause": (tr("gestures with its own clauses"), tr("How often the hands move with a clause")),
+        "clause": (tr("gestures on own clauses"), tr("How often the hands move with a clause")),
         "response": (
-            tr("nods with its own responses"),
+            tr("nods on own responses"),
             tr("How often the head nods with a “yeah” or “mm-hmm”"),
         ),
         "hesitation": (
-            tr("nods when the other hesitates"),
+            tr("nods when the partner hesitates"),
             tr("How often the head nods while the partner says “er”"),
         ),
         "mirror": (
-            tr("mirrors the other's stance"),
-            tr("How often the partner's change of stance is taken up while listening"),
+            tr("mirrors the partner's stance"),
+            tr("How often this speaker copies the partner's change of stance while listening"),
         ),
         "mood": (
-            tr("of the other's mood"),
-            tr("How far the partner's mood shows on this one's face and posture, a moment later"),
+            tr("takes on the partner's mood"),
+            tr("How strongly the partner's mood shows in this speaker's face and posture a moment later"),
         ),
-        "laugh": (tr("laughs along"), tr("How many of the others' laughs are answered with a laughing face")),
+        "laugh": (
+            tr("laughs along"),
+            tr("How often this speaker answers another's laugh with a laughing face"),
+        ),
     }
 )
 BLINKS = lazy_texts(
     lambda: {
         "life": (
-            tr("As in Life, and on stresses"),
-            tr("The life layer's blinks, and one on many of the clauses' peaks"),
+            tr("As in Life, plus on stresses"),
+            tr("The blinks of the life layer, plus a blink on many clause peaks"),
         ),
         "peaks": (
-            tr("On stresses, and after 5 s without"),
+            tr("On stresses, and after 5 s without a blink"),
             tr(
-                "On a clause's peak if the last blink is a second ago, and once in five seconds without one: "
-                "what Yang et al. keyed (section 7.3)"
+                "On a clause's peak if the last blink is at least one second ago, and otherwise after "
+                "five seconds without a blink, as keyed by Yang et al. (section 7.3)"
             ),
         ),
     }
@@ -199,7 +202,10 @@ class SideRatesDialog(SettingDialog):
     def build(self, layout: QVBoxLayout) -> None:
         layout.addWidget(
             make_caption(
-                tr("How often each moves with what is said. Beside: what actors did (Yang et al. 2020)."),
+                tr(
+                    "How often each speaker moves with the speech. The right columns show what actors did "
+                    "(Yang et al. 2020)."
+                ),
                 self,
                 True,
             )
@@ -241,7 +247,7 @@ class SideRatesDialog(SettingDialog):
                     QToolButton,
                     self,
                     text=tr("As {actor}", actor=words),
-                    toolTip=tr("The rates of {actor} in the paper", actor=words),
+                    toolTip=tr("Use the rates of {actor} in the paper", actor=words),
                 )
                 button.clicked.connect(
                     lambda _=False, side=side, rates=conversation_edits.PAPER[actor]: self.take(side, rates)

@@ -42,11 +42,11 @@ def fill_partner(menu: QMenu, document: Document, ident: str, side: int, more: o
 
     menu.setToolTipsVisible(True)
     body = menu.addMenu(tr("Character"))
-    offer(body, tr("Of the project that moves it"), of.character is None, character=None)
+    offer(body, tr("The character of its project"), of.character is None, character=None)
     used = (s.character for c in document.project.conversations.values() for s in c.sides)
     for path in _beside(document, BODIES, (*used, document.project.character)):
         offer(body, Path(path).stem, path == of.character, character=path)
-    mover = menu.addMenu(tr("Body language, moved by"))
+    mover = menu.addMenu(tr("Body language from"))
     offer(mover, tr("This project"), of.project is None, project=None)
     used = (s.project for c in document.project.conversations.values() for s in c.sides)
     own = document.path.resolve() if document.path is not None else None
@@ -67,15 +67,15 @@ def fill_partner(menu: QMenu, document: Document, ident: str, side: int, more: o
             here = path == of.audio and of.channel == channel
             offer(voice, f"{name}{ear}", here, audio=path, channel=channel)
     for inner, tip in (
-        (body, tr("The mesh it is drawn with")),
-        (mover, tr("The project whose graph moves it")),
-        (voice, tr("The sound it speaks with; its words and segments stay")),
+        (body, tr("The character mesh of this speaker")),
+        (mover, tr("The project whose graph moves this speaker")),
+        (voice, tr("The sound of this speaker. The words and segments do not change.")),
     ):
         inner.setToolTipsVisible(True)
         inner.menuAction().setToolTip(tip)
     if callable(more):
         menu.addSeparator()
-        menu.addAction(tr("Others, and where it stands…"), more)
+        menu.addAction(tr("More options and position…"), more)
     return menu
 
 
@@ -89,7 +89,7 @@ def fill_all(menu: QMenu, document: Document, ident: str, more: object = None) -
 def _set(document: Document, ident: str, side: int, changes: dict[str, object]) -> None:
     words = {
         "character": tr("Change character"),
-        "project": tr("Change who moves"),
+        "project": tr("Change body language"),
         "audio": tr("Change voice"),
     }
     text = next(t for name, t in words.items() if name in changes)

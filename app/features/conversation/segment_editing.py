@@ -181,7 +181,10 @@ class Editing(QObject):
         found = self.segment(place)
         if place is None or found is None:
             self.document.failed.emit(
-                tr("No segment is here: put the playhead, or the pointer, where one is to be split.")
+                tr(
+                    "There is no segment here. Move the playhead or the pointer to where you want to split "
+                    "one."
+                )
             )
             return
         second = found.peak is None or found.peak < seconds
@@ -204,7 +207,7 @@ class Editing(QObject):
 
     def address(self, to: int | None) -> None:
         """Say whom the selected segments are said to; None: it is inferred."""
-        self.change(tr("Say whom segments are said to"), conversation_edits.address_segments, self.chosen, to)
+        self.change(tr("Set addressee"), conversation_edits.address_segments, self.chosen, to)
 
     def merge(self) -> None:
         """Merge the selected segments of the side, with all between them; a single one with the next."""
@@ -267,7 +270,7 @@ class Editing(QObject):
         peak = seconds if inside else self.highest(self.last[0], found.start, found.end)
         if peak is None:
             self.document.failed.emit(
-                tr("No pitch was found in this segment: put the playhead in it, where the stress is.")
+                tr("No pitch was found in this segment. Move the playhead to the stressed place inside it.")
             )
         else:
             self.change(tr("Move stress"), conversation_edits.set_peak, *self.last, peak)

@@ -86,7 +86,7 @@ DEEDS: tuple[Deed, ...] = lazy_texts(
         ),
         Deed(tr("Split here"), (_combined(Key.Key_S),), lambda e, at: e.split(at), needs=False, line=True),
         Deed(tr("Merge with the next"), (_combined(Key.Key_M),), lambda e, _: e.merge()),
-        Deed(tr("Put the stress here"), (_combined(Key.Key_P),), lambda e, at: e.stress(at)),
+        Deed(tr("Set stress here"), (_combined(Key.Key_P),), lambda e, at: e.stress(at)),
         Deed(
             tr("Remove"),
             (_combined(Key.Key_Delete), _combined(Key.Key_Backspace)),
@@ -109,14 +109,14 @@ DEEDS: tuple[Deed, ...] = lazy_texts(
         Deed(tr("Next"), (_combined(Key.Key_Right),), lambda e, _: e.step(1), needs=False, hidden=True),
         Deed(tr("Previous"), (_combined(Key.Key_Left),), lambda e, _: e.step(-1), needs=False, hidden=True),
         Deed(
-            tr("The speaker above"),
+            tr("Speaker above"),
             (_combined(Key.Key_Up),),
             lambda e, _: e.cross(-1),
             needs=False,
             hidden=True,
         ),
         Deed(
-            tr("The speaker below"),
+            tr("Speaker below"),
             (_combined(Key.Key_Down),),
             lambda e, _: e.cross(1),
             needs=False,

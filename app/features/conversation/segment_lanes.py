@@ -116,6 +116,6 @@ def describe_segment(segment: Segment) -> str:
         lines.append(
             tr("Stress at {peak:.2f} s", peak=segment.peak)
             if segment.peak is not None
-            else tr("No stress: drag in the waveform above to set it")
+            else tr("No stress. Drag in the waveform above to set one.")
         )
     return "\n".join(lines)

@@ -182,7 +182,7 @@ def _told(painter: QPainter, t: WindowTheme, heard: SideSound | None, area: QRec
         words = (
             heard.missing
             if heard is not None
-            else tr("No sound is given for this side. Choose one in the menu “…” above.")
+            else tr("This speaker has no sound. Choose one in the menu “…” above.")
         )
         painter.setPen(QColor(t.warning))
         painter.drawText(inner, MIDDLE | Qt.TextFlag.TextWordWrap, f"⚠  {words}")

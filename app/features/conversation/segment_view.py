@@ -53,18 +53,21 @@ EMPTY = lazy_texts(
     lambda: (
         tr("Drop the sound of a conversation here"),
         tr(
-            "one file with a channel for each who speaks, or a file for each; with their words as TextGrid, "
-            "ELAN, subtitles or JSON, if there are any."
+            "Use one file with a channel for each speaker, or one file for each. Add transcripts "
+            "if you have them: TextGrid, ELAN, subtitles or JSON."
         ),
-        tr("What they say appears here, in clauses, responses and hesitations, and moves the characters."),
+        tr("The speech appears here as clauses, responses and hesitations, and moves the characters."),
     )
 )
 UNCHOSEN = lazy_texts(
-    lambda: (tr("No conversation is on stage"), tr("Choose one above, or drop the sound of another here."))
+    lambda: (
+        tr("No conversation on stage"),
+        tr("Choose a conversation above, or drop the sound of a new one here."),
+    )
 )
 TEXT = tr_noop(
-    "Segments of a conversation. Left and Right choose one, Up and Down the speaker, 1 to 3 label it, S "
-    "splits, M merges, Delete removes."
+    "Segments of a conversation. Left and Right select a segment, Up and Down the speaker. "
+    "1 to 3 label the segment, S splits it, M merges it, Delete removes it."
 )
 
 
@@ -437,7 +440,7 @@ class SegmentView(QWidget):
             words = describe_segment(of.sides[hit.side].segments[hit.at]) + describe_addressee(
                 of, hit.side, hit.at
             )
-            return words + (tr("\nDrag it to another top of the pitch") if hit.part == "peak" else "")
+            return words + (tr("\nDrag it to another peak of the pitch") if hit.part == "peak" else "")
         if hit.part == "wave":
             seconds = self.scale().seconds(at.x())
             said = [
@@ -461,10 +464,10 @@ class SegmentView(QWidget):
             sound = [f"{side.audio}{channel}"] if side.audio else []
             mover = [tr("Moved by {project}", project=side.project)] if side.project else []
             shown = (
-                tr("Performance shows this one's plan")
+                tr("The Performance panel shows this speaker's plan")
                 if whose
-                else tr("Click to see this one's plan in Performance")
+                else tr("Click to see this speaker's plan in the Performance panel")
             )
-            other = tr("The arrow: another character, body or voice")
+            other = tr("Click the arrow to change the character, body language or voice")
             return "\n".join((side_name(of, hit.side), *sound, *mover, shown, other))
-        return tr("Drag to make a segment") if hit.part == "gap" else ""
+        return tr("Drag to add a segment") if hit.part == "gap" else ""

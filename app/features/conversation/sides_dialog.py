@@ -85,9 +85,9 @@ class SidesDialog(SettingDialog):
             QLineEdit(of.project or "", inside),
             QLineEdit(of.character or "", inside),
         )
-        mover.setToolTip(tr("The project whose graph and character move this one"))
+        mover.setToolTip(tr("The project whose graph and character this speaker uses"))
         body.setToolTip(
-            tr("The GLB this one is drawn with; any whose joints have the names of the skeleton's")
+            tr("The GLB with this speaker's mesh. Its joints must have the same names as the skeleton's.")
         )
         mover.setClearButtonEnabled(True)
         body.setClearButtonEnabled(True)
@@ -97,7 +97,7 @@ class SidesDialog(SettingDialog):
                 (tr("Sound"), sound, tr("No sound")),
                 (tr("Channel"), channel, ""),
                 (tr("Moved by"), mover, tr("This project")),
-                (tr("Character"), body, tr("That project's")),
+                (tr("Character"), body, tr("From that project")),
             ),
             top + 1,
         ):
@@ -114,7 +114,7 @@ class SidesDialog(SettingDialog):
             button = make_widget(QToolButton, inside, text=tr("Choose…"), toolTip=tip)
             button.clicked.connect(lambda _=False, side=side, choose=choose: choose(side))
             grid.addWidget(button, row, 2)
-        grid.addWidget(QLabel(tr("Stands"), inside), top + 6, 0)
+        grid.addWidget(QLabel(tr("Position"), inside), top + 6, 0)
         grid.addLayout(self._place_row(inside, side), top + 6, 1)
         grid.setRowMinimumHeight(top + 7, 6)
         self.names.append(name)
@@ -130,19 +130,17 @@ class SidesDialog(SettingDialog):
     def _place_row(self, parent: QWidget, side: int) -> QHBoxLayout:
         """A place of one's own: to the right, and towards the viewer."""
         of = self.conversation.sides[side]
-        own = QCheckBox(tr("at a place of its own"), parent)
+        own = QCheckBox(tr("custom"), parent)
         own.setChecked(of.place is not None)
-        own.setAccessibleName(
-            tr("The {ordinal} speaker stands at a place of its own", ordinal=ORDINALS[side])
-        )
+        own.setAccessibleName(tr("Custom position for the {ordinal} speaker", ordinal=ORDINALS[side]))
         row = QHBoxLayout()
         row.setSpacing(10)
         row.addWidget(own)
         fields = []
         here = place_sides(self.conversation)[side]
         for at, words, tip in (
-            (here.x, tr("right"), tr("Metres to the right of the middle; less than 0 to the left")),
-            (here.z, tr("nearer"), tr("Metres towards the viewer; less than 0 away")),
+            (here.x, tr("right"), tr("Metres to the right of the middle; negative is to the left")),
+            (here.z, tr("nearer"), tr("Metres towards the viewer; negative is away from the viewer")),
         ):
             field = DoubleSpinBox(parent, suffix=f" m {words}", decimals=2, singleStep=0.1, toolTip=tip)
             field.setRange(-50, 50)
@@ -170,7 +168,7 @@ class SidesDialog(SettingDialog):
         count = channels_of((self.document.folder or Path()) / name) if name else 0
         box = self.channels[side]
         box.clear()
-        box.addItem(tr("All, mixed"), None)
+        box.addItem(tr("All channels, mixed"), None)
         for n in range(max(count, 0 if chosen is None else chosen + 1)):
             words = f"{n + 1}" + ((tr(" (left)"), tr(" (right)"))[n] if count == 2 and n < 2 else "")
             box.addItem(words, n)
@@ -211,8 +209,8 @@ class SidesDialog(SettingDialog):
         if not whole.is_file():
             raise EditError(
                 tr(
-                    "there is no project at {whole}: choose another, or clear the field to let this "
-                    "project move the speaker",
+                    "there is no project at {whole}: choose another, or clear the field to move the "
+                    "speaker with this project",
                     whole=whole,
                 )
             )
@@ -229,8 +227,8 @@ class SidesDialog(SettingDialog):
             if not whole.is_file():
                 raise EditError(
                     tr(
-                        "there is no character at {whole}: choose another, or clear the field, so that the "
-                        "speaker is drawn with the character of the project that moves it",
+                        "there is no character at {whole}: choose another, or clear the field to use the "
+                        "character of the speaker's project",
                         whole=whole,
                     )
                 )

@@ -26,7 +26,7 @@ LONGEST = 36000.0  # seconds of a conversation
 KEPT = 16000  # samples a second that waveform and pitch need
 BLOCK = 60  # seconds of the waveform at a time
 HOPS = 100.0  # pitches a second
-ANEW = tr_noop("Menu “…” above, Sounds and names, chooses another.")
+ANEW = tr_noop("To choose another sound, open the menu “…” above and choose Sounds and names.")
 Key = tuple[str, int | None]  # a sound's path, and the channel
 
 
@@ -132,7 +132,7 @@ class Sounds(QObject):
             ):
                 heard.told, heard.missing = (
                     "",
-                    tr("Reading was cancelled. Choose the conversation again to read its sound."),
+                    tr("Reading was cancelled. To read the sound, choose the conversation again."),
                 )
         self.changed.emit()
 

@@ -41,14 +41,16 @@ class SpeakerCard(QFrame):
         grid.setColumnStretch(1, 1)
         row_of = QHBoxLayout()
         row_of.addWidget(make_caption(title, self), 1)
-        self.taken = QCheckBox(tr("Takes part"), self)
+        self.taken = QCheckBox(tr("Include"), self)
         self.taken.setChecked(True)
-        self.taken.setToolTip(tr("Whether this speaker is in the conversation, with a character of its own"))
-        self.taken.setAccessibleName(tr("The {ordinal} speaker takes part", ordinal=ordinal))
+        self.taken.setToolTip(tr("Includes this speaker in the conversation, with their own character"))
+        self.taken.setAccessibleName(tr("Include the {ordinal} speaker", ordinal=ordinal))
         self.earlier = make_widget(
-            QToolButton, self, text="←", toolTip=tr("Before the one on the left: who stands where")
+            QToolButton, self, text="←", toolTip=tr("Move this speaker one place to the left")
         )
-        self.earlier.setAccessibleName(tr("Move the {ordinal} speaker one place forward", ordinal=ordinal))
+        self.earlier.setAccessibleName(
+            tr("Move the {ordinal} speaker one place to the left", ordinal=ordinal)
+        )
         self.earlier.setEnabled(not first)
         for choice in (self.taken, self.earlier):
             choice.hide()
@@ -88,7 +90,7 @@ class SpeakerCard(QFrame):
         self.words.setText(
             tr_plural("{count:,} word", "{count:,} words", len(side.words)) + spoken
             if side.words
-            else tr("none: told by its loudness")
+            else tr("none: detected from loudness")
         )
         counts = {k: sum(s.kind == k for s in side.segments) for k in SPOKEN}
         self.segments.setText(
@@ -110,7 +112,7 @@ class Cards(Tall):
     def __init__(self, parent: QWidget) -> None:
         inside = QWidget(parent)
         super().__init__(inside, 330, parent)  # two rows; more are scrolled
-        self.setAccessibleName(tr("Who was read"))
+        self.setAccessibleName(tr("Detected speakers"))
         self.cards: list[SpeakerCard] = []
         self.grid = QGridLayout(inside)
         self.grid.setContentsMargins(0, 0, 0, 0)
@@ -121,9 +123,9 @@ class Cards(Tall):
             QToolButton,
             inside,
             text="⇄",
-            toolTip=tr("Swap the two: who stands left, and is driven by this project's own graph"),
+            toolTip=tr("Swap the two speakers. The left one is moved by this project's graph."),
         )
-        self.swap.setAccessibleName(tr("Swap the two"))
+        self.swap.setAccessibleName(tr("Swap speakers"))
         self.swap.clicked.connect(lambda: self.moved.emit(1))
         self.grid.addWidget(self.swap, 0, 1)
         self.deal(2)

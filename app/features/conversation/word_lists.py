@@ -48,7 +48,10 @@ class LanguageBox(ComboBox):
             self.addItem(pack.name if pack.name == pack.own else f"{pack.name} · {pack.own}", pack.code)
         self.setAccessibleName(tr("Language"))
         self.setToolTip(
-            tr("By whose lists words are responses and hesitations; Automatic: as the words tell")
+            tr(
+                "The language whose word lists identify responses and hesitations. Automatic detects "
+                "it from the words."
+            )
         )
 
     def show_code(self, code: str) -> None:
@@ -83,8 +86,8 @@ class WordLists(QWidget):
             reset = make_widget(
                 QToolButton,
                 self,
-                text=tr("Usual"),
-                toolTip=tr("The language's list as it comes with the program"),
+                text=tr("Default"),
+                toolTip=tr("Restore the list for this language that comes with Metagraph"),
             )
             reset.clicked.connect(
                 lambda _=False, n=column: self.edits[n].setPlainText(", ".join(self.usual[n]))
@@ -127,16 +130,13 @@ class WordsDialog(SettingDialog):
     def build(self, layout: QVBoxLayout) -> None:
         layout.addWidget(
             make_caption(
-                tr(
-                    "Segments made of nothing but these words are labelled so; "
-                    "what you labelled yourself stays."
-                ),
+                tr("Segments that contain only these words get this label. Your own labels do not change."),
                 self,
                 True,
             )
         )
         of = self.conversation
-        self.apart = QCheckBox(tr("Each has lists of its own"), self)
+        self.apart = QCheckBox(tr("Separate lists for each speaker"), self)
         self.sides = range(len(of.sides))
         self.apart.setChecked(any(lists_of(of, n) != lists_of(of, 0) for n in self.sides))
         everyone = tr("Both") if len(self.sides) == 2 else tr("All")

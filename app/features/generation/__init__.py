@@ -26,7 +26,7 @@ def contribute(shell: Shell) -> Contribution:
                 "make",
                 tr("&Generate…"),
                 show,
-                tip=tr("Learn from takes how people move when they talk, and let characters move so"),
+                tip=tr("Train a model on takes of people who talk, and move characters with it"),
             ),
         ),
     )

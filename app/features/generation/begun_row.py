@@ -26,14 +26,14 @@ class BegunRow(QWidget):
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         self.which = ComboBox(self)
-        self.which.setAccessibleName(tr("Training begun before"))
+        self.which.setAccessibleName(tr("Unfinished training"))
         self.which.setMinimumContentsLength(16)
         self.which.currentIndexChanged.connect(self._offer)
-        self.go = QPushButton(tr("Go on"), self, autoDefault=False)
+        self.go = QPushButton(tr("Continue"), self, autoDefault=False)
         self.go.clicked.connect(lambda: self.resumed.emit(self.which.currentData()))
-        self.keep = QPushButton(tr("Keep as it is"), self, autoDefault=False)
+        self.keep = QPushButton(tr("Keep as is"), self, autoDefault=False)
         self.keep.clicked.connect(lambda: self.kept.emit(self.which.currentData()))
-        row.addWidget(QLabel(tr("Begun before"), self))
+        row.addWidget(QLabel(tr("Unfinished"), self))
         row.addWidget(self.which, 1)
         row.addWidget(self.go)
         row.addWidget(self.keep)
@@ -59,11 +59,11 @@ class BegunRow(QWidget):
             return
         over = one.share >= 1
         self.go.setToolTip(
-            tr("For as many minutes more as are set above")
+            tr("Train for the number of minutes set above")
             if over
-            else tr("From its last checkpoint, for the time that was set when it was begun")
+            else tr("Continue from the last checkpoint, for the rest of the time that was set at the start")
         )
-        self.keep.setToolTip(tr("Make a model of what was learned until the last checkpoint"))
+        self.keep.setToolTip(tr("Make a model from the last checkpoint"))
         self.keep.setVisible(not one.kept)
         self.keep.setEnabled(one.step > 0)
 

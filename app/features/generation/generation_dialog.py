@@ -75,7 +75,10 @@ class GenerationDialog(QDialog):
             for page in (self.use, self.learn):
                 self._say(
                     page,
-                    tr("The training of '{cut}' is not over: go on with it under Learn from takes.", cut=cut),
+                    tr(
+                        "The training of '{cut}' is not finished. Continue it under Learn from takes.",
+                        cut=cut,
+                    ),
                 )
 
     def _follow(self, before: Project, after: Project) -> None:

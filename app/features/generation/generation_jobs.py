@@ -281,9 +281,13 @@ def describe_model(card: ModelCard, project: Project) -> str:
         else tr("nothing")
     )
     own = project.skeleton is not None and card.skeleton.fingerprint == project.skeleton.fingerprint
-    fits = tr("this project's figure") if own else tr("another figure: its motion is retargeted")
+    fits = tr("this project's skeleton") if own else tr("another skeleton (its motion is retargeted)")
     licences = sorted({t.licence for t in card.takes if t.licence and not t.licence.startswith("no licence")})
-    told = tr(" Takes under {licences}.", licences="; ".join(licences)[:160].rstrip(". ")) if licences else ""
+    told = (
+        tr(" Licences of the takes: {licences}.", licences="; ".join(licences)[:160].rstrip(". "))
+        if licences
+        else ""
+    )
     kind = KINDS.get(card.kind, card.kind)
     return tr(
         "{kind}, learned from {learned}, {steps}; made for {fits}.{told}",

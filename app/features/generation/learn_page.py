@@ -51,16 +51,19 @@ from metagraph.generation.train_plan import PLAN, folder_of, read_planned_takes
 
 TIPS = lazy_texts(
     lambda: (
-        ("matching", tr("Follows the speech best for the time it takes: 15 minutes are a beginning")),
-        ("flow-vae", tr("As in the paper: a code of poses and a flow over it; needs longer")),
-        ("moglow", tr("The paper's comparison: a flow over the poses themselves")),
-        ("cvae", tr("The paper's other comparison: moves little")),
+        ("matching", tr("Follows the speech best for its training time. Start with 15 minutes.")),
+        (
+            "flow-vae",
+            tr("As in the paper: a learned code of poses with a flow model. Needs longer training."),
+        ),
+        ("moglow", tr("A comparison from the paper: a flow model on the poses themselves")),
+        ("cvae", tr("Another comparison from the paper: moves only a little")),
     )
 )
 SIZES = lazy_texts(
-    lambda: (("small", tr("small, for this machine")), ("paper", tr("as in the paper, for a graphics card")))
+    lambda: (("small", tr("small, for this computer")), ("paper", tr("as in the paper, for a graphics card")))
 )
-HEADS = lazy_texts(lambda: (tr("Take"), tr("Length"), tr("Speech"), tr("What to know")))
+HEADS = lazy_texts(lambda: (tr("Take"), tr("Length"), tr("Speech"), tr("Notes")))
 
 
 def describe_missing_training() -> str | None:
@@ -106,9 +109,11 @@ class LearnPage(GenerationPage):
         box.addWidget(self.title)
         row = QHBoxLayout()
         self.add = self.button(
-            tr("Add folder…"), tr("Clips with sound beside them: talk.bvh and talk.wav"), self.choose_folder
+            tr("Add folder…"),
+            tr("Choose a folder of clips with a sound file for each: talk.bvh and talk.wav"),
+            self.choose_folder,
         )
-        self.clear = self.button(tr("Clear"), tr("Forget the folders"), self.forget)
+        self.clear = self.button(tr("Clear"), tr("Remove all folders from the list"), self.forget)
         row.addWidget(self.add)
         row.addWidget(self.clear)
         row.addStretch(1)
@@ -164,10 +169,10 @@ class LearnPage(GenerationPage):
         row.addStretch(1)
         box.addLayout(row)
         row = QHBoxLayout()
-        self.train = self.button(tr("Train"), tr("In a process of its own, beside your work"), self.start)
+        self.train = self.button(tr("Train"), tr("Train in the background, while you work"), self.start)
         strengthen(self.train)
         self.stop = self.button(
-            tr("Stop and keep"), tr("End now, and keep what was learned so far"), self.end
+            tr("Stop and save"), tr("Stop now and save the model as trained so far"), self.end
         )
         row.addWidget(QLabel(tr("Name"), self))
         row.addWidget(self.name, 1)
@@ -239,7 +244,7 @@ class LearnPage(GenerationPage):
         rows = sorted(listing.rows, key=lambda r: not r.bad)
         self.table.setRowCount(len(rows))
         for n, take in enumerate(rows):
-            length = f"{take.seconds:.0f} s" if not take.bad else tr("left out")
+            length = f"{take.seconds:.0f} s" if not take.bad else tr("skipped")
             for column, text in enumerate((take.name, length, take.heard, take.wrong)):
                 item = QTableWidgetItem(text)
                 item.setToolTip(text)
@@ -253,16 +258,20 @@ class LearnPage(GenerationPage):
         )
         left = (
             tr(
-                " {bad} left out: the first rows say why.",
+                " {bad} skipped: the first rows say why.",
                 bad=tr_plural("{count:,} clip", "{count:,} clips", bad),
             )
             if bad
             else ""
         )
-        short = tr(" That is little: an hour or more is better.") if good and listing.seconds < 1800 else ""
+        short = (
+            tr(" That is not much: use an hour or more for better results.")
+            if good and listing.seconds < 1800
+            else ""
+        )
         self.said.emit(
             tr(
-                "{good} can be learned from.{left}{short}",
+                "{good} can be used for training.{left}{short}",
                 good=tr_plural("{count:,} take", "{count:,} takes", good),
                 left=left,
                 short=short,
@@ -279,12 +288,13 @@ class LearnPage(GenerationPage):
         item = self.table.item(min(rows), 3) if rows else None
         if item is None:
             empty = tr(
-                "Each clip needs its sound beside it, under the same name: talk.bvh and talk.wav, its own "
-                "voice in the first channel, the partner's in the second. Words (ELAN, TextGrid …) help."
+                "Each clip needs a sound file with the same name beside it: talk.bvh and talk.wav. Put "
+                "the speaker's own voice in the first channel and the partner's in the second. "
+                "Transcripts (ELAN, TextGrid …) help."
             )
             self.note.setText("" if self.table.rowCount() else empty)
             return
-        self.note.setText(item.text() or tr("Nothing is wrong with it."))
+        self.note.setText(item.text() or tr("No problems found."))
 
     # --- training
 
@@ -321,19 +331,21 @@ class LearnPage(GenerationPage):
 
         folder = self.document.folder
         if folder is None:
-            self.said.emit(tr("Save the project first: the model is kept as a file beside it."))
+            self.said.emit(tr("Save the project first. The model is saved as a file beside it."))
             return
         if self.listing.batch is None or self.run is not None or self._job is not None:
             return
         name = self.name.text().strip().strip(".") or tr("new model")
         if any(c in name for c in '/\\:*?"<>|'):
-            self.said.emit(tr("The model's name is a file's name: leave out / \\ : * ? \" < > |."))
+            self.said.emit(
+                tr('The name of the model is a file name, so it cannot contain / \\ : * ? " < > |.')
+            )
             return
         out = folder / FOLDER / f"{name}{SUFFIX}"
         if out.exists():
             self.said.emit(
                 tr(
-                    "There is a model '{name}' already: choose another name, so that it is not lost.",
+                    "A model '{name}' already exists. Choose another name, so that it is not overwritten.",
                     name=name,
                 )
             )
@@ -341,7 +353,7 @@ class LearnPage(GenerationPage):
         if (folder_of(out) / PLAN).exists():
             self.said.emit(
                 tr(
-                    "A training of '{name}' was begun before: go on with it, or choose another name.",
+                    "There is an unfinished training of '{name}'. Continue it, or choose another name.",
                     name=name,
                 )
             )
@@ -367,7 +379,7 @@ class LearnPage(GenerationPage):
         if is_busy(folder):
             self.said.emit(
                 tr(
-                    "'{model}' is being trained by another process, which comes first.",
+                    "Another process is already training '{model}'. Wait until it has finished.",
                     model=standing.out.stem,
                 )
             )
@@ -407,7 +419,7 @@ class LearnPage(GenerationPage):
         self.progress.setValue(0)
         self.stands.setText("")
         self.progress.show()
-        self.said.emit(tr("Training in a process of its own: go on working meanwhile."))
+        self.said.emit(tr("Training in the background. You can continue working."))
         self.preview.begin(rig, takes)
         self.fill()
 
@@ -423,7 +435,7 @@ class LearnPage(GenerationPage):
         if event.landmarks:
             self.preview.show_sample(event.landmarks)
         if event.event == "finish":
-            self.said.emit(tr("The model is being measured and written…"))
+            self.said.emit(tr("Measuring and saving the model…"))
         if event.event == "note" and event.text:
             self.said.emit(event.text)
 
@@ -431,7 +443,7 @@ class LearnPage(GenerationPage):
         """Stop soon, and keep the model as it is."""
         if self.run is not None:
             self.run.stop()
-            self.said.emit(tr("Stopping: the model is being written…"))
+            self.said.emit(tr("Stopping and saving the model…"))
             self._enable()
 
     def _ended(self, model: Path | None, error: str) -> None:
@@ -442,7 +454,7 @@ class LearnPage(GenerationPage):
         else:
             self.said.emit(
                 tr(
-                    "The model '{model}' is kept in {folder}. Use it under Generate.",
+                    "The model '{model}' is saved in {folder}. Use it under Generate.",
                     model=model.stem,
                     folder=model.parent.name,
                 )

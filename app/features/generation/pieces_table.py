@@ -21,11 +21,11 @@ from metagraph.generation.networks import FPS
 from metagraph.generation.poses import encode_clip
 from metagraph.graph.model import Kind, Limb
 
-HEADS = lazy_texts(lambda: (tr("Piece"), tr("Length"), tr("Taken for"), tr("Sure"), tr("Arm")))
+HEADS = lazy_texts(lambda: (tr("Piece"), tr("Length"), tr("Label"), tr("Confidence"), tr("Arm")))
 KIND, SURE, LIMB = 2, 3, 4  # columns
 KINDS: tuple[Kind, ...] = ("gesture", "fidget")
 LIMBS: tuple[Limb, ...] = ("both", "left", "right")
-EMPTY = tr_noop("What is made and cut stands here, to be looked at before it is dropped.")
+EMPTY = tr_noop("Generated pieces appear here. Check them before you add them.")
 
 
 class PiecesTable(QTableWidget):
@@ -82,8 +82,8 @@ class PiecesTable(QTableWidget):
             self.setItem(n, 0, name)
             self.setItem(n, 1, QTableWidgetItem(f"{piece.clip.duration:.1f} s"))
             self.setItem(n, SURE, QTableWidgetItem(f"{100 * piece.sure:.0f} %" if piece.sure > 0 else ""))
-            self._offer(n, KIND, KINDS, piece.kind, tr("What {name} is taken for", name=piece.clip.name))
-            self._offer(n, LIMB, LIMBS, piece.limb, tr("Which arm {name} takes", name=piece.clip.name))
+            self._offer(n, KIND, KINDS, piece.kind, tr("Label of {name}", name=piece.clip.name))
+            self._offer(n, LIMB, LIMBS, piece.limb, tr("Arm of {name}", name=piece.clip.name))
         self.blockSignals(False)
         self.viewport().update()
         if pieces:
@@ -135,8 +135,8 @@ class PiecesView(QWidget):
         super().__init__(parent)
         self.document = document
         self.table = PiecesTable(self)
-        self.preview = FigurePreview(("",), tr("A piece that is selected moves here."), FPS, self)
-        self.preview.setAccessibleName(tr("How the selected piece moves"))
+        self.preview = FigurePreview(("",), tr("Select a piece to see it move here."), FPS, self)
+        self.preview.setAccessibleName(tr("Preview of the selected piece"))
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.addWidget(self.table, 3)

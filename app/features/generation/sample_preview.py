@@ -98,9 +98,9 @@ class SamplePreview(FigurePreview):
     """The take on the left, the model on the right; words alone before there is anything."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
-        empty = tr("While a model learns, a take moves here, and beside it somebody as the model would.")
-        super().__init__((tr("as recorded"), tr("as the model moves by now")), empty, RATE, parent)
-        self.setAccessibleName(tr("A take, and how the model moves by now"))
+        empty = tr("During training, a take plays here beside the model's motion for the same speech.")
+        super().__init__((tr("as recorded"), tr("model so far")), empty, RATE, parent)
+        self.setAccessibleName(tr("A take beside the motion of the model so far"))
 
     def begin(self, rig: PoseRig, takes: Sequence[Take]) -> None:
         """Show a take: where in one most is said oneself."""

@@ -18,9 +18,9 @@ from app.widgets.still_plot import empty_plot, still_plot
 RATIOS = lazy_texts(
     lambda: {
         "speed": tr("speed"),
-        "trembling": tr("trembling"),
+        "trembling": tr("jitter"),
         "wrist_range": tr("reach"),
-        "profile": tr("goes with stresses"),
+        "profile": tr("stresses met"),
     }
 )
 STYLES = (
@@ -47,7 +47,7 @@ class TrainingPlots(QWidget):
         layout.setSpacing(10)
         self.left, self.right = (still_plot(self) for _ in range(2))
         for plot, name in (
-            (self.left, tr("How near the training is to its goal")),
+            (self.left, tr("Progress of the training")),
             (self.right, tr("Statistics of the samples")),
         ):
             plot.setAccessibleName(name)
@@ -75,8 +75,8 @@ class TrainingPlots(QWidget):
         look = theme(self.session.look.name)
         colours = (look.text, look.warning, look.dim, look.error, look.text)
         for plot, words, lines in (
-            (self.left, next(iter(self.goals), tr("what training is after")), self.goals),
-            (self.right, tr("samples beside takes: 1 is right"), self.ratios),
+            (self.left, next(iter(self.goals), tr("training goal")), self.goals),
+            (self.right, tr("samples compared with takes: 1 is a perfect match"), self.ratios),
         ):
             empty_plot(plot, look)
             plot.setLabel("bottom", tr("minutes"), color=look.dim)

@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 # What an event's numbers tell, the most telling first.
 GOALS = lazy_texts(
     lambda: {
-        "likelihood": tr("likelihood: more is better"),
-        "matching": tr("error of the flow: less is better"),
-        "loss": tr("error: less is better"),
+        "likelihood": tr("likelihood: higher is better"),
+        "matching": tr("error of the flow: lower is better"),
+        "loss": tr("error: lower is better"),
     }
 )
 LITTLE = 0.4  # of a core: other work takes the rest
@@ -97,10 +97,10 @@ def describe_progress(standing: Standing) -> str:
     """Return how far a training got, in words."""
     kind, step = standing.plan.kind, standing.step
     if not step:
-        return tr("{kind}, nothing kept yet", kind=kind)
+        return tr("{kind}, nothing saved yet", kind=kind)
     if standing.share >= 1:
         return tr(
-            "{kind}, {steps}, its time is over",
+            "{kind}, {steps}, training time is up",
             kind=kind,
             steps=tr_plural("{count:,} step", "{count:,} steps", step),
         )
@@ -164,7 +164,11 @@ def describe_event(event: TrainingEvent) -> str:
     )
     got = event.seconds / (60 * event.minutes)
     return (
-        tr("{words}; busy machine: {share:.0f} % of a core", words=words, share=100 * got)
+        tr(
+            "{words}; the computer is busy: training gets {share:.0f} % of a core",
+            words=words,
+            share=100 * got,
+        )
         if got < LITTLE
         else words
     )

@@ -46,7 +46,8 @@ from metagraph.graph.conversation.model import side_name
 
 FILE, CHOOSE = "file", "choose"  # a sound that was chosen, and choosing one
 NOBODY = tr_noop(
-    "There is no conversation yet: drop a recording of two who talk on the window, and choose a side here."
+    "There is no conversation yet. Drop a recording of two speakers on the window, then "
+    "choose a speaker here."
 )
 
 
@@ -68,7 +69,7 @@ class UsePage(GenerationPage):
         self.about.setProperty("dim", True)
         box.addWidget(self.about)
         for words, row in (
-            (tr("A side of a conversation"), self._side_row()),
+            (tr("A speaker of a conversation"), self._side_row()),
             (tr("Clips for the meta-graph"), self._takes_row()),
         ):
             box.addSpacing(8)
@@ -88,33 +89,40 @@ class UsePage(GenerationPage):
         self.model.setAccessibleName(tr("Model"))
         self.model.setMinimumWidth(220)
         self.model.currentIndexChanged.connect(self._about)
-        choose = self.button(tr("Choose file…"), tr("A model from elsewhere"), self.choose_model)
+        choose = self.button(
+            tr("Choose file…"), tr("Use a model file from another folder"), self.choose_model
+        )
         self.seed = SpinBox(self, minimum=1, maximum=9999, value=1)
         self.seed.setAccessibleName(tr("Seed"))
-        self.seed.setToolTip(tr("Another number moves otherwise to the same speech"))
+        self.seed.setToolTip(tr("Another seed gives another motion for the same speech"))
         self.temperature = DoubleSpinBox(self, minimum=0, maximum=1.2, singleStep=0.1, decimals=1, value=1.0)
-        self.temperature.setAccessibleName(tr("Chance"))
-        self.temperature.setToolTip(tr("How much happens by chance: 0 moves least, 1 as was learned"))
+        self.temperature.setAccessibleName(tr("Randomness"))
+        self.temperature.setToolTip(
+            tr("How random the motion is: 0 gives the least motion, 1 is as in the takes")
+        )
         self.guidance = DoubleSpinBox(self, minimum=0, maximum=5, singleStep=0.25, decimals=2, value=GUIDANCE)
-        self.guidance.setAccessibleName(tr("Follows the speech"))
+        self.guidance.setAccessibleName(tr("Follow speech"))
         self.guidance.setToolTip(
-            tr("How closely it follows the speech; 1 as was learned. Matching models alone")
+            tr("How closely the motion follows the speech; 1 is as in the takes. Only for matching models.")
         )
         return self.row(
             (tr("Model"), self.model),
             ("", choose),
             (tr("Seed"), self.seed),
-            (tr("Chance"), self.temperature),
-            (tr("Follows the speech"), self.guidance),
+            (tr("Randomness"), self.temperature),
+            (tr("Follow speech"), self.guidance),
         )
 
     def _side_row(self) -> QHBoxLayout:
         self.side = ComboBox(self)
-        self.side.setAccessibleName(tr("Who moves so"))
+        self.side.setAccessibleName(tr("Speaker"))
         self.side.setMinimumWidth(260)
         self.move_button = self.button(
-            tr("Move by the model"),
-            tr("Arms, head and spine move to the whole conversation; legs, eyes and lips as before"),
+            tr("Move with the model"),
+            tr(
+                "The model moves arms, head and spine for the whole conversation. Legs, eyes and lips "
+                "do not change."
+            ),
             self.move_side,
         )
         strengthen(self.move_button)
@@ -124,30 +132,30 @@ class UsePage(GenerationPage):
 
     def _takes_row(self) -> QHBoxLayout:
         self.speech = ComboBox(self)
-        self.speech.setAccessibleName(tr("To whose speech"))
+        self.speech.setAccessibleName(tr("Whose speech drives the motion"))
         self.speech.setMinimumWidth(260)
         self.speech.activated.connect(self._speech_chosen)
         self.minutes = DoubleSpinBox(self, minimum=0.2, maximum=10, singleStep=0.5, decimals=1, value=3)
         self.minutes.setSuffix(" min")
         self.minutes.setAccessibleName(tr("Minutes"))
         self.cut_button = self.button(
-            tr("Make and cut"),
-            tr("Cut at still moments that are alike, so that no jump shows"),
+            tr("Generate and cut"),
+            tr("Generate motion and cut it at still moments with similar poses, so that no jump is visible"),
             self.make_pieces,
         )
         return self.row((tr("To"), self.speech), (tr("for"), self.minutes), ("", self.cut_button))
 
     def _drop_row(self) -> QHBoxLayout:
         self.stance = ComboBox(self)
-        self.stance.setAccessibleName(tr("Stance they leave and come back to"))
+        self.stance.setAccessibleName(tr("The stance that the pieces start and end in"))
         self.stance.setMinimumWidth(200)
         self.drop_button = self.button(
-            tr("Drop"), tr("In the library, and on the arms' layer of the graph"), self.drop
+            tr("Add"), tr("Add the pieces to the library and to the arms layer of the graph"), self.drop
         )
         self.drop_button.setMinimumWidth(120)
         strengthen(self.drop_button)
         self.progress = make_widget(QProgressBar, self, maximumWidth=180, textVisible=False)
-        self.cancel_button = self.button(tr("Cancel"), tr("Nothing is changed then"), self.cancel)
+        self.cancel_button = self.button(tr("Cancel"), tr("Stop without changing anything"), self.cancel)
         row = self.row((tr("On"), self.stance), ("", self.drop_button))
         for widget in (self.progress, self.cancel_button):
             widget.hide()
@@ -178,7 +186,7 @@ class UsePage(GenerationPage):
         self.stance.clear()
         for s in project.graphs["arms"].stances.values():
             self.stance.addItem(tr("{layer} · {name}", layer=tr("arms"), name=s.name), s.id)
-        self.stance.addItem(tr("the library alone"), "")
+        self.stance.addItem(tr("only the library"), "")
         wanted = stance if stance is not None else find_first_stance(project)
         self.stance.choose(wanted)
         self._enable()
@@ -212,7 +220,7 @@ class UsePage(GenerationPage):
         """Say what the chosen model is."""
         path = self.model.currentData()
         if path is None:
-            self.about.setText(tr("There is no model yet: train one, or choose a file."))
+            self.about.setText(tr("There is no model yet. Train one, or choose a file."))
         else:
             try:
                 self.about.setText(describe_model(read_card(path), self.document.project))
@@ -251,9 +259,9 @@ class UsePage(GenerationPage):
         count = len(self.table.chosen())
         self.drop_button.setEnabled(self._job is None and count > 0)
         self.drop_button.setText(
-            tr("Drop {count}", count=tr_plural("{count:,} clip", "{count:,} clips", count))
+            tr("Add {count}", count=tr_plural("{count:,} clip", "{count:,} clips", count))
             if count
-            else tr("Drop")
+            else tr("Add")
         )
 
     def _start(self, title: str, work: Callable[[WindowJob], Any], done: Callable[[Any], None]) -> None:
@@ -283,11 +291,11 @@ class UsePage(GenerationPage):
     def cancel(self) -> None:
         if self._job is not None:
             self._job.cancel()
-            self.said.emit(tr("Cancelled; nothing was changed."))
+            self.said.emit(tr("Cancelled. Nothing was changed."))
 
     def _folder(self) -> Path | None:
         if self.document.folder is None:
-            self._failed(ValueError(tr("save the project first: new clips are kept as files beside it")))
+            self._failed(ValueError(tr("save the project first: new clips are saved as files beside it")))
         return self.document.folder
 
     def _chance(self) -> Any:
@@ -309,7 +317,10 @@ class UsePage(GenerationPage):
             who = side_name(talk, side)
             self._failed(
                 ValueError(
-                    tr("{who} is moved by another project: clear that in Sounds and names first", who=who)
+                    tr(
+                        "{who} is moved by another project: first clear 'Moved by' in Sounds and names",
+                        who=who,
+                    )
                 )
             )
             return
@@ -323,10 +334,12 @@ class UsePage(GenerationPage):
         def done(made: Any) -> None:
             loaded, notes = made
             if ident not in self.document.project.conversations:
-                self._failed(ValueError(tr("the conversation is gone; the clip is kept in its folder")))
+                self._failed(
+                    ValueError(tr("the conversation no longer exists; the clip is still in its folder"))
+                )
                 return
             self.document.edit(
-                tr("Move by a model"),
+                tr("Move with a model"),
                 lambda p: with_side_moved(p, loaded, named, chance.seed, ident, side),
             )
             self.session.onstage.set_conversation(ident)
@@ -337,7 +350,7 @@ class UsePage(GenerationPage):
             told = " ".join(notes)
             self.said.emit(
                 tr(
-                    "{who} moves by '{named}', seed {seed}. {told}",
+                    "{who} moves with '{named}', seed {seed}. {told}",
                     who=side_name(talk, side),
                     named=named,
                     seed=chance.seed,
@@ -345,7 +358,7 @@ class UsePage(GenerationPage):
                 ).rstrip()
             )
 
-        self._start(tr("Making motion"), work, done)
+        self._start(tr("Generating motion"), work, done)
 
     # --- clips
 
@@ -393,13 +406,13 @@ class UsePage(GenerationPage):
                 return
             self.said.emit(
                 tr(
-                    "{pieces}, not kept yet: drop those you like. {told}",
+                    "{pieces}, not saved yet. Add the ones that you like. {told}",
                     pieces=tr_plural("{count:,} piece", "{count:,} pieces", len(found)),
                     told=told,
                 ).rstrip()
             )
 
-        self._start(tr("Making motion to cut"), work, done)
+        self._start(tr("Generating motion to cut"), work, done)
 
     def drop(self) -> None:
         """Keep the checked pieces as files, and drop them on the graph: one step of undo."""
@@ -411,16 +424,16 @@ class UsePage(GenerationPage):
         def done(loaded: Any) -> None:
             where = stance if stance in self.document.project.graphs["arms"].stances else None
             self.document.edit(
-                tr("Drop generated clips"), lambda p: with_pieces(p, chosen, loaded, named, seed, where)
+                tr("Add generated clips"), lambda p: with_pieces(p, chosen, loaded, named, seed, where)
             )
             new = {path for path, *_ in loaded}
             ids = tuple(e.id for e in self.document.project.clips.values() if e.path in new)
             self.session.selection.select_clips(ids)
             self.table.show_pieces([p for p in self.table.pieces if p not in chosen])
-            place = tr("dropped on the arms' layer") if where else tr("in the library")
+            place = tr("added to the arms layer") if where else tr("added to the library")
             self.said.emit(
                 tr(
-                    "{clips} {place}; they say that '{named}' made them.",
+                    "{clips} {place}. They record that '{named}' made them.",
                     clips=tr_plural("{count:,} clip", "{count:,} clips", len(ids)),
                     place=place,
                     named=named,

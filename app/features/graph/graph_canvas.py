@@ -59,8 +59,8 @@ from app.widgets.soon import Soon
 from metagraph.graph.model import Kind, Project
 
 KEYS = tr_noop(
-    "Actions by their nodes. Up and Down choose an action, Left and Right make it less or more likely, Enter "
-    "shows it."
+    "The actions of each node. Up and Down select an action, Left and Right lower or raise "
+    "its likelihood, Enter shows its properties."
 )
 
 

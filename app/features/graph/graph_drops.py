@@ -52,9 +52,9 @@ def drop_at(
 ) -> Drop:
     """Return what dropping `load` on `hit` does; the current stance and the other stance say where."""
     if not load:
-        return Drop(False, tr("only clips, folders of clips and actions can be dropped here"))
+        return Drop(False, tr("you can drop clips, folders of clips and actions here"))
     if load.files and all(f.lower().endswith(ANNOTATIONS) for f in load.files):
-        return Drop(True, tr("drop to learn from this annotation"))
+        return Drop(True, tr("drop to learn a model from this annotation"))
     if load.actions and hit.area == "chip" and hit.ident is not None:
         return _move(project, hit.ident, load)
     if load.actions and _in_node(project, layer, stance, hit, load):
@@ -85,7 +85,7 @@ def drop_at(
                 other=_name(project, other),
             )
     else:
-        return Drop(False, tr("drop on one of the nodes"))
+        return Drop(False, tr("drop this on one of the nodes"))
     clips = [a.clip for i in load.actions if (a := project.action(i)) is not None] or list(load.clips)
     if load.files and not clips:
         # Files are imported first; only what does not depend on the clips can be refused now.
@@ -93,13 +93,13 @@ def drop_at(
         why = find_placing_refusal(project, clips, layer, kind, target, end) if clips else None
         if not clips and kind != "stance":
             why = tr(
-                "make a stance first: drop a clip on the middle of the {layer} layer",
+                "make a stance first: drop a clip in the middle of the {layer} layer",
                 layer=vocabulary_word(layer),
             )
     else:
         why = find_placing_refusal(project, clips, layer, kind, target, end)
     if why is None and load.actions and target is None and kind == "stance":
-        why = tr("drag its clip from the library to make a new stance of it")
+        why = tr("to make a new stance from this action, drag its clip from the library")
     if why is not None:
         return Drop(False, tr_phrase(why), kind, target, end)
     return Drop(True, words, kind, target, end)
@@ -124,12 +124,12 @@ def _reorder(project: Project, hit: GraphHit, load: Load) -> Drop:
         return Drop(False, tr("already here"), first.kind, first.stance, None, True)
     called = node_names(project, first.layer, first.stance, first.kind)
     words = (
-        tr("list {what} before *{name}*", what=_count(load), name=called[before.id])
+        tr("move {what} before *{name}*", what=_count(load), name=called[before.id])
         if before
-        else tr("list {what} last", what=_count(load))
+        else tr("move {what} to the end", what=_count(load))
     )
     if before is not None and before is rest[0]:
-        words = tr("list {what} first", what=_count(load))
+        words = tr("move {what} to the start", what=_count(load))
     return Drop(True, words, first.kind, first.stance, None, True, before.id if before else None)
 
 

@@ -135,7 +135,7 @@ class Layout:
         )
 
 
-HOLES = lazy_texts(lambda: (tr("no loop"), tr("no way out"), tr("no gestures"), tr("no fidgets")))
+HOLES = lazy_texts(lambda: (tr("no loop"), tr("no transition out"), tr("no gestures"), tr("no fidgets")))
 
 
 def describe_hole(project: Project, layer: Layer, stance: str) -> str:

@@ -19,12 +19,16 @@ def describe_graph_hit(
     """
     action = project.action(hit.ident) if hit.ident else None
     if hit.area == "bar" and action is not None:
-        return tr("Likelihood {likelihood:g}: drag to change", likelihood=action.likelihood)
+        return tr(
+            "Likelihood {likelihood:g}: how often this action plays compared with the others in "
+            "its node. Drag to change it.",
+            likelihood=action.likelihood,
+        )
     if action is not None:
         row = layout.row(action.id)
         name = names_in_tooltip(row.words if row is not None else action.name, action.name)
-        head = tr("Drag the arrow onto another stance to end there")
-        plain = head if hit.area == "head" else tr("Click plays it in context, drag moves it")
+        head = tr("Drag the arrow onto the stance where this transition should end")
+        plain = head if hit.area == "head" else tr("Click to play it in context, drag to move it")
         note = project.notes.get(action.id, "")
         return "\n".join(x for x in (name, note, misfits.get(action.id) or plain) if x)
     stance = project.stance(other if hit.area == "other" else hit.ident)
@@ -32,10 +36,10 @@ def describe_graph_hit(
     if name and hit.area == "other":
         name = tr("to {name}", name=name)
     words = {
-        "chip": tr("Click to make this the current stance"),
-        "card": tr("Click selects its loops, double-click renames it"),
+        "chip": tr("Click to edit this stance"),
+        "card": tr("Click to select its loops, double-click to rename it"),
         "add": tr("New stance: drop a clip here, or click"),
-        "other": tr("The stance that dropped transitions end in"),
+        "other": tr("Transitions that you drop end in this stance"),
     }.get(hit.area, "")
     return "\n".join(x for x in (name, words) if x) if words else ""
 
@@ -44,16 +48,16 @@ def count_machine(project: Project) -> str:
     """Count the machine that was not drawn."""
     whole = count_machine_size(project)
     if not whole.clips:
-        return tr("Drop clips on the nodes; every connection between them is implied.")
+        return tr("Drop clips on the nodes. Metagraph connects them for you.")
     layers = sum(1 for layer in LAYERS if project.graphs[layer].actions)
-    over = tr(" over {layers} layers", layers=layers) if layers > 1 else ""
+    over = tr(" on {layers} layers", layers=layers) if layers > 1 else ""
     clips, states, links = (
         tr_plural("{count:,} clip", "{count:,} clips", whole.clips),
         tr_plural("{count:,} state", "{count:,} states", whole.states),
         tr_plural("{count:,} connection", "{count:,} connections", whole.connections),
     )
     return tr(
-        "You placed {clips}{over}. This is the machine you did not have to draw: {states}, {links}.",
+        "You placed {clips}{over}. Drawn by hand, this state machine has {states} and {links}.",
         clips=clips,
         over=over,
         states=states,

@@ -24,7 +24,7 @@ from metagraph.graph.model import Kind
 
 TEACH = lazy_texts(
     lambda: {
-        "gesture": tr("Drop clips that mean something\nor beat time: a shrug, a point."),
+        "gesture": tr("Drop clips that mean something\nor mark the beat: a shrug, a point."),
         "fidget": tr("Drop small habits:\na scratch, tapping fingers."),
         "transition": tr("Drop clips that lead to another stance."),
     }

@@ -101,7 +101,8 @@ def draw_stance_card(painter: QPainter, layout: Layout, look: GraphLook, font: Q
         painter.setFont(font)
         painter.drawText(
             card.adjusted(14, 14, -14, -14), Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap,
-            tr("Drop a resting clip here to make the first stance of this layer: hands at the sides, say."),
+            tr("Drop a resting clip here, for example with the hands at the sides. It makes the first "
+               "stance of this layer."),
         )  # fmt: skip
     else:
         head = _card_name(painter, card, plain_action_name(stance.name), make_bold(font), look)
@@ -121,7 +122,7 @@ def draw_stance_card(painter: QPainter, layout: Layout, look: GraphLook, font: Q
         painter.setFont(font)
         painter.setPen(QColor(t.dim if loops else t.warning))
         foot = QRectF(card.left() + 12, card.bottom() - 26, card.width() - 24, 20)
-        more = tr("{words}  ·  starts here", words=words)
+        more = tr("{words}  ·  start stance", words=words)
         if start and QFontMetricsF(font).horizontalAdvance(more) <= foot.width() - 1:
             words = more
         painter.drawText(foot, Qt.AlignmentFlag.AlignCenter, shorten_between(font, words, foot.width()))

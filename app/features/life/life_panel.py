@@ -69,7 +69,7 @@ class DialRow:
         self.slider = DialSlider(parent, round((dial.high - dial.low) / dial.step), self.put_back)
         self.slider.setToolTip(
             tr(
-                "{tip}\nDouble-click puts it back to {default:g} {unit}",
+                "{tip}\nDouble-click to reset it to {default:g} {unit}",
                 tip=tip,
                 default=default,
                 unit=tr(dial.unit),
@@ -134,7 +134,7 @@ class LifePanel(QWidget):
         outer = QVBoxLayout(self)
         outer.setContentsMargins(12, 8, 12, 8)
         outer.setSpacing(8)
-        self.on = QCheckBox(tr("Alive: breathes, looks, blinks and speaks of itself"), self)
+        self.on = QCheckBox(tr("Alive: breathing, gaze, blinks and lip sync"), self)
         self.on.clicked.connect(lambda on: self._change(tr("Turn life on or off"), on=on))
         outer.addWidget(self.on)
         top = QGridLayout()
@@ -142,8 +142,10 @@ class LifePanel(QWidget):
         outer.addLayout(top)
         self.rows: dict[str, DialRow] = {"stillness": self._row(DIALS[0], top, 0, None)}
         self.rows["stillness"].tick.setText(tr("Stillness"))
-        factors = ((MODE_WORDS[m], tr("What {mode} makes of them, as factors", mode=tr(m))) for m in MODES)
-        self.tabs = ChoiceRow(self, ((tr("Always"), tr("The amounts themselves")), *factors))
+        factors = (
+            (MODE_WORDS[m], tr("Factors that '{mode}' multiplies the amounts by", mode=tr(m))) for m in MODES
+        )
+        self.tabs = ChoiceRow(self, ((tr("Always"), tr("The amounts for all modes")), *factors))
         self.tabs.show_choice(0)
         self.tabs.chosen.connect(lambda n: self.show_mode(None if n == 0 else MODES[n - 1]))
         outer.addWidget(self.tabs)
@@ -188,7 +190,7 @@ class LifePanel(QWidget):
             rows[dial.name] = self._row(dial, grid, n, mode)
             n += 1
         if mode is not None:
-            back = make_widget(QToolButton, page, text=tr("Back to the usual"))
+            back = make_widget(QToolButton, page, text=tr("Reset to defaults"))
             back.clicked.connect(lambda: self._usual(mode))
             grid.addWidget(back, n, 0, 1, 2)
             n += 1
@@ -203,12 +205,12 @@ class LifePanel(QWidget):
         """Add the choice of a named mood above its dials."""
         self.moods = ComboBox(page)
         self.moods.setAccessibleName(tr("Mood"))
-        self.moods.setToolTip(tr("The mood it is in where no request tells another"))
+        self.moods.setToolTip(tr("The character's mood while no request sets another"))
         for feeling in FEELINGS:
             self.moods.addItem(MOOD_WORDS[feeling], feeling)
-        self.moods.addItem(tr("Its own"), None)
+        self.moods.addItem(tr("Custom"), None)
         self.moods.activated.connect(self._take_mood)
-        grid.addWidget(QLabel(tr("In a mood"), page), row, 0)
+        grid.addWidget(QLabel(tr("Mood amounts"), page), row, 0)
         grid.addWidget(self.moods, row, 1, 1, 2)
 
     def _take_mood(self, place: int) -> None:
@@ -272,7 +274,7 @@ class LifePanel(QWidget):
     def _usual(self, mode: Mode) -> None:
         life = self.document.project.life
         modes = {m: x for m, x in life.modes.items() if m != mode}
-        self._set(tr("Put {mode} back to the usual", mode=tr(mode)), None, None, modes=modes)
+        self._set(tr("Reset '{mode}'", mode=tr(mode)), None, None, modes=modes)
 
     def _set(self, text: str, life: Life | None, merge: str | None, **changes: object) -> None:
         fields = {f: getattr(life, f) for f in life.__struct_fields__} if life is not None else changes

@@ -60,8 +60,8 @@ def read_lines(
             else:
                 raise FileError(
                     path,
-                    tr("is no sound and no list of lines"),
-                    remedy=tr("Sounds are {names}, lists are .csv or .tsv.", names=", ".join(SOUNDS)),
+                    tr("is neither a sound nor a list of lines"),
+                    remedy=tr("Choose a sound ({names}) or a list (.csv, .tsv).", names=", ".join(SOUNDS)),
                 )
         except Exception as error:  # one bad file spoils no other
             notes.append(str(unforeseen_error(path, error)))
@@ -118,14 +118,14 @@ def _listed(path: Path, folder: Path | None) -> list[tuple[str, Line]]:
     except csv.Error as error:
         raise FileError(
             path,
-            tr("is no list of lines: {error}", error=error),
-            remedy=tr("Write one line a row: id, text, and perhaps a sound file."),
+            tr("cannot be read as a list of lines: {error}", error=error),
+            remedy=tr("Write one line in each row: id, text, and optionally a sound file."),
         ) from None
     if len(rows) > MOST:
         raise FileError(
             path,
             tr("has more than {count:,} rows", count=MOST),
-            remedy=tr("A list has {count:,} lines at most.", count=MOST),
+            remedy=tr("A list can have up to {count:,} lines. Split the file.", count=MOST),
         )
     for n, row in enumerate(rows):
         cells = [c.strip() for c in row]
@@ -134,17 +134,17 @@ def _listed(path: Path, folder: Path | None) -> list[tuple[str, Line]]:
         if len(cells) < 2 or not cells[0]:
             raise FileError(
                 path,
-                tr("has no id and text"),
+                tr("has no id or no text"),
                 tr("row {number}", number=n + 1),
-                tr("Write one line a row: id, text, and perhaps a sound file."),
+                tr("Write one line in each row: id, text, and optionally a sound file."),
             )
         audio = path.parent / cells[2] if len(cells) > 2 and cells[2] else None
         if audio is not None and not is_file(audio):
             raise FileError(
                 path,
-                tr("names a sound that is not there: {name}", name=cells[2]),
+                tr("names a sound file that is missing: {name}", name=cells[2]),
                 tr("row {number}", number=n + 1),
-                tr("Put it beside the list, or correct its name."),
+                tr("Put the sound beside the list, or correct its name."),
             )
         out.append(
             (

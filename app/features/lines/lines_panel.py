@@ -44,12 +44,12 @@ from metagraph.graph.model import Project
 from metagraph.graph.requests import Line, Say
 from metagraph.playback.planning.line_lengths import find_spoken_seconds
 
-COLUMNS = lazy_texts(lambda: (tr("Id"), tr("Words"), tr("Sound"), tr("Length"), tr("With it")))
+COLUMNS = lazy_texts(lambda: (tr("Id"), tr("Words"), tr("Sound"), tr("Length"), tr("Requests")))
 ID, WORDS, SOUND, LENGTH, ASKS = range(5)
 WIDEST = 180  # pixels of the ids at most
 EMPTY = tr_noop(
-    "Drop sound files here, or a list (CSV: id, text, sound).\nAn agent then says a line by its id, and "
-    "the lips follow its sound."
+    "Drop sound files or a list (CSV: id, text, sound) here.\nAgents say a line by its id, "
+    "and the lips follow its sound."
 )
 
 
@@ -114,9 +114,9 @@ class LinesPanel(QWidget):
         self.words.setProperty("dim", True)
         row.addWidget(self.words)
         for text, tip, run in (
-            (tr("Say it now"), tr("The selected line, at the playhead (Enter)"), self.say),
-            (tr("Add files…"), tr("Sounds, or a list of lines"), self.ask_files),
-            (tr("Add words…"), tr("A line without sound"), self.add_words),
+            (tr("Say line"), tr("Say the selected line at the playhead (Enter)"), self.say),
+            (tr("Add files…"), tr("Add sounds or a list of lines"), self.ask_files),
+            (tr("Add text…"), tr("Add a line without sound"), self.add_words),
         ):
             button = make_widget(QToolButton, self, text=text, toolTip=tip)
             button.clicked.connect(run)
@@ -233,7 +233,7 @@ class LinesPanel(QWidget):
             if column == SOUND:
                 item.setForeground(QColor(look.warning if lost else look.dim))
                 item.setToolTip(
-                    tr("{audio}\nThe sound could not be read; the lips follow the letters", audio=line.audio)
+                    tr("{audio}\nThe sound cannot be read, so the lips follow the text", audio=line.audio)
                     if lost
                     else line.audio or ""
                 )
@@ -341,7 +341,7 @@ class LinesPanel(QWidget):
     def say(self) -> None:
         """Ask for the selected line at the playhead."""
         for ident in self.chosen()[:1]:
-            self.performance.requests.ask(Say(line=ident), tr("Ask for a line"))
+            self.performance.requests.ask(Say(line=ident), tr("Request line"))
 
     # --- files dropped
 

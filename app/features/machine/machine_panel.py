@@ -21,7 +21,8 @@ from PySide6.QtWidgets import QToolTip, QWidget
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.stage.session import StageSession
-from app.translation import tr
+from app.translation import tr, tr_plural
+from app.widgets.vocabulary import vocabulary_word
 from metagraph.graph.expand import count_machine_size, find_end_stance, list_connections
 from metagraph.graph.model import Action, MetaGraph, Project
 
@@ -167,20 +168,21 @@ class MachinePanel(QWidget):
         """Say how large the machine is; return where that stands."""
         t = theme(self.session.look.name)
         lines = [
-            (22, t.text, tr("{links:,} connections", links=links)),
+            (22, t.text, tr_plural("{count:,} connection", "{count:,} connections", links)),
             (
                 13,
                 t.dim,
-                tr(
-                    "among {states} states, in the {layer} layer alone.",
-                    states=states,
-                    layer=self.session.place.layer,
+                tr_plural(
+                    "between {count:,} state, only in the {layer} layer.",
+                    "between {count:,} states, only in the {layer} layer.",
+                    states,
+                    layer=vocabulary_word(self.session.place.layer),
                 ),
             ),
-            (13, t.dim, tr("You placed {clips} clips.", clips=clips)),
+            (13, t.dim, tr_plural("You placed {count:,} clip.", "You placed {count:,} clips.", clips)),
         ]
         if links > MOST:
-            lines.append((13, t.dim, tr("The first {most:,} are drawn.", most=MOST)))
+            lines.append((13, t.dim, tr("Only the first {most:,} connections are drawn.", most=MOST)))
         out: list[QRectF] = []
         left, top = 20.0, 14.0
         for size_, color, words in lines:

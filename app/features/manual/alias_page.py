@@ -25,7 +25,7 @@ from metagraph.graph.manual import groups as manual_groups
 from metagraph.graph.manual.machine import Alias
 from metagraph.graph.name_search import matches_search
 
-NO_ENTRY = tr_noop("no entry: nothing leads to it")
+NO_ENTRY = tr_noop("no entry state: no link leads to it")
 IDENT = Qt.ItemDataRole.UserRole
 
 
@@ -39,17 +39,18 @@ class AliasPage(QWidget):
         self.name.editingFinished.connect(self._rename)
         self.words = QLabel(self, wordWrap=True)
         self.words.setProperty("dim", True)
-        self.every = make_widget(QCheckBox, tr("every state, also those to come"), self)
+        self.every = make_widget(QCheckBox, tr("every state, including new ones"), self)
         self.every.clicked.connect(lambda on: self._set(tr("Change alias"), every=on))
         self.again = make_widget(
             QCheckBox,
-            tr("may lead a state back to itself"),
+            tr("can lead a state back to itself"),
             self,
-            toolTip=tr("Otherwise its links skip their own target"),
+            toolTip=tr("If off, a link does not start from the state that it leads to"),
         )
         self.again.clicked.connect(lambda on: self._set(tr("Change alias"), again=on))
         self.entry = QuietChooser(
-            self, toolTip=tr("The state that links to this alias lead to, which makes it a group")
+            self,
+            toolTip=tr("Links to this alias lead to this state. An alias with an entry state is a group."),
         )
         self.entry.activated.connect(
             lambda n: self._set(tr("Change entry"), entry=self.entry.itemData(n) or None)
@@ -59,9 +60,9 @@ class AliasPage(QWidget):
         form.setVerticalSpacing(7)
         form.setLabelAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
         form.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
-        form.addRow(tr("Stands for"), self.every)
-        form.addRow(tr("Again"), self.again)
-        form.addRow(tr("Entered by"), self.entry)
+        form.addRow(tr("Contains"), self.every)
+        form.addRow(tr("Self-links"), self.again)
+        form.addRow(tr("Entry state"), self.entry)
         self.search = QLineEdit(self)
         self.search.setPlaceholderText(tr("Find states"))
         self.search.setAccessibleName(tr("Find states of the alias"))
@@ -74,7 +75,7 @@ class AliasPage(QWidget):
         self.list.setMinimumHeight(220)
         self.list.itemChanged.connect(self._ticked)
         self.members = make_widget(
-            QPushButton, tr("Select its states"), self, toolTip=tr("Also by a double click on the alias")
+            QPushButton, tr("Select its states"), self, toolTip=tr("You can also double-click the alias")
         )
         self.members.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.members.clicked.connect(lambda: manual_many.select_members(self.canvas, self.alias))
@@ -101,7 +102,7 @@ class AliasPage(QWidget):
         leave = len(manual.out.get(first.id, ()))
         self.words.setText(
             tr(
-                "An alias stands for {inside}; {leave} can be taken from each.",
+                "An alias contains {inside}; {leave} can be taken from each of them.",
                 inside=tr_plural("{count:,} state", "{count:,} states", len(inside)),
                 leave=tr_plural("{count:,} link", "{count:,} links", leave),
             )

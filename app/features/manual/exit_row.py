@@ -16,7 +16,7 @@ WORDS: dict[Way, str] = lazy_texts(
     lambda: {
         "none": tr("none"),
         "end": tr("when the source ends"),
-        "part": tr("at a share of it"),
+        "part": tr("at a fraction of it"),
         "time": tr("at a time of its clip"),
     }
 )
@@ -42,13 +42,17 @@ class ExitRow(QWidget):
         super().__init__(parent)
         self.way = QuietChooser(
             self,
-            toolTip=tr("When the source may be left. A loop has no end: asked to leave, it is left at once"),
+            toolTip=tr(
+                "When the link can leave the source state. A loop has no end, so a request leaves it at once."
+            ),
         )
         self.way.activated.connect(lambda n: self.chosen.emit(self.way.itemData(n)))
-        self.time = Seconds(self, tr("Exit time: seconds of the source's clip at which it may be left"))
+        self.time = Seconds(
+            self, tr("Exit time: the time in the source's clip from which the link can leave it")
+        )
         self.time.valueChanged.connect(self.timed)
         self.part = Seconds(
-            self, tr("The share of what the source plays by which the blend is over"), 100, " %", 5, 0
+            self, tr("The fraction of the source's playing time at which the blend ends"), 100, " %", 5, 0
         )
         self.part.valueChanged.connect(lambda v: self.shared.emit(v / 100))
         line = QHBoxLayout(self)

@@ -49,11 +49,11 @@ def remove_selected(canvas: ManualHost) -> None:
     if count == 1:
         text = tr("Remove state") if s.selection.states else tr("Remove link")
     elif s.selection.states and s.selection.links:
-        text = tr("Remove {count} nodes and links", count=count)
+        text = tr("Remove {count:,} nodes and links", count=count)
     elif s.selection.states:
-        text = tr("Remove {count} states", count=count)
+        text = tr_plural("Remove {count:,} state", "Remove {count:,} states", count)
     else:
-        text = tr("Remove {count} links", count=count)
+        text = tr_plural("Remove {count:,} link", "Remove {count:,} links", count)
     canvas.do(text, lambda p: manual_edits.remove_states(p, s.selection.states, s.selection.links))
 
 
@@ -125,7 +125,7 @@ def nudge(canvas: ManualHost, x: float, y: float) -> None:
     places = {i: (found[i].x + x, found[i].y + y) for i in canvas.session.selection.states if i in found}
     if places:
         canvas.do(
-            tr("Move node") if len(places) == 1 else tr("Move {places} nodes", places=len(places)),
+            tr_plural("Move {count:,} node", "Move {count:,} nodes", len(places)),
             lambda p: manual_edits.move_nodes(p, layer, places),
         )
 
@@ -199,7 +199,7 @@ def fill_canvas_menu(out: QMenu, canvas: ManualHost, hit: ManualHit) -> None:
     if alias is not None:
         _fill_alias(canvas, add, alias.id, others)
     if node and hit.ident != ANY and alias is None:
-        add(tr("Make alias of selected"), lambda: manual_many.make_alias(canvas), "Ctrl+G")
+        add(tr("Make alias from selection"), lambda: manual_many.make_alias(canvas), "Ctrl+G")
         add(
             tr("Start here"),
             lambda: start_here(canvas, hit.ident),
@@ -227,9 +227,9 @@ def fill_canvas_menu(out: QMenu, canvas: ManualHost, hit: ManualHit) -> None:
         add(tr("Select all"), lambda: select_all(canvas), "Ctrl+A")
         out.addSeparator()
         chosen = bool(s.selection.states)
-        add(tr("Make alias of selected"), lambda: manual_many.make_alias(canvas), "Ctrl+G", chosen)
+        add(tr("Make alias from selection"), lambda: manual_many.make_alias(canvas), "Ctrl+G", chosen)
         there = bool(canvas.scene().manual.states)
-        add(tr("Make alias of every state"), lambda: manual_many.make_alias(canvas, True), enabled=there)
+        add(tr("Make alias of all states"), lambda: manual_many.make_alias(canvas, True), enabled=there)
         add(
             tr("Paste links from a table"),
             lambda: manual_many.paste_table(canvas),
@@ -246,10 +246,13 @@ def _fill_alias(canvas: ManualHost, add: Callable[..., None], alias: str, chosen
     """Offer what can be done with an alias. chosen: the states that were selected before."""
     add(tr("Select its states"), lambda: manual_many.select_members(canvas, alias))
     if chosen:
-        count = tr_plural("{count:,} selected state", "{count:,} selected states", len(chosen))
-        add(tr("Add {count}", count=count), lambda: manual_many.choose_for_alias(canvas, alias, chosen))
+        count = len(chosen)
         add(
-            tr("Take away {count}", count=count),
+            tr_plural("Add {count:,} selected state", "Add {count:,} selected states", count),
+            lambda: manual_many.choose_for_alias(canvas, alias, chosen),
+        )
+        add(
+            tr_plural("Remove {count:,} selected state", "Remove {count:,} selected states", count),
             lambda: manual_many.choose_for_alias(canvas, alias, chosen, False),
         )
 
@@ -263,9 +266,7 @@ def drop_words(project: Project, load: Load) -> tuple[bool, str]:
     """Return whether a drop makes states, and what it does or why not."""
     why = manual_edits.find_state_refusal(project, load.clips) if load.clips else None
     words = tr_phrase(why or "") or (
-        tr("drop to make {count} states here", count=load.count)
-        if load.count > 1
-        else tr("drop to make a state here")
+        tr_plural("drop to add {count:,} state here", "drop to add {count:,} states here", load.count)
     )
     return why is None, words[:1].upper() + words[1:]
 
@@ -275,17 +276,20 @@ def describe_canvas_hit(canvas: ManualHost, hit: ManualHit) -> str:
     manual = canvas.scene().manual
     trouble = canvas.troubles.get(hit.ident, "")
     if hit.ident == ANY:
-        return tr("Any state: links from here can be taken from every state\nDrag from its border to a state")
+        return tr(
+            "Any state: links from here can be taken from every state\nDrag from its border to a "
+            "state to draw a link"
+        )
     if hit.area in ("node", "edge") and hit.ident in manual.aliases:
         alias = manual.aliases[hit.ident]
         names = [manual.states[i].name for i in manual.members(alias)]
         more = tr(" and {count} more", count=len(names) - 12) if len(names) > 12 else ""
         stands = (
-            tr("stands for {names}{more}", names=", ".join(names[:12]), more=more)
+            tr("contains {names}{more}", names=", ".join(names[:12]), more=more)
             if names
-            else tr("stands for no state")
+            else tr("contains no states")
         )
-        help_ = tr("Drag from its border to draw links from each, double-click to select them")
+        help_ = tr("Drag from its border to draw links from all its states, double-click to select them")
         return "\n".join(x for x in (alias.name, stands, trouble, help_) if x)
     if hit.area in ("node", "edge") and hit.ident in manual.states:
         state = manual.states[hit.ident]
@@ -311,7 +315,7 @@ def describe_canvas_hit(canvas: ManualHost, hit: ManualHit) -> str:
             for x in (
                 ends,
                 f"{when}{describe_link(link)}".strip(),
-                tr("blends for {blend:g} s", blend=link.blend),
+                tr("has a blend of {blend:g} s", blend=link.blend),
                 trouble,
             )
             if x

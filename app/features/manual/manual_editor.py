@@ -18,7 +18,7 @@ from metagraph.graph.model import Project
 from metagraph.graph.name_search import matches_search
 from metagraph.graph.problem import Problem
 
-FIND = tr_noop("Select the states whose names hold these words (/): sit wave, sit -wave, sit | stand")
+FIND = tr_noop("Select the states whose names contain these words (/): sit wave, sit -wave, sit | stand")
 
 
 class ManualEditor(QWidget):
@@ -43,15 +43,19 @@ class ManualEditor(QWidget):
             tr("Draw links from a spreadsheet: from, to, when, trigger, weight, exit, blend"),
         )
         self.table.clicked.connect(self._choose_table)
-        self.trigger = QuietChooser(self, toolTip=tr("A trigger that links of this layer wait for"))
+        self.trigger = QuietChooser(self, toolTip=tr("Choose a trigger of this layer's links"))
         self.trigger.setMinimumWidth(110)
         self.fire = _button(
-            self, tr("Fire"), tr("Fire it now: the machine goes there over the shortest way of links")
+            self,
+            tr("Fire"),
+            tr("Fire the trigger now. The machine takes the shortest path of links to get there."),
         )
         self.fire.clicked.connect(self._fire)
-        self.arrange = _button(self, tr("Arrange"), tr("Put the nodes in columns, from the start on"))
+        self.arrange = _button(
+            self, tr("Arrange"), tr("Arrange the nodes in columns, beginning with the start state")
+        )
         self.arrange.clicked.connect(lambda: commands.arrange_canvas(canvas))
-        self.fit = _button(self, tr("Show all"), tr("Show what is selected, or all (F)"))
+        self.fit = _button(self, tr("Show all"), tr("Frame the selection, or all nodes (F)"))
         self.fit.clicked.connect(canvas.fit)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)

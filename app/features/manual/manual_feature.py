@@ -115,6 +115,6 @@ COMMANDS = (
         tr_noop("&Manual state machine"),
         ManualFeature.toggle,
         checked=is_manual_shown,
-        tip=tr_noop("Draw states and links one by one, as in the engines' editors"),
+        tip=tr_noop("Draw states and links by hand, as in the editors of game engines"),
     ),
 )

@@ -40,7 +40,7 @@ from metagraph.graph.manual.machine import Link, State
 from metagraph.graph.model import LIMBS, Project
 from metagraph.playback.manual_playback import action_of
 
-WHEN = lazy_texts(lambda: ((tr("when its source has finished"), "finished"), (tr("on request"), "request")))
+WHEN = lazy_texts(lambda: ((tr("when the source has finished"), "finished"), (tr("on request"), "request")))
 
 
 class Inspector(QScrollArea):
@@ -90,15 +90,15 @@ class Inspector(QScrollArea):
         self.words.setProperty("dim", True)
         box.addWidget(self.title)
         box.addWidget(self.words)
-        self.start = QuietChooser(page, toolTip=tr("The state this layer begins in"))
+        self.start = QuietChooser(page, toolTip=tr("The start state of this layer"))
         self.start.activated.connect(
             lambda n: self._try(
                 tr("Start here"), lambda p: manual_edits.set_start_state(p, self.start.itemData(n))
             )
         )
-        form.addRow(tr("Begins in"), self.start)
+        form.addRow(tr("Start state"), self.start)
         box.addLayout(form)
-        self.triggers_title = QLabel(tr("Triggers: click to fire one now"), page)
+        self.triggers_title = QLabel(tr("Triggers: click one to fire it"), page)
         self.triggers_title.setProperty("dim", True)
         box.addWidget(self.triggers_title)
         self.triggers = QVBoxLayout()
@@ -117,8 +117,8 @@ class Inspector(QScrollArea):
         self.clip.setProperty("dim", True)
         box.addWidget(self.clip)
         box.addLayout(form)
-        self.loop = QCheckBox(tr("plays over and over"), page)
-        self.loop.setToolTip(tr("Otherwise it holds its last frame"))
+        self.loop = QCheckBox(tr("repeat"), page)
+        self.loop.setToolTip(tr("If off, the state holds its last frame"))
         self.loop.clicked.connect(
             lambda: self._state(tr("Change loop"), loop=self.loop.checkState() != Qt.CheckState.Unchecked)
         )
@@ -130,14 +130,14 @@ class Inspector(QScrollArea):
         self.limb = LimbRow(page, tr("base pose"))
         self.limb.chosen.connect(lambda n: self._state(tr("Change limb"), limb=LIMBS[n]))
         form.addRow(tr("Limb"), self.limb)
-        self.joints = make_widget(QPushButton, page, toolTip=tr("Let it move only some joints"))
+        self.joints = make_widget(QPushButton, page, toolTip=tr("Choose which joints it moves"))
         self.joints.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.joints.clicked.connect(lambda: StateMask(self.document, self.session, self).open())
         form.addRow(tr("Joints"), self.joints)
         self.layer = QLabel(page)
         form.addRow(tr("Layer"), self.layer)
         self.begin = make_widget(
-            QPushButton, tr("Start here"), page, toolTip=tr("Let the layer begin in this state")
+            QPushButton, tr("Start here"), page, toolTip=tr("Make this the start state of the layer")
         )
         self.begin.clicked.connect(lambda: commands.start_here(self.canvas, self.session.selection.states[0]))
         self.alone = QPushButton(tr("Play alone"), page)
@@ -147,7 +147,7 @@ class Inspector(QScrollArea):
             QPushButton,
             tr("Make alias"),
             page,
-            toolTip=tr("One node that stands for all that is selected (Ctrl+G)"),
+            toolTip=tr("Make one node that stands for all selected states (Ctrl+G)"),
         )
         self.group.clicked.connect(lambda: manual_many.make_alias(self.canvas))
         box.addWidget(self.group)
@@ -167,12 +167,15 @@ class Inspector(QScrollArea):
             lambda n: self._link(tr("Change condition"), condition={"when": WHEN[n][1]})
         )
         form.addRow(tr("Taken"), self.when)
-        self.trigger = Field(page, tr("What is fired to take it"), tr("Trigger"))
+        self.trigger = Field(page, tr("The trigger that makes the link fire"), tr("Trigger"))
         self.trigger.editingFinished.connect(self._retrigger)
         form.addRow(tr("Trigger"), self.trigger)
         self.weight = Seconds(
             page,
-            tr("Weight against the other links taken when the source has finished; 1 is usual"),
+            tr(
+                "How often this link is taken compared with the other links when the source has "
+                "finished; 1 is the default"
+            ),
             1000,
             "",
             0.1,
@@ -184,7 +187,7 @@ class Inspector(QScrollArea):
         self.exit.timed.connect(lambda v: self._number(tr("Change exit time"), "exit_time", v))
         self.exit.shared.connect(lambda v: self._number(tr("Change exit time"), "exit_part", v))
         form.addRow(tr("Exit"), self.exit)
-        self.blend = Seconds(page, tr("Blend: seconds in which the target takes over"))
+        self.blend = Seconds(page, tr("Duration of the blend into the target"))
         self.blend.valueChanged.connect(lambda v: self._number(tr("Change blend"), "blend", v))
         form.addRow(tr("Blend"), self.blend)
         self.form = form
@@ -194,7 +197,7 @@ class Inspector(QScrollArea):
             QPushButton,
             tr("Play link"),
             page,
-            toolTip=tr("Play its source's end, the blend, and its target's beginning"),
+            toolTip=tr("Play the end of the source, the blend and the start of the target"),
         )
         self.play.clicked.connect(lambda: self.session.show_context(self.session.selection.links[0]))
         box.addWidget(_row(page, self.fire, self.play))
@@ -202,7 +205,9 @@ class Inspector(QScrollArea):
             QPushButton,
             tr("Copy"),
             page,
-            toolTip=tr("Copy links: their settings for other links, or all of them for other states"),
+            toolTip=tr(
+                "Copy the links. You can paste their settings on other links, or the links on other states."
+            ),
         )
         self.copy.clicked.connect(self._copy)
         self.paste = QPushButton(tr("Paste settings"), page)
@@ -257,7 +262,7 @@ class Inspector(QScrollArea):
         self.title.setText(LAYER_LONG_TITLES[self.session.place.layer])
         self.words.setText(
             tr(
-                "{states}, {links} for {ways}. Select one to change it, or many to change all.",
+                "{states}, {links} for {ways}. Select one or more of them to edit them.",
                 states=tr_plural("{count:,} state", "{count:,} states", len(manual.states)),
                 links=tr_plural("{count:,} link", "{count:,} links", len(manual.links)),
                 ways=tr_plural("{count:,} connection", "{count:,} connections", len(manual.ways)),
@@ -288,8 +293,7 @@ class Inspector(QScrollArea):
             tuple(s.id for s in states),
         )
         clips = {
-            project.clips[s.clip].name if s.clip in project.clips else tr("a clip that is gone")
-            for s in states
+            project.clips[s.clip].name if s.clip in project.clips else tr("a missing clip") for s in states
         }
         self.clip.setText(
             tr("plays {clip}", clip=next(iter(clips)))
@@ -446,5 +450,5 @@ def _check(value: Any) -> Qt.CheckState:
 
 def _moved(joints: tuple[str, ...], weights: tuple[tuple[str, float], ...]) -> str:
     """Say how many joints a state moves, and how many in part."""
-    words = tr("{joints} joints…", joints=len(joints)) if joints else tr("All…")
-    return f"{words} {tr('{soft} in part', soft=len(weights))}" if weights else words
+    words = tr_plural("{count:,} joint…", "{count:,} joints…", len(joints)) if joints else tr("All…")
+    return f"{words} {tr('{soft} partly', soft=len(weights))}" if weights else words

@@ -28,7 +28,7 @@ def make_alias(canvas: ManualHost, every: bool = False) -> None:
     """Make an alias of the selected states, or of every state, and select it."""
     layer, chosen = canvas.session.place.layer, canvas.session.selection.states
     before = set(canvas.scene().manual.aliases)
-    words = tr("Make alias of every state") if every else tr("Make alias")
+    words = tr("Make alias of all states") if every else tr("Make alias")
     if canvas.do(words, lambda p: manual_groups.add_alias(p, layer, chosen, every)):
         canvas.session.selection.select_states(
             tuple(i for i in canvas.scene().manual.aliases if i not in before)
@@ -43,7 +43,7 @@ def select_members(canvas: ManualHost, alias: str) -> None:
 def choose_for_alias(canvas: ManualHost, alias: str, states: tuple[str, ...], on: bool = True) -> None:
     """Let an alias stand for states as well, or no longer; they stay selected."""
     kept = canvas.session.selection.states
-    words = tr("Add to alias") if on else tr("Take from alias")
+    words = tr("Add to alias") if on else tr("Remove from alias")
     if canvas.do(words, lambda p: manual_groups.set_alias_states(p, alias, states, on)):
         canvas.session.selection.select_states(kept)
 
@@ -55,9 +55,7 @@ def select_links(canvas: ManualHost, into: bool) -> None:
     if found:
         canvas.session.selection.select_states((), found)
     else:
-        canvas.refuse(
-            tr("no link leads to what is selected") if into else tr("no link leaves what is selected")
-        )
+        canvas.refuse(tr("no link leads to the selection") if into else tr("no link leaves the selection"))
 
 
 def paste_links_on_selected(canvas: ManualHost, links: tuple[Link, ...]) -> None:
@@ -86,7 +84,7 @@ def paste_table(canvas: ManualHost) -> None:
     except ValueError as error:
         canvas.refuse(
             tr(
-                "What was copied is no table of links: {error}. {remedy}",
+                "The clipboard has no table of links: {error}. {remedy}",
                 error=error,
                 remedy=manual_table.REMEDY,
             )
@@ -136,7 +134,7 @@ def describe_table_result(out: manual_table.Filled, name: str) -> str:
         said += tr(", {changed:,} changed", changed=out.changed)
     if out.problems:
         said += tr(
-            "; {rows} left out: {first}",
+            "; {rows} skipped: {first}",
             rows=tr_plural("{count:,} row", "{count:,} rows", len(out.problems)),
             first=out.problems[0],
         )

@@ -17,7 +17,7 @@ class StateMask(MaskDialog):
         return self.document.project.state(self.session.selection.states[0])
 
     def _title(self) -> str:
-        return tr("Joints the state moves")
+        return tr("Joints that the state moves")
 
     def _nothing_moves(self) -> str:
         return tr("A state must move at least one joint.")

@@ -16,7 +16,7 @@ from metagraph.graph.model import Layer
 from metagraph.playback.manual_playback import clip_seconds
 
 TOLD = 8  # selected links, up to which each tells what it waits for
-EMPTY = tr_noop("Drop clips here to make states. Drag from a state's border to draw a link.")
+EMPTY = tr_noop("Drop clips here to add states. Drag from a state's border to draw a link.")
 
 
 @dataclass(frozen=True)

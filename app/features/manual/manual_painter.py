@@ -282,7 +282,7 @@ def paint_alias(painter: QPainter, look: ManualLook, alias: Alias, rect: QRectF)
     inner = rect.adjusted(room, 0, -room, 0)
     words = tr("every state") if alias.every else tr_plural("{count:,} state", "{count:,} states", count)
     if alias.entry is not None:
-        words += tr(", enters {name}", name=look.scene.manual.states[alias.entry].name)
+        words += tr(", entry state {name}", name=look.scene.manual.states[alias.entry].name)
     lines = [(alias.name, max(9.5, 12 * scale), True, t.text)]
     if scale >= SMALL:
         lines.append((words, max(9.0, 11 * scale), False, t.dim))
@@ -373,9 +373,9 @@ def facts(project: Project, state: State) -> str:
     if state.limb != "both":
         words.append(tr(state.limb))
     if state.joints:
-        words.append(tr("{joints} joints", joints=len(state.joints)))
+        words.append(tr_plural("{count:,} joint", "{count:,} joints", len(state.joints)))
     if state.joint_weights:
-        words.append(tr("{soft} in part", soft=len(state.joint_weights)))
+        words.append(tr("{soft} partly", soft=len(state.joint_weights)))
     return "  ".join(words)
 
 

@@ -22,7 +22,7 @@ def contribute(shell: Shell) -> Contribution:
                 "live",
                 tr("Mimic &keypoints…"),
                 mimic,
-                tip=tr("Let the character do as a person before a camera did"),
+                tip=tr("Make the character copy the stances of a person on video"),
                 enabled=can,
                 when="meta",
             ),

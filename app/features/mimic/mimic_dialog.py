@@ -63,9 +63,10 @@ class MimicDialog(QDialog):
         form = QFormLayout()
         layout.addLayout(form)
         self.mirror = self._box(
-            tr("As in a mirror"),
+            tr("Mirror"),
             tr(
-                "The character moves its right where the person moves the left, as somebody face to face does"
+                "The character moves its right side when the person moves the left, like somebody face "
+                "to face"
             ),
             True,
         )
@@ -74,7 +75,7 @@ class MimicDialog(QDialog):
         self.layers = {
             layer: self._box(
                 tr(layer.capitalize()),
-                tr("The {layer} goes to the stances the person is in", layer=tr(layer)),
+                tr("The {layer} layer follows the stances of the person", layer=tr(layer)),
                 True,
             )
             for layer in LAYERS
@@ -89,19 +90,22 @@ class MimicDialog(QDialog):
         form.addRow(tr("Layers"), row)
         self.gaze = self._box(
             tr("Look where the person looks"),
-            tr("The character looks where the person's head is turned"),
+            tr("The character looks in the direction in which the person's head is turned"),
             False,
         )
         form.addRow(tr("Gaze"), self.gaze)
         kept = shell.stage.performance.requests.kept
         into = (
-            tr("What is seen is added to '{name}'. Gestures and fidgets go on as they do.", name=kept.name)
+            tr(
+                "The detected stances are added to '{name}'. Gestures and fidgets continue as before.",
+                name=kept.name,
+            )
             if kept is not None
-            else tr("What is seen becomes a new performance. Gestures and fidgets go on as they do.")
+            else tr("The detected stances become a new performance. Gestures and fidgets continue as before.")
         )
         layout.addWidget(self._dim(into))
         if keypoints.dims == 2:
-            layout.addWidget(self._dim(tr("Without depth, leaning towards the camera is not seen.")))
+            layout.addWidget(self._dim(tr("Without depth, leaning towards the camera cannot be detected.")))
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel, self)
         buttons.button(QDialogButtonBox.StandardButton.Cancel).setIcon(QIcon())
         self.go = QPushButton(tr("Mimic"), self)
@@ -150,7 +154,9 @@ class MimicDialog(QDialog):
             if shell.document.project.skeleton is project.skeleton:
                 _taken(shell, found, stage if kept is not None else None)
             else:
-                shell.tell(tr("What was seen was dropped, since another project was opened."))
+                shell.tell(
+                    tr("The result was discarded because another project was opened. Mimic the file again.")
+                )
 
         shell.jobs.start(tr("Mimicking {name}", name=name), work, done, failed)
         super().accept()
@@ -173,14 +179,14 @@ def _taken(shell: Shell, found: Mimicry, stage: str | None) -> None:
         return project
 
     if not found.sightings:
-        shell.tell(tr("No stance of the project was made out in the keypoints."))
+        shell.tell(tr("No stance of the project was recognised in the keypoints."))
         return
     shell.document.edit(tr("Mimic keypoints"), edit)
     shell.stage.session.onstage.set_performance(made)
     shell.stage.session.transport.show_plan()
     shell.tell(
         tr(
-            "Saw {stances}: the requests are in the performance below.",
+            "Recognised {stances}. The requests are in the performance below.",
             stances=tr_plural("{count:,} stance", "{count:,} stances", len(found.sightings)),
         )
     )

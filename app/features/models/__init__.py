@@ -54,7 +54,7 @@ def contribute(shell: Shell) -> Contribution:
                 "import",
                 tr("Import &annotation…"),
                 annotate,
-                tip=tr("Learn from an ELAN file what follows what"),
+                tip=tr("Learn a model from an ELAN file: which action follows which"),
                 when="meta",
             ),
         ),

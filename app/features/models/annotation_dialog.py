@@ -72,14 +72,15 @@ ROLE_TIPS = lazy_texts(
     lambda: {
         "left arm": tr("What the left arm does: gestures, fidgets, changes of stance"),
         "right arm": tr("What the right arm does: gestures, fidgets, changes of stance"),
-        "arms": tr("Gestures of one or both arms that the annotation does not tell apart"),
-        "head action": tr("Nods, shakes and the like"),
-        "head stance": tr("How the head is held, or changes between that"),
-        "body": tr("How body, legs and spine stand, or changes between that"),
+        "arms": tr("Gestures, if the annotation does not say which arm makes them"),
+        "head action": tr("Nods, head shakes and similar actions"),
+        "head stance": tr("How the head is held, or changes of that stance"),
+        "body": tr("How body, legs and spine are held, or changes of that stance"),
         "speech": tr(
-            "When the one who is watched speaks: the models learn what is done talking, listening and idle"
+            "When the annotated person speaks. The models learn what is done while talking, "
+            "listening and idle."
         ),
-        "partner's speech": tr("When the other speaks"),
+        "partner's speech": tr("When the partner speaks"),
     }
 )
 ROLE_TITLES = (
@@ -95,8 +96,8 @@ ROLE_ENTRIES: Entries = lazy_texts(
 )
 MEANING_TIPS = lazy_texts(
     lambda: {
-        "stance": tr("The label names the stance that is held: where another begins, the stance changes"),
-        **dict.fromkeys(PHASES, tr("A phase of a gesture: phases that follow each other are one gesture")),
+        "stance": tr("The label names the stance. The stance changes where another label begins."),
+        **dict.fromkeys(PHASES, tr("A phase of a gesture. Consecutive phases form one gesture.")),
     }
 )
 
@@ -123,7 +124,7 @@ def meaning_entries(meaning: str) -> list[tuple[str, object, str]]:
         (
             tr("With other tags…"),
             OTHER,
-            tr("A gesture with tags of your own; actions of the graph need the same tags"),
+            tr("A gesture with your own tags. The graph needs actions with the same tags."),
         ),
     )
     return out
@@ -182,7 +183,8 @@ class AnnotateDialog(QDialog):
         if len(people) > 1:
             facts.append(
                 tr(
-                    "{people} people, {names} of them read: another's tiers can be chosen instead",
+                    "{people} people; these are read: {names}. You can choose another person's tiers "
+                    "instead.",
                     people=len(people),
                     names=list_in_words(read) or tr("none"),
                 )
@@ -197,14 +199,14 @@ class AnnotateDialog(QDialog):
         tables.setSpacing(18)
         self.tiers = self._table(
             tables,
-            tr("What the tiers stand for"),
+            tr("Meaning of the tiers"),
             (tr("Tier"), tr("Intervals"), tr("Read as")),
             138,
             5,
             lambda _: ROLE_ENTRIES,
         )
         self.labels = self._table(
-            tables, tr("What the labels mean"), (tr("Label"), tr("Layer"), tr("Times"), tr("Means")), 188, 6,
+            tables, tr("Meaning of the labels"), (tr("Label"), tr("Layer"), tr("Times"), tr("Means")), 188, 6,
             lambda row: meaning_entries(self.reading.labels[row].meaning),
         )  # fmt: skip
         self.tiers.chosen.connect(lambda row, role: self._set_role(self.order[row].name, role))
@@ -212,11 +214,14 @@ class AnnotateDialog(QDialog):
         layout.addLayout(tables, 3)
         row = QHBoxLayout()
         row.setSpacing(12)
-        caption = QLabel(tr("What is seen"), self)
+        caption = QLabel(tr("Preview"), self)
         caption.setProperty("title", True)
         row.addWidget(caption)
         marks = "    ".join(f"{KIND_MARKS[kind]} {words}" for kind, words in LEGEND)
-        legend = QLabel(tr("{marks}    the left arm above, the right below, both across", marks=marks), self)
+        legend = QLabel(
+            tr("{marks}    left arm: upper half, right arm: lower half, both arms: full height", marks=marks),
+            self,
+        )
         legend.setProperty("dim", True)
         row.addWidget(legend)
         row.addStretch(1)
@@ -268,7 +273,7 @@ class AnnotateDialog(QDialog):
             row.addWidget(box)
         self.smoothing = Seconds(
             self,
-            tr("Added to every count, so that what was not seen can happen; 0 as in the paper"),
+            tr("Added to every count, so that actions that were not seen can still happen; the paper uses 0"),
             10,
             "",
             0.1,
@@ -284,15 +289,15 @@ class AnnotateDialog(QDialog):
         row.setSpacing(16)
         self.as_shares = make_widget(
             QRadioButton,
-            tr("shares of all gestures"),
+            tr("a share of all gestures"),
             self,
-            toolTip=tr("So many of the gestures are positive, whatever came before"),
+            toolTip=tr("A fixed share of the gestures is positive, whatever came before"),
         )
         self.as_states = make_widget(
             QRadioButton,
-            tr("states of their own"),
+            tr("separate states"),
             self,
-            toolTip=tr("What follows a positive gesture differs from what follows others"),
+            toolTip=tr("Other actions can follow a positive gesture than follow other gestures"),
         )
         self.as_shares.setChecked(True)
         row.addWidget(self.as_shares)
@@ -303,9 +308,9 @@ class AnnotateDialog(QDialog):
         row.setSpacing(10)
         self.keep = make_widget(
             QCheckBox,
-            tr("as a performance called"),
+            tr("as a performance named"),
             self,
-            toolTip=tr("Played as it was seen; another seed plays it with other actions"),
+            toolTip=tr("Plays the annotated sequence. Another seed plays it with other actions."),
         )
         self.keep.setChecked(True)
         self.keep.toggled.connect(self._enable)
@@ -316,7 +321,7 @@ class AnnotateDialog(QDialog):
         row.addWidget(self.keep)
         row.addWidget(self.called, 1)
         row.addStretch(1)
-        form.addRow(tr("Keep it"), row)
+        form.addRow(tr("Keep the sequence"), row)
         return form
 
     # --- showing
@@ -327,7 +332,7 @@ class AnnotateDialog(QDialog):
             of = tr("{name} of {whose}", name=tier.name, whose=tier.whose) if tier.whose else tier.name
             some = ", ".join(x or tr("(empty)") for x in list(tier.labels)[:6])
             role = self.reading.roles[tier.name]
-            tip = f"{of}: {some}" if some else tr("{of}: nothing in it", of=of)
+            tip = f"{of}: {some}" if some else tr("{of}: empty", of=of)
             rows.append(
                 MeaningRow(
                     (tier.name, group_thousands(len(tier.intervals))),
@@ -336,7 +341,7 @@ class AnnotateDialog(QDialog):
                     tip,
                 )
             )
-        self.tiers.show_rows(rows, tr("There is no tier in this annotation."))
+        self.tiers.show_rows(rows, tr("This annotation has no tiers."))
 
     def _show_labels(self) -> None:
         rows = [
@@ -348,7 +353,7 @@ class AnnotateDialog(QDialog):
             )
             for x in self.reading.labels[:MOST]
         ]
-        self.labels.show_rows(rows, tr("Say what the tiers stand for, then their labels come here."))
+        self.labels.show_rows(rows, tr("Choose what the tiers mean. Their labels then appear here."))
 
     def _changed(self, first: bool = False) -> None:
         """Show what comes of the tiers and labels as they are read now."""
@@ -393,7 +398,7 @@ class AnnotateDialog(QDialog):
             words, ok = QInputDialog.getText(
                 self,
                 tr("Tags"),
-                tr("'{label}' is a gesture that is", label=label.text),
+                tr("Tags of the gesture '{label}'", label=label.text),
                 text=" ".join(split_meaning(label.meaning)[1]),
             )
             meaning = (

@@ -40,18 +40,18 @@ def describe_model_fit(found: ModelComparison) -> str:
     """Say in a sentence how well a model makes what was seen."""
     layer = found.model.layer
     if found.observed is None:
-        return tr("Nothing to compare with yet: outlined is what the matrix comes to in the long run.")
+        return tr("Nothing to compare with yet. The outlines show the long-run shares of the matrix.")
     apart = found.apart()
     worst = int(np.argmax(np.abs(np.nan_to_num(apart, posinf=1e9, neginf=-1e9))))
     if abs(apart[worst]) <= SURE:
-        return tr("Each comes as often as was seen, give or take what chance explains.")
+        return tr("The model makes each action about as often as it was seen.")
     name, seen, made = (
         state_name(found.observed.states[worst], layer),
         found.observed.shares()[worst],
         found.expected[worst],
     )
     return tr(
-        "Not as seen: {name} came in {seen:.0%} of actions, the model makes {made:.0%}.",
+        "Differs from what was seen: {name} was {seen:.0%} of the actions, but the model makes {made:.0%}.",
         name=name,
         seen=seen,
         made=made,
@@ -193,7 +193,7 @@ def describe_often(found: ModelComparison, n: int) -> str:
     """Say how often a state was seen and made."""
     name = state_name(found.generated.states[n], found.model.layer)
     made = tr(
-        "made {share:.1%}, give or take {chance:.1%} by chance",
+        "made {share:.1%} ± {chance:.1%} by chance",
         share=found.generated.shares()[n],
         chance=2 * found.deviation[n],
     )

@@ -158,9 +158,12 @@ class HeatMap(QWidget):
         self._moved = False
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setAccessibleName(tr("What follows what, in percent"))
+        self.setAccessibleName(tr("Transition probabilities, in percent"))
         self.setAccessibleDescription(
-            tr("A row what is played, a column what follows. Arrows choose, plus and minus or digits change.")
+            tr(
+                "Each row is an action, each column the action that follows. Arrow keys select a cell; "
+                "plus, minus or digits change it."
+            )
         )
         self.field = QLineEdit(self)
         self.field.setAlignment(Qt.AlignmentFlag.AlignCenter)
@@ -505,12 +508,12 @@ class HeatMap(QWidget):
         if self.model.lengths:
             mean, deviation = self.model.lengths[n]
             out += tr(
-                " lasts {mean:.1f} s on average, give or take {deviation:.1f} s.",
+                " lasts {mean:.1f} ± {deviation:.1f} s on average.",
                 mean=mean,
                 deviation=deviation,
             )
         else:
             out += tr(" lasts 1 to 3 s.")
         if n in self.closed:
-            out += tr(" It is passed over: the graph has no such action yet.")
+            out += tr(" It is skipped because the graph has no such action yet.")
         return out

@@ -55,10 +55,11 @@ TALL = 430  # pixels the panel likes to have, its title included
 IMPORTED = "imported"  # what was read last, whether or not it was kept
 MERGE = "matrix"
 TEACH = tr_noop(
-    "<b>Nobody has been watched yet:</b> this is the {origin}. Annotate a video in ELAN, with a tier for "
-    "each arm, the head and the body and labels such as <i>gesture, fidget, stance-transition, "
-    "nodding</i>. <a href='learn'>Import the .eaf file</a> or drop it on the window: what follows what is "
-    "counted and becomes the model. <a href='sample'>Try the sample annotation.</a>"
+    "<b>No annotation has been imported yet:</b> this is the {origin}. Annotate a video in "
+    "ELAN, with a tier for each arm, the head and the body and labels such as <i>gesture, "
+    "fidget, stance-transition, nodding</i>. <a href='learn'>Import the .eaf file</a> or "
+    "drop it on the window: Metagraph counts which action follows which and makes the "
+    "model from that. <a href='sample'>Try the sample annotation.</a>"
 )
 
 
@@ -106,7 +107,7 @@ class ModelsPanel(QWidget):
             QPushButton,
             tr("Another sample"),
             self,
-            toolTip=tr("Let chance draw other actions from the same model"),
+            toolTip=tr("Draw other random actions from the same model"),
         )
         self.again.clicked.connect(self._another)
         self.strip = ActStrip(self.session, self, titles=False)
@@ -125,14 +126,17 @@ class ModelsPanel(QWidget):
         top.addWidget(self.origin)
         top.addStretch(1)
         self.back = make_widget(
-            QPushButton, tr("Back to default"), self, toolTip=tr("Forget this layer's model")
+            QPushButton,
+            tr("Reset to default"),
+            self,
+            toolTip=tr("Replace this layer's model by the default model"),
         )
         self.back.clicked.connect(self._reset)
         self.learn = make_widget(
             QPushButton,
             tr("Learn from annotation…"),
             self,
-            toolTip=tr("Read an ELAN file (.eaf) and count what follows what"),
+            toolTip=tr("Read an ELAN file (.eaf) and count which action follows which"),
         )
         self.learn.clicked.connect(lambda: self.learn_wanted.emit(""))
         top.addWidget(self.back)
@@ -163,10 +167,10 @@ class ModelsPanel(QWidget):
         right.setSpacing(6)
         fields = QHBoxLayout()
         fields.setSpacing(8)
-        self.gap = Seconds(self, tr("Mean rest between actions"), most=600)
+        self.gap = Seconds(self, tr("Average pause between actions"), most=600)
         self.gap.valueChanged.connect(self._set_gap)
         self.shares: dict[str, Seconds] = {}
-        self.share_words = QLabel(tr("positive and negative are states of their own"), self)
+        self.share_words = QLabel(tr("positive and negative are separate states"), self)
         self.share_words.setProperty("dim", True)
         fields.addWidget(QLabel(tr("Rest"), self))
         fields.addWidget(self.gap)
@@ -174,7 +178,7 @@ class ModelsPanel(QWidget):
         for tag in ("positive", "negative"):
             field = Seconds(
                 self,
-                tr("How many of the gestures are asked for as {tag}", tag=tr(tag)),
+                tr("Share of the gestures that are requested as {tag}", tag=tr(tag)),
                 most=100,
                 suffix=" %",
                 step=1,
@@ -190,7 +194,7 @@ class ModelsPanel(QWidget):
         fields.addStretch(1)
         self.against = QLabel(tr("Compared with"), self)
         fields.addWidget(self.against)
-        self.chooser = QuietChooser(self, tr("What was seen, beside which the model's making stands"))
+        self.chooser = QuietChooser(self, tr("The annotation that the model's output is compared with"))
         self.chooser.activated.connect(self._choose)
         fields.addWidget(self.chooser)
         right.addLayout(fields)
@@ -237,7 +241,7 @@ class ModelsPanel(QWidget):
             return
         project, layer, shown = self.document.project, self.session.place.layer, self.model()
         own = layer in project.markov
-        self.title.setText(tr("{layer}: what follows what", layer=tr(layer.capitalize())))
+        self.title.setText(tr("{layer}: which action follows which", layer=tr(layer.capitalize())))
         default = tr("default, from the paper") if layer == "arms" else tr("default")
         of = tr("learned or edited") if own else default
         self.origin.setText(f"{of} · {tr_plural('{count:,} state', '{count:,} states', len(shown.states))}")
@@ -284,7 +288,7 @@ class ModelsPanel(QWidget):
         own = self.session.place.layer in self.document.project.markov
         layer = tr(self.session.place.layer)
         origin = (
-            tr("model as it was edited of the {layer}", layer=layer)
+            tr("edited model of the {layer}", layer=layer)
             if own
             else tr("default model of the {layer}", layer=layer)
         )
@@ -344,7 +348,7 @@ class ModelsPanel(QWidget):
         self.document.edit(text, lambda p: edits.set_markov(p, change(model(p, layer))), merge)
 
     def _add_state(self, state: State) -> None:
-        self._edit(tr("Add a state"), lambda m: with_state(m, state))
+        self._edit(tr("Add state"), lambda m: with_state(m, state))
 
     def _cell(self, row: int, column: int, probability: float, dragging: bool) -> None:
         if dragging and self._before is None:
@@ -352,13 +356,15 @@ class ModelsPanel(QWidget):
         before = self._before
         if before is not None and dragging:
             self._edit(
-                tr("Change what follows"), lambda _: with_cell(before, row, column, probability), MERGE
+                tr("Change transition probability"),
+                lambda _: with_cell(before, row, column, probability),
+                MERGE,
             )
         elif before is not None:
             self._before = None
             self.document.finish_merging()
         else:
-            self._edit(tr("Change what follows"), lambda m: with_cell(m, row, column, probability))
+            self._edit(tr("Change transition probability"), lambda m: with_cell(m, row, column, probability))
 
     def _cancel(self) -> None:
         if self._before is not None:
@@ -367,7 +373,7 @@ class ModelsPanel(QWidget):
 
     def _set_gap(self, value: float) -> None:
         if value > 0:
-            self._edit(tr("Change rest between actions"), lambda m: replace(m, gap=round(value, 2)))
+            self._edit(tr("Change average pause"), lambda m: replace(m, gap=round(value, 2)))
         else:
             self.refresh()
 
@@ -385,7 +391,7 @@ class ModelsPanel(QWidget):
 
     def _reset(self) -> None:
         layer = self.session.place.layer
-        self.document.edit(tr("Back to the default model"), lambda p: edits.reset_markov(p, layer))
+        self.document.edit(tr("Reset to the default model"), lambda p: edits.reset_markov(p, layer))
 
     def _another(self) -> None:
         self.seed += 1
@@ -402,7 +408,7 @@ class ModelsPanel(QWidget):
         )
         limbs: tuple[Limb, ...] = LIMBS if layer == "arms" else ("both",)
         kinds: tuple[Kind, ...] = ("gesture", "fidget", "transition")
-        add = menu.addMenu(tr("Add a state"))
+        add = menu.addMenu(tr("Add state"))
         for limb in limbs:
             for kind in kinds:
                 for tag in tags if kind == "gesture" else ("",):
@@ -415,7 +421,7 @@ class ModelsPanel(QWidget):
             words = state_name(model_states(shown)[row], layer)
             menu.addAction(
                 tr("Remove {words}", words=words),
-                lambda: self._edit(tr("Remove a state"), lambda m: remove_state(m, row)),
+                lambda: self._edit(tr("Remove state"), lambda m: remove_state(m, row)),
             )
         return menu
 

@@ -26,7 +26,7 @@ def contribute(shell: Shell) -> Contribution:
                 "author",
                 tr("Motion &graph of takes…"),
                 show,
-                tip=tr("New motion from takes, and clips cut from them"),
+                tip=tr("Assemble new motion from takes, and cut clips from takes"),
                 enabled=lambda: bool(shell.document.project.clips),
             ),
         ),

@@ -29,9 +29,9 @@ from metagraph.graph.conversation.model import Rates
 
 HEADS = lazy_texts(
     lambda: (
-        tr("What goes together"),
+        tr("Pair"),
         tr("Matched"),
-        tr("Of"),
+        tr("Total"),
         tr("Rate"),
         tr("95 % interval"),
         tr("By chance"),
@@ -69,9 +69,9 @@ class CooccurrenceDialog(QDialog):
         box.setSpacing(8)
         words = QLabel(
             tr(
-                "A segment is matched where a hand, or the head up and down, moves near it. By chance: the "
-                "same speech laid elsewhere over the same motion; only a rate well above that says that "
-                "they go together."
+                "A segment is matched if a hand moves near it, or if the head moves up and down. By "
+                "chance: the rate if the same speech is shifted against the same motion. Only a rate "
+                "well above that shows that speech and motion belong together."
             ),
             self,
             wordWrap=True,
@@ -81,7 +81,7 @@ class CooccurrenceDialog(QDialog):
         self.table = QTableWidget(len(self.rows), len(HEADS), self)
         self.table.setTabKeyNavigation(False)  # Tab leaves it, arrows go about in it
         self.table.setHorizontalHeaderLabels(list(HEADS))
-        self.table.setAccessibleName(tr("How often people move when something is said"))
+        self.table.setAccessibleName(tr("How often people move with the speech"))
         self.table.verticalHeader().hide()
         self.table.setShowGrid(False)
         self.table.setSelectionMode(QTableWidget.SelectionMode.NoSelection)
@@ -107,9 +107,9 @@ class CooccurrenceDialog(QDialog):
                 self.table.setItem(n, column, item)
         box.addWidget(self.table, 1)
         row_box = QHBoxLayout()
-        row_box.addWidget(QLabel(tr("Move so"), self))
+        row_box.addWidget(QLabel(tr("Apply to"), self))
         self.who = ComboBox(self)
-        self.who.setAccessibleName(tr("Whose rates"))
+        self.who.setAccessibleName(tr("Speaker whose rates to change"))
         for ident, talk in document.project.conversations.items():
             everyone = tr("both") if len(talk.sides) == 2 else tr("all")
             self.who.addItem(f"{talk.name}: {everyone}", (ident, tuple(range(len(talk.sides)))))

@@ -131,20 +131,20 @@ class MotionGraphDialog(QDialog):
     def _build_right(self) -> None:
         self.right = QVBoxLayout()
         self.right.setSpacing(6)
-        self.right.addWidget(self._heading(tr("What counts as a jump")))
+        self.right.addWidget(self._heading(tr("Jump limit")))
         row = QHBoxLayout()
         self.k = SpinBox(self, minimum=2, maximum=10, value=3)
         self.k.setToolTip(
             tr(
-                "Costs are those of a frame and one so many frames later: the larger, the more "
-                "transitions, and the rougher"
+                "The jump limit comes from the difference between frames this far apart. A larger "
+                "number gives more transitions, but rougher ones."
             )
         )
-        self.k.setAccessibleName(tr("Frames apart"))
+        self.k.setAccessibleName(tr("Frame distance"))
         self.level = DoubleSpinBox(self, minimum=50, maximum=99.9, value=95, suffix=" %", decimals=1)
-        self.level.setToolTip(tr("Transitions may cost as much as so many of these costs"))
+        self.level.setToolTip(tr("Transitions can cost as much as this share of those differences"))
         self.level.setAccessibleName(tr("Level"))
-        for words, field in ((tr("Frames apart (k)"), self.k), (tr("Level"), self.level)):
+        for words, field in ((tr("Frame distance (k)"), self.k), (tr("Level"), self.level)):
             row.addWidget(QLabel(words, self))
             row.addWidget(field)
             row.addSpacing(10)
@@ -178,7 +178,7 @@ class MotionGraphDialog(QDialog):
         self.right.addWidget(self.table)
         self.count_button = QPushButton(tr("Compare k = 2, 3, 4"), self, autoDefault=False)
         self.count_button.setToolTip(
-            tr("Kept is what leads on: the largest part in which every frame can be reached from every other")
+            tr("Metagraph keeps the largest part in which every frame can be reached from every other frame")
         )
         self.count_button.clicked.connect(self.count)
         self.right.addWidget(self.count_button, 0, Qt.AlignmentFlag.AlignLeft)
@@ -273,11 +273,13 @@ class MotionGraphDialog(QDialog):
             none = not self.picked.list.rowCount()
             self.words.setText(
                 tr(
-                    "There are no clips yet. Import long recordings: of frames that are alike, transitions "
-                    "are made."
+                    "There are no clips yet. Import long recordings. Transitions are made between similar "
+                    "frames."
                 )
                 if none
-                else tr("Choose takes, long recordings: of frames that are alike, transitions are made.")
+                else tr(
+                    "Choose takes, which are long recordings. Transitions are made between similar frames."
+                )
             )
             return
         fitted = (
@@ -341,7 +343,7 @@ class MotionGraphDialog(QDialog):
     def cancel(self) -> None:
         if self._job is not None:
             self._job.cancel()
-            self.said.setText(tr("Cancelled; nothing was changed."))
+            self.said.setText(tr("Cancelled. Nothing was changed."))
 
     def _failed(self, error: Exception) -> None:
         text = tr_error(error)
@@ -376,9 +378,7 @@ class MotionGraphDialog(QDialog):
         takes = self.takes
         if not takes.told:
             self._failed(
-                ValueError(
-                    tr("choose takes and say beside each what was heard during it: a conversation's side")
-                )
+                ValueError(tr("choose takes, and choose beside each one which speaker was heard during it"))
             )
             return
 
@@ -405,10 +405,12 @@ class MotionGraphDialog(QDialog):
             return
         if not takes.ids or limit is None or self.states is None or self.states[0] != takes.clips:
             why = (
-                tr("these takes cannot be compared: choose others") if takes.ids else tr("choose takes first")
+                tr("these takes cannot be compared: choose other takes")
+                if takes.ids
+                else tr("choose takes first")
             )
             self._failed(
-                ValueError(tr("{why}; their frames are compared before anything can be found", why=why))
+                ValueError(tr("{why}; Metagraph must compare their frames before it can search", why=why))
             )
             return
         folder = self._folder()
@@ -444,7 +446,7 @@ class MotionGraphDialog(QDialog):
         deaf = (
             ""
             if takes_told or not self.wishes.talks
-            else tr(" What was heard during the takes is not known, so speech did not guide it.")
+            else tr(" The speech during the takes is not known, so it could not guide the search.")
         )
         self.said.setText(found.words() + deaf)
 
@@ -475,7 +477,7 @@ class MotionGraphDialog(QDialog):
     def _folder(self) -> Any:
         folder = self.document.folder
         if folder is None:
-            self._failed(ValueError(tr("save the project first: new clips are kept as files beside it")))
+            self._failed(ValueError(tr("save the project first: new clips are saved as files beside it")))
         return folder
 
     # --- clips from takes
@@ -513,8 +515,8 @@ class MotionGraphDialog(QDialog):
         if not loaded:
             self.said.setText(
                 tr(
-                    "No still moments were found that these takes leave and come back to: raise k or the "
-                    "level, or cut by hand."
+                    "These takes have no still moments in a pose that they return to. Raise k or the "
+                    "level, or cut them by hand."
                 )
             )
             return

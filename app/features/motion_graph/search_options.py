@@ -59,30 +59,33 @@ class Wishes(QFrame):
         """Return what it goes with, for how long, and how it is searched."""
         row = QHBoxLayout()
         self.speech = ComboBox(self)
-        self.speech.setAccessibleName(tr("Goes with"))
+        self.speech.setAccessibleName(tr("Speech to match"))
         self.speech.setMinimumWidth(200)
         self.speech.activated.connect(self._limits)
         self.start = self._seconds(tr("From"), 0.0, 0.0)
         self.length = self._seconds(tr("Seconds"), 1.0, WINDOW)
         self.search = ComboBox(self)
         self.search.setAccessibleName(tr("Search"))
-        self.search.addItem(tr("the best there is"), True)
-        self.search.addItem(tr("quick, by chance"), False)
+        self.search.addItem(tr("best"), True)
+        self.search.addItem(tr("quick, random"), False)
         self.search.setItemData(
             0,
-            tr("Dynamic programming over all frames: finds a motion whenever there is one, none costs less"),
+            tr("Dynamic programming over all frames. Finds the motion with the lowest cost if there is one."),
             3,
         )
         self.search.setItemData(
             1,
-            tr("Stochastic greedy search, as in the paper: other results with other seeds; may find nothing"),
+            tr(
+                "Stochastic greedy search, as in the paper. Another seed gives another result. It can "
+                "find nothing."
+            ),
             3,
         )
         self.search.activated.connect(self._limits)
         self.seed = DoubleSpinBox(self, minimum=1, maximum=9999, decimals=0, value=1)
         self.seed.setAccessibleName(tr("Seed"))
         for words, field in (
-            (tr("Goes with"), self.speech),
+            (tr("Speech to match"), self.speech),
             (tr("from"), self.start),
             (tr("for"), self.length),
             (tr("Search"), self.search),
@@ -97,29 +100,27 @@ class Wishes(QFrame):
     def _sounds_row(self) -> QHBoxLayout:
         """Return what is met of what is heard, and for whom."""
         row = QHBoxLayout()
-        row.addWidget(QLabel(tr("Meets"), self))
+        row.addWidget(QLabel(tr("Must match"), self))
         self.kinds: dict[Sound, QCheckBox] = {}
         for kind, words in KINDS:
             self.kinds[kind] = make_widget(QCheckBox, words, self, checked=True)
             row.addWidget(self.kinds[kind])
         self.peaks = make_widget(QCheckBox, tr("Stresses"), self, checked=True)
-        self.peaks.setToolTip(tr("A clause's stress lies where the stress lay that the motion was made with"))
+        self.peaks.setToolTip(tr("Clause stresses must match the stresses in the speech of the take"))
         row.addWidget(self.peaks)
         self.edges = make_widget(QCheckBox, tr("Starts and ends"), self, checked=True)
-        self.edges.setToolTip(
-            tr("What is heard begins and ends where that did which the motion was made with")
-        )
+        self.edges.setToolTip(tr("The speech must start and end when the speech of the take did"))
         row.addWidget(self.edges)
         self.tolerance = DoubleSpinBox(
             self, minimum=0.0, maximum=1.0, singleStep=0.05, decimals=2, value=0.1, suffix=" s"
         )
         self.tolerance.setAccessibleName(tr("Tolerance"))
         row.addSpacing(8)
-        row.addWidget(QLabel(tr("give or take"), self))
+        row.addWidget(QLabel(tr("±"), self))
         row.addWidget(self.tolerance)
-        self.whole = QCheckBox(tr("Move the speaker with it"), self)
+        self.whole = QCheckBox(tr("Move this speaker"), self)
         self.whole.setToolTip(
-            tr("Motion for the whole conversation, which then moves this speaker instead of the graph")
+            tr("Find motion for the whole conversation. It moves this speaker instead of the graph.")
         )
         self.whole.toggled.connect(self._limits)
         row.addSpacing(8)

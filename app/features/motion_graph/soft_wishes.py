@@ -34,37 +34,37 @@ class SoftWishes(QWidget):
         self.loudness = self._weight(
             tr("Loudness"),
             tr(
-                "Frames cost that were said louder or softer than what is said now, by the speaker's own "
-                "spread; 0.25 is a good start. Needs the sounds of the conversations"
+                "Prefers frames with a similar loudness, measured by the speaker's own spread. Start "
+                "with 0.25. Needs the sounds of the conversations"
             ),
         )
         self.rate = self._weight(
             tr("Speaking rate"),
             tr(
-                "Frames cost that were said faster or slower than what is said now; 0.25 is a good start. By "
-                "words where there are any, else by the sound"
+                "Prefers frames with a similar speaking rate. Start with 0.25. Uses the words if there "
+                "are any, otherwise the sound"
             ),
         )
         self.words = QLineEdit(self, placeholderText=tr("big; round = circle, ball"))
-        self.words.setAccessibleName(tr("Words that want motion"))
+        self.words.setAccessibleName(tr("Key words"))
         self.words.setToolTip(
             tr(
-                "Where one of these is said, motion comes from where a take says it, or one alike. Part "
-                "them by semicolons"
+                "When one of these words is said, the motion comes from a take that says it or a "
+                "similar word. Separate words with semicolons"
             )
         )
         self.words.setMinimumWidth(170)
         self.words.returnPressed.connect(self.wanted)
-        self.must = make_widget(QCheckBox, tr("have to be met"), self)
-        self.must.setToolTip(tr("Other constraints are given up before these words are missed"))
+        self.must = make_widget(QCheckBox, tr("required"), self)
+        self.must.setToolTip(tr("The search gives up other constraints before it misses one of these words"))
         self.speed = DoubleSpinBox(
             self, minimum=0, maximum=50, singleStep=5, decimals=0, value=0, prefix="± ", suffix=" %"
         )
-        self.speed.setAccessibleName(tr("Speed may change by"))
+        self.speed.setAccessibleName(tr("Change speed by up to"))
         self.speed.setToolTip(
             tr(
-                "Plays it faster and slower, outside of strokes, steps and transitions, so that starts, "
-                "ends and stresses come when they are heard; try 15 %"
+                "Plays parts faster or slower, except strokes, steps and transitions, so that starts, "
+                "ends and stresses match the speech. Try 15 %."
             )
         )
         for words, field in (
@@ -85,7 +85,11 @@ class SoftWishes(QWidget):
         out = DoubleSpinBox(self, minimum=0, maximum=20, singleStep=0.05, decimals=2, value=0)
         out.setAccessibleName(name)
         out.setToolTip(
-            tr("{tip}. What a second costs that is off by one spread, of what a transition may cost", tip=tip)
+            tr(
+                "{tip}. The number is the cost of one second that is off by one spread, as a share of "
+                "what a transition can cost.",
+                tip=tip,
+            )
         )
         return out
 

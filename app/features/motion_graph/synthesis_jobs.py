@@ -76,14 +76,14 @@ def describe_unusable_clips(project: Project) -> str:
     alike = [e for e in moving if e.motion is not None and e.motion.skeleton == project.skeleton]
     still = sum(e.frames <= 1 for e in alike)
     reasons = (
-        (still, tr("of one frame")),
-        (len(moving) - len(alike), tr("of another skeleton")),
-        (len(project.clips) - len(moving), tr("whose file is missing")),
+        (still, tr("with only one frame")),
+        (len(moving) - len(alike), tr("with another skeleton")),
+        (len(project.clips) - len(moving), tr("with a missing file")),
     )
     told = [
         f"{tr_plural('{count:,} clip', '{count:,} clips', count)} {why}" for count, why in reasons if count
     ]
-    return tr("Left out: {told}.", told=", ".join(told)) if told else ""
+    return tr("Skipped: {told}.", told=", ".join(told)) if told else ""
 
 
 def cut_to_take(heard: Sequence[Segment], seconds: float) -> tuple[Segment, ...]:
@@ -159,7 +159,7 @@ class FoundMotion:
             else tr_plural("{count:,} transition", "{count:,} transitions", 1)
         )
         again = tr(
-            "{repeated:.0%} of it shown again within 3 s, {rest}",
+            "{repeated:.0%} of it repeats within 3 s, {rest}",
             repeated=self.looks.repeated,
             rest=self.looks.rest_words(),
         )

@@ -30,7 +30,7 @@ from metagraph.graph.conversation.edits import change_side
 from metagraph.graph.conversation.model import Conversation
 from metagraph.graph.model import Project
 
-NONE = tr_noop("nothing known")
+NONE = tr_noop("not known")
 ROW = 30  # pixels
 HEARD = 2  # the column of what was heard
 
@@ -52,7 +52,7 @@ class TakesList(QWidget):
         self.title.setProperty("heading", True)
         self.list = QTableWidget(0, 3, self)
         self.list.setTabKeyNavigation(False)  # Tab leaves it, arrows go about in it
-        self.list.setHorizontalHeaderLabels([tr("Clip"), tr("Length"), tr("What was heard")])
+        self.list.setHorizontalHeaderLabels([tr("Clip"), tr("Length"), tr("Speech heard")])
         self.list.setAccessibleName(tr("Takes"))
         self.list.verticalHeader().hide()
         self.list.setShowGrid(False)
@@ -76,8 +76,8 @@ class TakesList(QWidget):
         self.cut_button = QPushButton(tr("Cut selected takes into clips"), self, autoDefault=False)
         self.cut_button.setToolTip(
             tr(
-                "At still moments in a pose it comes back to, so that no jump shows; the clips then wait "
-                "to be labelled"
+                "Cuts at still moments in a pose that returns, so that no jump is visible. Label the "
+                "new clips afterwards."
             )
         )
         self.cut_button.clicked.connect(self.cut_wanted)
@@ -85,7 +85,7 @@ class TakesList(QWidget):
         box.addWidget(self.list, 1)
         box.addWidget(self.note)
         self.rates_button = QPushButton(tr("Count movements with speech…"), self, autoDefault=False)
-        self.rates_button.setToolTip(tr("How often hands and head moved when something was said"))
+        self.rates_button.setToolTip(tr("Count how often hands and head moved with the speech"))
         self.rates_button.clicked.connect(self.rates_wanted)
         row = QHBoxLayout()
         row.addWidget(self.cut_button)
@@ -129,7 +129,7 @@ class TakesList(QWidget):
             talk = project.conversations[recorded[0]]
             words = describe_side(talk, recorded[1])
         item = QTableWidgetItem(f"{words}  ▾" if project.conversations else words)
-        tip = tr("Click to say whose side of which conversation was recorded along with it")
+        tip = tr("Click to choose which speaker of which conversation was recorded with this take")
         item.setToolTip(f"{item.text()}\n{tip}")
         return item
 
@@ -161,7 +161,7 @@ class TakesList(QWidget):
                         project = change_side(project, ident, n, take=None)
             return project if chosen is None else change_side(project, *chosen, take=clip)
 
-        self.document.edit(tr("Tell what was heard"), edit)
+        self.document.edit(tr("Set speech heard"), edit)
 
     def chosen(self) -> list[str]:
         """Return the ids of the takes that are checked."""

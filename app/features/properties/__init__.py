@@ -67,7 +67,7 @@ def contribute(shell: Shell) -> Contribution:
                 "author",
                 tr("Use proposed &times"),
                 lambda: compatibility.use_proposed(session.selection.actions),
-                tip=tr("Begin and end where no jump shows"),
+                tip=tr("Start and end the action where its blends show no jump"),
                 enabled=lambda: bool(session.selection.actions) and compatibility.judged is not None,
                 when="meta",
                 study="labels",

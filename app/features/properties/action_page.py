@@ -74,7 +74,9 @@ class ActionPage(Halves):
         self.kind = QLabel(page)
         head.addWidget(self.name, 1)
         head.addWidget(self.kind)
-        self.timing = make_widget(QToolButton, page, text=tr("Timing"), toolTip=tr("Show its timing whole"))
+        self.timing = make_widget(
+            QToolButton, page, text=tr("Timing"), toolTip=tr("Open the timing editor for this action")
+        )
         self.timing.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.timing.clicked.connect(self.time_wanted)
         head.addWidget(self.timing)
@@ -100,11 +102,11 @@ class ActionPage(Halves):
         self.end.valueChanged.connect(lambda v: self._timing("end", v))
         self.blend_in.valueChanged.connect(lambda v: self._timing("blend_in", v))
         self.blend_out.valueChanged.connect(lambda v: self._timing("blend_out", v))
-        self.leave = QCheckBox(tr("early, from"), page)
-        self.leave.setAccessibleName(tr("May be left early"))
-        self.leave.setToolTip(tr("Whether what comes next may begin before its end"))
+        self.leave = QCheckBox(tr("can exit from"), page)
+        self.leave.setAccessibleName(tr("Can exit early"))
+        self.leave.setToolTip(tr("The next action can start before this one ends"))
         self.leave.clicked.connect(self._leave)
-        self.earliest = Seconds(page, tr("Earliest exit: from here on the action may be left"))
+        self.earliest = Seconds(page, tr("Earliest exit: from here on, the next action can start"))
         self.earliest.valueChanged.connect(lambda v: self._timing("earliest_exit", v))
         self.leave_row = self._add_pair(page, tr("Exit"), self.leave, self.earliest)
 
@@ -114,12 +116,21 @@ class ActionPage(Halves):
         self.limb.chosen.connect(lambda n: self._set(tr("Change limb"), limb=LIMBS[n]))
         self.form.addRow(tr("Limb"), self.limb)
         self.tags = Field(
-            page, tr("Words apart by commas; requests can ask for them: positive, negative, ..."), tr("Tags")
+            page,
+            tr("Words separated by commas, such as positive, negative. Requests can ask for them."),
+            tr("Tags"),
         )
         self.tags.editingFinished.connect(self._retag)
         self.form.addRow(tr("Tags"), self.tags)
         self.likelihood = Seconds(
-            page, tr("Likelihood against the others of its node; 1 is usual"), 100, "", 0.1
+            page,
+            tr(
+                "How often it plays compared with the other actions of its node; 1 is the default, 2 "
+                "is twice as often"
+            ),
+            100,
+            "",
+            0.1,
         )
         self.likelihood.valueChanged.connect(self._likely)
         self.form.addRow(tr("Likelihood"), self.likelihood)
@@ -131,7 +142,7 @@ class ActionPage(Halves):
         self.ends = QuietChooser(page, toolTip=tr("The stance it ends in"))
         self.ends.activated.connect(self._reend)
         self.form.addRow(tr("Ends in"), self.ends)
-        self.joints = make_widget(QPushButton, page, toolTip=tr("Let it move only some joints"))
+        self.joints = make_widget(QPushButton, page, toolTip=tr("Choose which joints it moves"))
         self.joints.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # after a click the space bar still plays
         self.joints.clicked.connect(self._mask)
         self.form.addRow(tr("Joints"), self.joints)
@@ -164,7 +175,7 @@ class ActionPage(Halves):
         stance = kind == "stance"
         blend_title = self.form.labelForField(self.blend_row)
         if isinstance(blend_title, QLabel):
-            blend_title.setText(tr("Blend at seam") if stance else tr("Blend in, out"))
+            blend_title.setText(tr("Loop seam blend") if stance else tr("Blend in, out"))
         self.blend_out.setVisible(not stance)
         self.form.setRowVisible(self.leave_row, not stance)
         exits = common_value([a.timing.earliest_exit for a in actions])
@@ -214,7 +225,9 @@ class ActionPage(Halves):
         ):
             shared = common_value(values)
             box.show_entries(
-                [(s.name, s.id) for s in stances], shared, tr(MIXED) if shared is Mixed else tr("choose one")
+                [(s.name, s.id) for s in stances],
+                shared,
+                tr(MIXED) if shared is Mixed else tr("choose a stance"),
             )
             box.setEnabled(bool(stances))
         self.form.setRowVisible(self.ends, kind == "transition")
@@ -284,5 +297,5 @@ class ActionPage(Halves):
 
 def _moved(joints: tuple[str, ...], weights: tuple[tuple[str, float], ...]) -> str:
     """Say which joints an action moves, and how many in part."""
-    words = tr("{count} joints only", count=len(joints)) if joints else tr("all its layer reaches")
-    return f"{words}, {tr('{soft} in part', soft=len(weights))}" if weights else words
+    words = tr("{count} joints only", count=len(joints)) if joints else tr("all joints of its layer")
+    return f"{words}, {tr('{soft} partly', soft=len(weights))}" if weights else words

@@ -58,7 +58,7 @@ class ClipPage(QWidget):
             )
         else:
             self.title.setText(tr_plural("{count:,} clip", "{count:,} clips", len(entries)))
-            self.words.setText(tr("{total:.1f} s together", total=total))
+            self.words.setText(tr("{total:.1f} s in total", total=total))
         lines = []
         for action in [a for c in clips for a in project.uses.get(c, ())][:20]:
             stance = project.stance(action.stance)

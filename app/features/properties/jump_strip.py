@@ -42,12 +42,12 @@ class JumpStrip(pg.PlotWidget):
         left.setWidth(above.getAxis("left").width())
         left.setTicks([])
         self.hideAxis("bottom")
-        self.setAccessibleName(tr("Where it can begin and end without a jump"))
+        self.setAccessibleName(tr("Where it can start and end without a visible jump"))
         self.bars = pg.BarGraphItem(x0=[], x1=[], y0=0, height=BAR)
         self.bad = pg.PlotDataItem(connect="finite", antialias=True)
         self.good = pg.PlotDataItem(connect="finite", antialias=True)
         self.limit = pg.InfiniteLine(pos=1.0, angle=0, movable=False)
-        self.words = pg.TextItem(tr("shows as a jump"), anchor=(0.5, 1.0))
+        self.words = pg.TextItem(tr("visible jump"), anchor=(0.5, 1.0))
         self.marks = pg.ScatterPlotItem(size=12)
         self.edges = [pg.InfiniteLine(movable=False) for _ in range(2)]
         for item in (self.bars, self.limit, *self.edges, self.bad, self.good, self.marks):
@@ -131,7 +131,7 @@ class JumpStrip(pg.PlotWidget):
 
         seconds = float(self.plotItem.vb.mapSceneToView(at).x())
         seconds = min(max(0.0, seconds), float(self.seen.times[-1]))
-        more = tr("\nThe marks are the proposed times. Hold Alt while dragging to leave them out.")
+        more = tr("\nThe marks show the proposed times. Hold Alt while dragging to avoid snapping to them.")
         return tr_phrase(words_at(*self.subject, self.seen, seconds)) + more
 
     def viewportEvent(self, event: QEvent) -> bool:

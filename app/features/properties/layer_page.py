@@ -28,8 +28,8 @@ class LayerPage(QWidget):
         box.addWidget(self.title)
         words = QLabel(
             tr(
-                "Select an action to see its timing. The layer moves these body parts, added to "
-                "the base pose:"
+                "Select an action to see its timing. The layer moves these body parts, on top of the "
+                "base pose:"
             ),
             self,
             wordWrap=True,
@@ -42,7 +42,7 @@ class LayerPage(QWidget):
             field = Seconds(
                 self,
                 tr(
-                    "Weight on the {part}: 0 not at all, 1 as in the clip, 2 twice as much",
+                    "How much the layer moves the {part}: 0 not at all, 1 as in the clip, 2 twice as much",
                     part=vocabulary_word(part),
                 ),
                 2,
@@ -57,22 +57,22 @@ class LayerPage(QWidget):
         box.addWidget(line)
         form = form_in(box)
         self.gap = Seconds(
-            self, tr("Mean seconds of rest between two actions when nobody asks for any"), 60, " s", 0.2
+            self, tr("Average pause between two actions that play without a request"), 60, " s", 0.2
         )
         self.gap.valueChanged.connect(self._set_gap)
-        form.addRow(tr("Rest between"), self.gap)
+        form.addRow(tr("Average pause"), self.gap)
         self.base = QuietChooser(
-            self, toolTip=tr("The pose all layers are added to; a neutral one, hands at the sides")
+            self, toolTip=tr("The neutral pose that all layers are added to, with the hands at the sides")
         )
         self.base.activated.connect(self._set_base)
         form.addRow(tr("Base pose"), self.base)
-        self.base_frame = Seconds(self, tr("Frame of that clip"), 1e6, "", 1, 0)
+        self.base_frame = Seconds(self, tr("Which frame of the clip is the base pose"), 1e6, "", 1, 0)
         self.base_frame.valueChanged.connect(self._set_base_frame)
-        form.addRow(tr("At frame"), self.base_frame)
+        form.addRow(tr("Frame"), self.base_frame)
         line = QFrame(self, frameShape=QFrame.Shape.HLine)
         line.setStyleSheet("color: palette(mid)")
         box.addWidget(line)
-        words = QLabel(tr("All layers, when something is chosen:"), self, wordWrap=True)
+        words = QLabel(tr("For all layers, when the planner picks an action:"), self, wordWrap=True)
         words.setProperty("dim", True)
         box.addWidget(words)
         self.planner = PlannerRows(form_in(box), self, edit)
@@ -89,7 +89,7 @@ class LayerPage(QWidget):
 
         self.gap.show_value(model(project, layer).gap)
         clips = [(tr("Rest pose of the skeleton"), None), *((e.name, e.id) for e in project.clips.values())]
-        self.base.show_entries(clips, project.base.clip, tr("a clip that is gone"))
+        self.base.show_entries(clips, project.base.clip, tr("a missing clip"))
         self.base.setEnabled(bool(project.clips))
         self.base_frame.setEnabled(project.base.clip is not None)
         self.base_frame.show_value(project.base.frame)
@@ -110,7 +110,7 @@ class LayerPage(QWidget):
             self.show_layer()
         else:
             self.edit(
-                tr("Change rest between actions"),
+                tr("Change average pause"),
                 lambda p: edits.set_markov(p, replace(model(p, layer), gap=round(value, 2))),
             )
 

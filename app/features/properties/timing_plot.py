@@ -208,7 +208,12 @@ class TimingPlot(QWidget):
             across = -0.02 * entry.duration, max(entry.duration, 0.1) * 1.02
             top = max(0.2, float(speeds.max()) * 1.15 if len(speeds) else 1.0)
             self.plot.plotItem.vb.setRange(xRange=across, yRange=(0, top), padding=0)
-            self.plot.setToolTip(tr("{words}, m/s. Drag the lines; a click moves the playhead.", words=words))
+            self.plot.setToolTip(
+                tr(
+                    "{words}, m/s. Drag the lines to change the times. Click to move the playhead.",
+                    words=words,
+                )
+            )
             if project.action(action.id) is None:
                 self.strip.show_seen(project, action, None)
                 self.verdict.setText("")

@@ -22,9 +22,9 @@ from metagraph.playback.timing.phases import phases
 PHASE_FIELDS = ("ready", "stroke_end", "relax")
 PHASE_WORDS = lazy_texts(
     lambda: {
-        "ready": tr("The preparation ends"),
-        "stroke_end": tr("The hold begins"),
-        "relax": tr("The hold ends, the retraction begins"),
+        "ready": tr("End of the preparation"),
+        "stroke_end": tr("Start of the hold"),
+        "relax": tr("End of the hold and start of the retraction"),
     }
 )
 AS_THE_GRAPH = -1
@@ -41,26 +41,27 @@ class ActionRows(QWidget):
         self.form = form
         self.ready, self.stroke_end, self.relax = (Seconds(parent, PHASE_WORDS[f]) for f in PHASE_FIELDS)
         self.found = make_widget(
-            QToolButton, parent, text=tr("As found"), toolTip=tr("Take the phases from the motion again")
+            QToolButton, parent, text=tr("Detect"), toolTip=tr("Detect the phases from the motion again")
         )
-        self.found.setAccessibleName(tr("Phases as found"))
+        self.found.setAccessibleName(tr("Detect phases"))
         self.phase_rows = (
-            self._row(tr("Ready"), self.ready, self.found),
+            self._row(tr("Prepared"), self.ready, self.found),
             self._row(tr("Hold"), self.stroke_end, self.relax),
         )
         for field, box in zip(PHASE_FIELDS, (self.ready, self.stroke_end, self.relax), strict=True):
             box.valueChanged.connect(partial(self._phase, field))
         self.found.clicked.connect(
-            lambda: self.changed.emit(tr("Take phases as found"), {"timing": dict.fromkeys(PHASE_FIELDS)})
+            lambda: self.changed.emit(tr("Detect phases"), {"timing": dict.fromkeys(PHASE_FIELDS)})
         )
         self.cooldown = Seconds(
-            parent, tr("Seconds after it has ended in which it is not drawn again"), 3600, " s", 0.5, 1
+            parent, tr("For how long after its end it cannot play again"), 3600, " s", 0.5, 1
         )
         self.cooldown.valueChanged.connect(self._cooled)
         self.spacing = SpinBox(
-            parent, toolTip=tr("How many others of its kind and stance play before it may be drawn again")
+            parent,
+            toolTip=tr("How many other actions of its kind and stance must play before it can play again"),
         )
-        self.spacing.setAccessibleName(tr("Others between"))
+        self.spacing.setAccessibleName(tr("Others in between"))
         self.spacing.setRange(-2, 31)
         self.spacing.setKeyboardTracking(False)
         self.spacing.valueChanged.connect(self._spaced)
@@ -95,7 +96,7 @@ class ActionRows(QWidget):
         least = -2 if spacing is Mixed else AS_THE_GRAPH
         if self.spacing.minimum() != least:  # which lays the form out anew
             self.spacing.setMinimum(least)
-        self.spacing.setSpecialValueText(tr(MIXED) if spacing is Mixed else tr("as usual"))
+        self.spacing.setSpecialValueText(tr(MIXED) if spacing is Mixed else tr("as the graph"))
         shown = least if spacing is Mixed or spacing is None else spacing
         if self.spacing.value() != shown or self.spacing.lineEdit().isModified():
             self.spacing.setValue(shown)
@@ -123,9 +124,9 @@ class PlannerRows(QWidget):
         super().__init__(parent)
         self.hide()
         self._edit = edit
-        self.never_twice = QCheckBox(tr("never twice in a row"), parent)
+        self.never_twice = QCheckBox(tr("Never twice in a row"), parent)
         self.never_twice.setToolTip(
-            tr("Where there is another; an action's own number of others between wins")
+            tr('Applies when the node has another action. An action\'s own "Others in between" overrides it.')
         )
         self.never_twice.clicked.connect(lambda on: self._set(tr("Change repetition"), never_twice=on))
         form.addRow(tr("Repetition"), self.never_twice)
@@ -134,44 +135,44 @@ class PlannerRows(QWidget):
             (
                 "alpha",
                 tr("Avoid repeats"),
-                tr("Change avoid repeats"),
-                tr("How quickly what was used becomes unlikely; the paper has 4"),
+                tr("Change repeat avoidance"),
+                tr("How strongly an action that has just played is avoided; the published method uses 4"),
                 100,
                 "",
                 0.5,
             ),
             (
                 "memory",
-                tr("Remembered for"),
-                tr("Change remembered for"),
-                tr("How long a use counts against an action; 0 for ever"),
+                tr("Remember for"),
+                tr("Change memory"),
+                tr("How long the planner remembers that an action has played; 0 means always"),
                 600,
                 " s",
                 5,
             ),
             (
                 "rest",
-                tr("Least rest"),
-                tr("Change least rest"),
-                tr("Seconds in the stance between two actions, at the least"),
+                tr("Minimum pause"),
+                tr("Change minimum pause"),
+                tr("Shortest time in the stance between two actions"),
                 60,
                 " s",
                 0.1,
             ),
             (
                 "wait",
-                tr("Waits at most"),
-                tr("Change waits at most"),
-                tr("How late something asked for may begin"),
+                tr("Maximum wait"),
+                tr("Change maximum wait"),
+                tr("How late a requested action may start"),
                 60,
                 " s",
                 0.5,
             ),
             (
                 "lookahead",
-                tr("Looks ahead"),
-                tr("Change looks ahead"),
-                tr("What begins this soon is not changed any more while performing live"),
+                tr("Look ahead"),
+                tr("Change look-ahead"),
+                tr("In a live performance, actions that start within this time are no longer changed"),
                 10,
                 " s",
                 0.05,

@@ -16,7 +16,7 @@ def contribute(shell: Shell) -> Contribution:
     return Contribution(
         commands=(
             Command("render", "&File", "write", tr("&Write performance…"), render, ("Ctrl+R",),
-                    tip=tr("Video with sound, contact sheet, or motion"),
+                    tip=tr("Save a video with sound, a contact sheet, or a motion file"),
                     enabled=lambda: shell.document.project.skeleton is not None, when="meta"),
         ),
     )  # fmt: skip

@@ -36,16 +36,16 @@ LOOKS = (  # what the preview calls its lights and backgrounds
     tr_noop("Studio"),
     tr_noop("Day"),
     tr_noop("Evening, from the side"),
-    tr_noop("Rim, from behind"),
+    tr_noop("Rim light, from behind"),
     tr_noop("Flat"),
-    tr_noop("Stage, as the window"),
+    tr_noop("Stage, as in the window"),
     tr_noop("Sky"),
     tr_noop("Dusk"),
     tr_noop("Warm paper"),
     tr_noop("Neutral grey, for recording"),
     tr_noop("White"),
     tr_noop("Black"),
-    tr_noop("Green, to be cut out"),
+    tr_noop("Green, for keying"),
 )
 SIZES = ((640, 360), (960, 540), (1280, 720), (1920, 1080))
 
@@ -84,7 +84,7 @@ class RenderDialog(QDialog):
         for suffix, words in SUFFIXES.items():
             self.kind.addItem(words, suffix)
         self.kind.activated.connect(lambda _: self._suffixed())
-        self.form.addRow(tr("As"), self.kind)
+        self.form.addRow(tr("Format"), self.kind)
         row = QHBoxLayout()
         folder = self.performance.document.folder or Path.home()
         self.file = QLineEdit(str(folder / f"{name}.mp4"), self)
@@ -99,17 +99,19 @@ class RenderDialog(QDialog):
         """Add how much is written. length: in seconds."""
         self.seconds = DoubleSpinBox(self, minimum=0.1, maximum=3600, decimals=1, suffix=" s")
         self.seconds.setValue(length)
-        self.part = ComboBox(self, toolTip=tr("All of it, or what is between in and out on the timeline"))
-        self.part.addItem(tr("All, from the beginning"), None)
+        self.part = ComboBox(
+            self, toolTip=tr("Write the whole performance, or only the loop range of the timeline")
+        )
+        self.part.addItem(tr("Everything, from the start"), None)
         self.range = self.performance.timeline.range
         if self.range is not None:
             self.part.addItem(
-                tr("The range, {start:.2f} to {end:.2f} s", start=self.range[0], end=self.range[1]),
+                tr("Loop range, {start:.2f} to {end:.2f} s", start=self.range[0], end=self.range[1]),
                 self.range,
             )
             self.part.setCurrentIndex(1)
         self.part.activated.connect(lambda _: self._suffixed())
-        self.form.addRow(tr("What"), self.part)
+        self.form.addRow(tr("Range"), self.part)
         self.form.addRow(tr("Length"), self.seconds)
 
     def _add_pictures(self) -> None:
@@ -121,9 +123,9 @@ class RenderDialog(QDialog):
         self.form.addRow(tr("Size"), self.size_box)
         self.fps = ComboBox(self)
         for fps in (24.0, 25.0, 30.0, 60.0):
-            self.fps.addItem(tr("{fps:g} a second", fps=fps), fps)
+            self.fps.addItem(tr("{fps:g} fps", fps=fps), fps)
         self.fps.setCurrentIndex(2)
-        self.form.addRow(tr("Pictures"), self.fps)
+        self.form.addRow(tr("Frame rate"), self.fps)
 
     def _add_looks(self) -> None:
         """Add what is seen beside the character."""
@@ -138,10 +140,10 @@ class RenderDialog(QDialog):
             box.setCurrentIndex(box.findData(now))
         self.form.addRow(tr("Light"), self.light)
         self.form.addRow(tr("Background"), self.background)
-        self.captions = QCheckBox(tr("Words of who speaks, at the bottom"), self)
+        self.captions = QCheckBox(tr("Show the spoken words at the bottom of the picture"), self)
         self.captions.setChecked(self.performance.timeline.now.captions)
         self.form.addRow(tr("Captions"), self.captions)
-        self.cuts = QCheckBox(tr("Cut as the camera lane says"), self)
+        self.cuts = QCheckBox(tr("Use the cuts of the camera lane"), self)
         self.cuts.setChecked(True)
         self.form.addRow(tr("Camera"), self.cuts)
 
@@ -176,9 +178,9 @@ class RenderDialog(QDialog):
         self.form.setRowVisible(self.captions, drawn)
         self.form.setRowVisible(self.cuts, drawn and bool(self.performance.timeline.now.cuts))
         self.words.setText({
-            ".mp4": tr("H.264, with the sound of what is said."),
-            ".png": tr("24 pictures over the performance, on one sheet."),
-            ".glb": tr("The motion of every joint, with the character, for any 3-D program."),
+            ".mp4": tr("H.264 video with the sound of the lines."),
+            ".png": tr("24 pictures of the performance on one sheet."),
+            ".glb": tr("The motion of every joint, with the character mesh, for any 3D program."),
             ".bvh": tr("The motion of every joint, without a mesh."),
         }[suffix])  # fmt: skip
 

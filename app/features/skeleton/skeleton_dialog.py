@@ -53,12 +53,12 @@ class SkeletonDialog(QDialog):
         self.roles: dict[str, QComboBox] = {}
         self.parts: dict[str, QComboBox] = {}
         for name, item in self.items.items():
-            role = ComboBox(self.tree, toolTip=tr("What this joint is in a human body"))
+            role = ComboBox(self.tree, toolTip=tr("Which part of a human body this joint is"))
             role.addItem("-", None)
             for r in ROLES:
                 role.addItem(r.replace("_", " "), r)
             role.activated.connect(lambda _, j=name, box=role: self._set_role(j, box.currentData()))
-            part = ComboBox(self.tree, toolTip=tr("Which layers move it follows from its body part"))
+            part = ComboBox(self.tree, toolTip=tr("The body part decides which layers move the joint"))
             part.addItems(PARTS)
             part.activated.connect(lambda _, j=name, box=part: self._set_part(j, box.currentText()))
             self.tree.setItemWidget(item, 1, role)
@@ -71,7 +71,7 @@ class SkeletonDialog(QDialog):
             wide = max((box.sizeHint().width() for box in boxes.values()), default=100)
             self.tree.setColumnWidth(column, wide + 12)
         row = QHBoxLayout()
-        back = QPushButton(tr("Back to what was found"), self)
+        back = QPushButton(tr("Reset to detected"), self)
         back.clicked.connect(self._reset)
         row.addWidget(back)
         row.addStretch(1)
@@ -100,11 +100,11 @@ class SkeletonDialog(QDialog):
             self.items[name].setFont(0, font)
         missing = missing_roles(found)
         words = tr(
-            "{found} roles were found from the names and the hierarchy. Corrections are shown in bold.",
+            "{found} roles detected from the joint names and the hierarchy. Your corrections are bold.",
             found=len(found),
         )
         if missing:
-            words += tr(" Not found: {roles}.", roles=", ".join(m.replace("_", " ") for m in missing))
+            words += tr(" Not detected: {roles}.", roles=", ".join(m.replace("_", " ") for m in missing))
         self.words.setText(words)
 
     def _chosen(self, joint: str) -> tuple[str, ...]:

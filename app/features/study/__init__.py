@@ -25,7 +25,7 @@ def contribute(shell: Shell) -> Contribution:
                 "",
                 tr("&Run a study…"),
                 run,
-                tip=tr("Lead a participant through a timing study"),
+                tip=tr("Guide a participant through a timing study"),
             ),
             Command(
                 "count_operators",
@@ -34,7 +34,7 @@ def contribute(shell: Shell) -> Contribution:
                 tr("&Count operators"),
                 counting.toggle,
                 checked=lambda: counting.on,
-                tip=tr("Count keys, pointings, buttons and drags as they happen"),
+                tip=tr("Count keystrokes, pointing, clicks and drags live"),
             ),
         ),
     )

@@ -26,9 +26,9 @@ class Counting(QObject):
         self.label = QLabel(shell.widget)
         self.label.setToolTip(
             tr(
-                "Keys, pointings, buttons pressed or released, drags, and hands changing over since this was "
-                "turned on.\n"
-                "The seconds are what an expert would take who need not think (Card, Moran and Newell 1980)."
+                "Keystrokes, pointing, button presses and releases, drags and hand changes since you "
+                "turned this on.\nThe seconds are the time that an expert would need without thinking "
+                "(Card, Moran and Newell 1980)."
             )
         )
         shell.widget.statusBar().addPermanentWidget(self.label)

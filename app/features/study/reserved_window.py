@@ -16,7 +16,7 @@ from app.shell.workspace_keeper import Workspaces
 from app.stage.compatibility_state import Compatibility
 from app.translation import tr, tr_noop
 
-CLOSED = tr_noop("Not during a study: everybody works on the same clips.")
+CLOSED = tr_noop("This is not available during a study. Everyone works with the same clips.")
 
 
 class ReservedWindow:

@@ -138,7 +138,7 @@ class Question(QWidget):
         self.field = self._field(item, value)
         self.field.setAccessibleName(item.text)
         column.addWidget(self.field)
-        self.missing = QLabel(tr("Please answer this one."), self)
+        self.missing = QLabel(tr("Please answer this question."), self)
         self.missing.setProperty("missing", True)
         self.missing.hide()
         column.addWidget(self.missing)

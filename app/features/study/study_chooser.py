@@ -68,7 +68,7 @@ def begin_sitting(shell: Shell, study: Study, participant: str, experimenter: bo
     try:
         guide = Guide(shell, study, participant, experimenter)
     except (FileError, ValueError) as error:
-        QMessageBox.warning(shell.widget, tr("This sitting cannot begin"), tr_error(error))
+        QMessageBox.warning(shell.widget, tr("This sitting cannot start"), tr_error(error))
         return None
     guide.show()
     return guide

@@ -60,9 +60,9 @@ class Guide(QObject):
         except OSError as error:
             raise FileError(
                 folder,
-                tr("cannot be made ({why})", why=error.strerror or error),
-                tr("on beginning"),
-                tr("Check your rights there."),
+                tr("cannot be created ({why})", why=error.strerror or error),
+                tr("at the start"),
+                tr("Check that you can write to that folder."),
             ) from None
         self._lock = QLockFile(str(folder / "sitting.lock"))
         self._lock.setStaleLockTime(0)
@@ -71,7 +71,7 @@ class Guide(QObject):
                 folder,
                 tr("another window has this sitting open"),
                 participant,
-                tr("Go on there, or close it."),
+                tr("Continue there, or close that window."),
             )
         try:
             self.sitting = Sitting(study, participant, describe_computer(), __version__)
@@ -95,7 +95,10 @@ class Guide(QObject):
         self.bar.note.clicked.connect(self.write_note)
         self._enter()
         shell.jobs.start(
-            tr("What is worked with"), lambda job: study_manifest(study), self.sitting.freeze, quick=True
+            tr("Recording the study's files"),
+            lambda job: study_manifest(study),
+            self.sitting.freeze,
+            quick=True,
         )
 
     # --- the window
@@ -149,8 +152,8 @@ class Guide(QObject):
         if phase is None:
             self._show(
                 text_page(
-                    tr("This sitting is over"),
-                    tr("All of it was gone through before."),
+                    tr("This sitting is finished"),
+                    tr("All parts of it are already done."),
                     tr("Close"),
                     self._finish,
                 )
@@ -178,7 +181,7 @@ class Guide(QObject):
         if phase.name == "end":
             return text_page(
                 phase.title,
-                phase.text or tr("That was all. You have helped a great deal."),
+                phase.text or tr("That was the last part. Thank you for your help."),
                 tr("Close"),
                 self.go_on,
             )
@@ -186,7 +189,7 @@ class Guide(QObject):
         return text_page(
             phase.title,
             phase.text + (limit if phase.condition else ""),
-            tr("Start") if phase.condition else tr("Go on"),
+            tr("Start") if phase.condition else tr("Continue"),
             self.go_on,
         )
 
@@ -236,7 +239,7 @@ class Guide(QObject):
 
     def _load(self, phase: Phase) -> None:
         """Make or open the project of a task on a thread; its time begins when it is there."""
-        self._show(StudyPage(phase.title, tr("One moment: the clips are loaded.")).finish())
+        self._show(StudyPage(phase.title, tr("One moment. The clips are loading.")).finish())
         study, path, again = self.study, self.sitting.file, self.sitting.now.begun
         name = study.plan.task(phase.task).name if phase.task is not None else tr("Practice")
         reference = study.reference(phase.task) if phase.task is not None else None
@@ -254,7 +257,7 @@ class Guide(QObject):
         self.recorder.tell("error", what="failed", words=str(error))
         self._show(
             question_page(
-                tr("This cannot go on"),
+                tr("The study cannot continue"),
                 tr_error(error),
                 tr("Try again"),
                 self.show,
@@ -279,8 +282,8 @@ class Guide(QObject):
             self.sitting.writer.add("pause", state="begin", why="resumed")
             page = text_page(
                 tr("Welcome back"),
-                tr("Your work is as you left it. The clock goes on when you do."),
-                tr("Go on"),
+                tr("Your work is as you left it. The clock starts again when you continue."),
+                tr("Continue"),
                 self.unpause,
             )
             self._show(page)
@@ -335,7 +338,7 @@ class Guide(QObject):
         if self._working:
             self._stop()
             self.recorder.tell("pause", state="begin")
-            self._show(text_page(tr("Paused"), tr("The clock stands still."), tr("Go on"), self.unpause))
+            self._show(text_page(tr("Paused"), tr("The clock is stopped."), tr("Continue"), self.unpause))
 
     def unpause(self) -> None:
         self.sitting.writer.add("pause", state="end")
@@ -346,10 +349,10 @@ class Guide(QObject):
         self._show(
             question_page(
                 tr("Are you done?"),
-                tr("You cannot come back to it."),
+                tr("You cannot come back to this part."),
                 tr("Yes, done"),
                 lambda: self.finish_task("done"),
-                tr("No, go on"),
+                tr("No, continue"),
                 self._back_to_work,
             )
         )
@@ -370,7 +373,7 @@ class Guide(QObject):
         except FileError as error:
             self._show(
                 question_page(
-                    tr("This could not be saved"),
+                    tr("Your work could not be saved"),
                     tr_error(error),
                     tr("Try again"),
                     lambda: self.finish_task(why),
@@ -381,7 +384,7 @@ class Guide(QObject):
             return
         self.bar.hide()
         if why == "time":
-            self._show(text_page(tr("Time is up"), tr("What you have made is kept."), tr("Go on"), self.show))
+            self._show(text_page(tr("Time is up"), tr("Your work is saved."), tr("Continue"), self.show))
         else:
             self.show()
 

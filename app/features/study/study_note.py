@@ -36,7 +36,7 @@ class NoteDialog(QDialog):
         column = QVBoxLayout(self)
         column.setContentsMargins(16, 14, 16, 14)
         column.setSpacing(10)
-        column.addWidget(QLabel(tr("What is worth remembering? The clock runs on."), self))
+        column.addWidget(QLabel(tr("What should be remembered? The clock keeps running."), self))
         column.addWidget(self.words)
         column.addLayout(buttons)
 

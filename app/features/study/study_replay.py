@@ -85,7 +85,7 @@ class Replayer(QObject):
         if not self.parts:
             raise FileError(
                 study.log(participant),
-                tr("nothing was worked on"),
+                tr("it contains no work"),
                 participant,
                 tr("Choose another sitting."),
             )
@@ -119,7 +119,7 @@ class Replayer(QObject):
         self.bar.play.setChecked(False)
         self.part, self.again = self.parts[number], None
         part = self.part
-        self.bar.told.setText(tr("The clips are loaded…"))
+        self.bar.told.setText(tr("Loading the clips…"))
         self.shell.jobs.start(
             tr("Loading the clips"),
             lambda job: first_project(self.study, part),
@@ -135,7 +135,7 @@ class Replayer(QObject):
         self._show_first()
         if part.silent:
             self.bar.told.setText(
-                tr("{silent} edits of this log do not say what they changed", silent=part.silent)
+                tr("{silent} edits in this log do not record what they changed", silent=part.silent)
             )
         self.ready.emit()
 
@@ -278,9 +278,9 @@ def _said(event: dict[str, Any]) -> str:
     """Return an event in words; nothing of those that are not worth any."""
     kind = event["type"]
     if kind == "pause":
-        return tr("Paused") if event.get("state") == "begin" else tr("Goes on")
+        return tr("Paused") if event.get("state") == "begin" else tr("Resumes")
     if kind == "idle":
-        return tr("Nothing was done for {seconds:.0f} s", seconds=event.get("seconds", 0))
+        return tr("No activity for {seconds:.0f} s", seconds=event.get("seconds", 0))
     if kind in ("undo", "redo"):
         return f"{tr('Undo') if kind == 'undo' else tr('Redo')}: {event.get('words', '')}"
     if kind in ("edit", "error", "note"):

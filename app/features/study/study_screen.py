@@ -95,8 +95,8 @@ class ConsentPage(StudyPage):
         super().__init__(title, text)
         self.tick = QCheckBox(tr("I have read this, and I agree to take part"), self)
         self.column.addWidget(self.tick)
-        self.button(tr("I do not take part"), declined)
-        go = self.button(tr("Go on"), agreed, strong=True)
+        self.button(tr("I do not want to take part"), declined)
+        go = self.button(tr("Continue"), agreed, strong=True)
         go.setEnabled(False)
         self.tick.toggled.connect(go.setEnabled)
         self.finish()
@@ -113,7 +113,7 @@ class BreakPage(StudyPage):
         self.clock = QLabel(self)
         self.clock.setProperty("clock", True)
         self.column.addWidget(self.clock)
-        self.button(tr("Go on"), run, strong=True)
+        self.button(tr("Continue"), run, strong=True)
         self.finish()
         self._timer = QTimer(self, interval=1000)
         self._timer.timeout.connect(self._tick)
@@ -125,7 +125,7 @@ class BreakPage(StudyPage):
         self._show()
 
     def _show(self) -> None:
-        self.clock.setText(format_minutes(self.left) if self.left > 0 else tr("Go on when you are ready."))
+        self.clock.setText(format_minutes(self.left) if self.left > 0 else tr("Continue when you are ready."))
 
 
 class ClapPage(StudyPage):

@@ -17,7 +17,9 @@ from metagraph.graph.conversation.model import Conversation, side_name
 from metagraph.graph.timeline import Cut, Shot
 
 EDGE = 4.0  # pixels on either side of a cut that take hold of it
-HINT = tr_noop("No cuts: the camera is yours. Double-click here, or 1 to 9, cuts to a picture")
+HINT = tr_noop(
+    "No camera cuts: you move the camera yourself. Double-click here, or press 1 to 9, to cut to a shot"
+)
 NAME = "cameras"
 
 
@@ -25,9 +27,9 @@ def list_camera_shots(talk: Conversation) -> tuple[tuple[Shot, int, str], ...]:
     """Return what can be cut to, in the order of the keys from 1: shot, side and words."""
     sides = range(len(talk.sides))
     return (
-        ("two", 0, tr("Two-shot") if len(talk.sides) == 2 else tr("All")),
-        *(("over", n, tr("Over the shoulder, {name}", name=side_name(talk, n))) for n in sides),
-        *(("close", n, tr("Close, {name}", name=side_name(talk, n))) for n in sides),
+        ("two", 0, tr("Two-shot") if len(talk.sides) == 2 else tr("Everyone")),
+        *(("over", n, tr("Over the shoulder of {name}", name=side_name(talk, n))) for n in sides),
+        *(("close", n, tr("Close-up of {name}", name=side_name(talk, n))) for n in sides),
     )
 
 
@@ -139,7 +141,8 @@ class CameraLane:
             return tr(HINT)
         cut = self.cuts[here]
         return tr(
-            "{picture}, from {at:.2f} s\nDrag a border, double-click or 1 to 9 to cut",
+            "{picture}, from {at:.2f} s\nDrag a border to move the cut. Double-click or press 1 to "
+            "9 to add a cut",
             picture=describe_cut(cut, talk),
             at=cut.at,
         )

@@ -64,32 +64,36 @@ def lane_drop(
         actions = [a for i in load.actions if (a := project.action(i)) is not None]
         if any(a.kind == "stance" for a in actions):
             return LaneDrop(
-                layer, seconds, stance, False, tr("a stance's loop is no action: ask for the stance")
+                layer,
+                seconds,
+                stance,
+                False,
+                tr("a stance loop cannot be requested: request its stance instead"),
             )
         what = (
             plain_action_name(actions[0].name)
             if len(actions) == 1
             else tr_plural("{count:,} action", "{count:,} actions", len(actions))
         )
-        return LaneDrop(layer, seconds, stance, True, tr("ask for {what} {at}", what=what, at=at))
+        return LaneDrop(layer, seconds, stance, True, tr("request {what} {at}", what=what, at=at))
     if load.clips and all(find_playing_action(project, layer, clip) is not None for clip in load.clips):
         first = plain_action_name(project.clips[load.clips[0]].name)
         what = first if load.count == 1 else tr_plural("{count:,} clip", "{count:,} clips", load.count)
-        return LaneDrop(layer, seconds, stance, True, tr("ask for {what} {at}", what=what, at=at))
+        return LaneDrop(layer, seconds, stance, True, tr("request {what} {at}", what=what, at=at))
     if found is None:
         return LaneDrop(
-            layer, seconds, None, False, tr("make a stance of the {layer} layer first", layer=tr(layer))
+            layer, seconds, None, False, tr("make a stance in the {layer} layer first", layer=tr(layer))
         )
     if load.count == 1:
         what = tr("this clip") if load.clips else tr("this file")
-        words = tr("place {what} as a gesture of {name}, and ask for it {at}", what=what, name=name, at=at)
+        words = tr("add {what} as a gesture of {name} and request it {at}", what=what, name=name, at=at)
     else:
         what = (
             tr_plural("{count:,} clip", "{count:,} clips", load.count)
             if load.clips
             else tr_plural("{count:,} file", "{count:,} files", load.count)
         )
-        words = tr("place {what} as gestures of {name}, and ask for them {at}", what=what, name=name, at=at)
+        words = tr("add {what} as gestures of {name} and request them {at}", what=what, name=name, at=at)
     return LaneDrop(layer, seconds, stance, True, words)
 
 

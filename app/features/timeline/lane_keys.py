@@ -98,7 +98,7 @@ class LaneKeys:
                 timeline.add_marker()
             else:
                 view.performance.document.failed.emit(
-                    tr("Markers are a performance's: Esc goes back to it from what is looked at alone.")
+                    tr("Only a performance can have markers. Press Esc to go back to the performance.")
                 )
         elif key in (Key.Key_Up, Key.Key_Down):
             self._choose(1 if key == Key.Key_Down else -1)

@@ -24,14 +24,14 @@ def make_request_marks_menu(view: Any, mark: RequestMark) -> QMenu:
     menu.addAction(tr("Cut\tCtrl+X"), lambda: requests.to_clipboard(chosen, True))
     menu.addAction(tr("Copy\tCtrl+C"), lambda: requests.to_clipboard(chosen))
     menu.addAction(tr("Paste at the playhead\tCtrl+V"), requests.paste)
-    menu.addAction(tr("Copy a second later\tCtrl+D"), lambda: requests.copy(chosen, FAR))
+    menu.addAction(tr("Duplicate one second later\tCtrl+D"), lambda: requests.copy(chosen, FAR))
     menu.addSeparator()
     menu.addAction(
-        tr("Take it back\tDel") if len(chosen) == 1 else tr("Take them back\tDel"),
+        tr("Remove request\tDel") if len(chosen) == 1 else tr("Remove requests\tDel"),
         lambda: view.performance.requests.withdraw(*chosen),
     )
     menu.addAction(
-        tr("Take back and close up\tShift+Del"),
+        tr("Remove and close the gap\tShift+Del"),
         lambda: view.performance.requests.close_up(chosen, view.performance.shown.plan),
     )
     return menu

@@ -39,7 +39,7 @@ def tip_at(view: Any, at: QPointF) -> str:
         )
         if cue.hold > 0:
             words += tr(", held {hold:.2f} s", hold=cue.hold)
-        return words + tr("\nClick selects it, double-click plays it in context")
+        return words + tr("\nClick to select it, double-click to play it in context")
     lane = lane_at(view.height(), at, view.sizes)
     if lane is None:
         return ""
@@ -62,5 +62,5 @@ def tip_at(view: Any, at: QPointF) -> str:
     if plan is not None:
         stance = shown.project.stance(plan.stance_at(view.scale().seconds(at.x())))
         here = stance.name if stance is not None else ""
-    more = "" if QApplication.mouseButtons() else tr("Double-click to ask for something here")
+    more = "" if QApplication.mouseButtons() else tr("Double-click to add a request here")
     return "\n".join(x for x in (here, more) if x)

@@ -127,32 +127,32 @@ class LaneTitles:
             size = menu.addAction(words, partial(self.size, lane, factor))
             size.setCheckable(True)
             size.setChecked(now == factor)
-        menu.addAction(tr("All lanes as usual"), lambda: self.size(None)).setEnabled(
+        menu.addAction(tr("Reset the height of all lanes"), lambda: self.size(None)).setEnabled(
             bool(self.view.sizes.tall)
         )
         menu.addSeparator()
-        menu.addAction(tr("Let all be seen"), lambda: self.performance.mute(())).setEnabled(bool(muted))
+        menu.addAction(tr("Unmute all layers"), lambda: self.performance.mute(())).setEnabled(bool(muted))
         return menu
 
     def tip(self, place: QPointF) -> str:
         lane = self.lane_at(place)
         if self.border_at(place) is not None:
-            return tr("Drag to make the lane taller or lower")
+            return tr("Drag to change the height of the lane")
         locked = self.lock_at(place)
         if locked is not None:
             name = TITLES[locked]
             if locked in self.performance.timeline.now.locked:
                 return tr(
-                    "{name} is locked: its requests cannot be moved or taken back\nClick unlocks it",
+                    "{name} is locked: you cannot move or remove its requests\nClick to unlock it",
                     name=name,
                 )
-            return tr("{name} is not locked\nClick locks it", name=name)
+            return tr("{name} is not locked\nClick to lock it", name=name)
         if lane not in LAYERS:
             return ""
-        how = tr("Click mutes it, Alt+click leaves it alone; exports do not change")
+        how = tr("Click to mute or unmute it, Alt+click to solo it. Exports do not change.")
         if lane in self.performance.muted:
-            return tr("The {layer} layer rests while you look\n{how}", layer=tr(lane), how=how)
-        return tr("The {layer} layer is seen\n{how}", layer=tr(lane), how=how)
+            return tr("The {layer} layer is muted in this view\n{how}", layer=tr(lane), how=how)
+        return tr("The {layer} layer is visible\n{how}", layer=tr(lane), how=how)
 
 
 def paint_padlock(painter: QPainter, t: WindowTheme, at: QPointF, locked: bool) -> None:

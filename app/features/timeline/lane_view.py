@@ -58,8 +58,9 @@ from metagraph.graph.model import LAYERS
 LEAST, LEAST_BESIDE = 38, 32  # pixels of a layer in which its two rows are read; just so, beside other seeds'
 COPIES = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier
 TEXT = tr_noop(
-    "Requests, and what plays. Up and Down choose a request, Left and Right move it, Enter changes it, "
-    "Insert asks for something. M adds a marker, I and O begin and end the loop range."
+    "Requests and the actions that play. Up and Down select a request, Left and Right move "
+    "it, Enter edits it, Insert adds one. M adds a marker, I and O set the start and end "
+    "of the loop range."
 )
 
 

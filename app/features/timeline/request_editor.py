@@ -31,49 +31,56 @@ from metagraph.graph.timeline_edits import lane_of
 from metagraph.graph.words import FEELINGS
 
 SIDES = (tr_noop("left"), tr_noop("right"), tr_noop("both"))  # of an arm, or of two
-UNSET = tr_noop("as it comes")
+UNSET = tr_noop("automatic")
 LABELS = lazy_texts(
     lambda: {
-        "at": tr("At"),
+        "at": tr("Start at"),
         "stroke": tr("Stroke at"),
-        "duration": tr("Wanted for"),
+        "duration": tr("Duration"),
         "hold": tr("Hold"),
-        "late": tr("Late by at most"),
+        "late": tr("Maximum delay"),
         "priority": tr("Priority"),
         "tags": tr("Tags"),
         "limb": tr("Arm"),
-        "prepare": tr("Prepare"),
-        "resume": tr("Go on after a cut"),
+        "prepare": tr("Preparation"),
+        "resume": tr("Resume after an interruption"),
         "action": tr("Action"),
         "stance": tr("Stance"),
         "to": tr("Look at"),
-        "amount": tr("How far"),
-        "strict": tr("Without averting"),
+        "amount": tr("Amount"),
+        "strict": tr("Without looking away"),
         "line": tr("Line"),
         "text": tr("Words"),
-        "gestures": tr("With its gestures"),
+        "gestures": tr("With gestures"),
         "mode": tr("Mode"),
         "mood": tr("Mood"),
         "intensity": tr("Intensity"),
         "name": tr("Point"),
-        "stay": tr("Stay there"),
+        "stay": tr("Stay in the stance"),
     }
 )
 TIPS = lazy_texts(
     lambda: {
-        "at": tr("Seconds of the performance; it may come later when something else plays"),
-        "stroke": tr("When its most telling moment should come, instead of when it begins"),
-        "late": tr("Seconds by which its stroke, or else its start, may come late, or it does not play"),
-        "hold": tr("How long the hold lasts; the motion before and after keeps its speed"),
-        "prepare": tr("Off: the preparation is skipped, and it begins shortly before its stroke"),
-        "priority": tr("Higher wins over lower; what the models play gives way to all"),
-        "duration": tr("How long the activity is wanted"),
-        "tags": tr("Words apart by commas; all must be among the action's tags"),
-        "resume": tr("When something more important cuts it, its rest plays afterwards"),
-        "strict": tr("The gaze stays there without looking away now and then"),
-        "mood": tr("Which actions are likely, how large and fast they are played, posture and face"),
-        "intensity": tr("How large it is played; 1 as it was made"),
-        "stay": tr("The models do not leave the stance, until another one is asked for"),
+        "at": tr("Time in the performance. It can start later while another action plays."),
+        "stroke": tr("When its stroke should come, instead of when it should start"),
+        "late": tr(
+            "How late its stroke, or its start if no stroke is set, may come. If it would be "
+            "later, it does not play."
+        ),
+        "hold": tr("How long the hold lasts. The motion before and after it keeps its speed."),
+        "prepare": tr("Off: it skips the preparation and starts shortly before its stroke"),
+        "priority": tr(
+            "The request with the higher priority plays. Every request overrides what the models play."
+        ),
+        "duration": tr("How long the activity lasts"),
+        "tags": tr("Words separated by commas. The action must have all of these tags."),
+        "resume": tr("If a more important request interrupts it, the remaining part plays afterwards"),
+        "strict": tr("The gaze stays there and does not look away now and then"),
+        "mood": tr(
+            "Changes which actions are likely, how large and fast they play, the posture and the face"
+        ),
+        "intensity": tr("How large it plays; 1 is as in the clip"),
+        "stay": tr("The models stay in this stance until a request asks for another"),
     }
 )
 ORDER = tuple(LABELS)
@@ -107,7 +114,7 @@ class RequestEditor(QDialog):
         self.words.setProperty("dim", True)
         layout.addWidget(self.words)
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
-        self.remove = buttons.addButton(tr("Take it back"), QDialogButtonBox.ButtonRole.DestructiveRole)
+        self.remove = buttons.addButton(tr("Remove request"), QDialogButtonBox.ButtonRole.DestructiveRole)
         self.remove.clicked.connect(self._remove)
         buttons.rejected.connect(self.accept)
         for button in buttons.findChildren(QPushButton):  # Enter takes over what was typed, it does not close
@@ -122,7 +129,7 @@ class RequestEditor(QDialog):
     def _told(self) -> None:
         ask = self._ask()
         if ask is None:
-            self.words.setText(tr("This request is not there any more."))
+            self.words.setText(tr("This request no longer exists."))
         else:
             self.words.setText(describe_outcome(ask, self.performance.answers().get(self.ident)))
         self.remove.setEnabled(ask is not None)
@@ -212,7 +219,7 @@ class RequestEditor(QDialog):
         if name == "limb":
             items = [(tr("any"), None), *((tr(x), x) for x in LIMBS)]
         elif name == "mode":
-            items = [(tr("as it comes"), None), *((MODE_WORDS[m], m) for m in MODES)]
+            items = [(tr("automatic"), None), *((MODE_WORDS[m], m) for m in MODES)]
         elif name == "mood":
             items = [(tr(UNSET), None), *((MOOD_WORDS[m], m) for m in FEELINGS)]
         elif name == "line":

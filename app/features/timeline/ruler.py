@@ -131,8 +131,8 @@ class Ruler:
         many = menu.addAction(tr("Remove all markers"), lambda: timeline.remove_marker())
         many.setEnabled(bool(timeline.now.markers))
         menu.addSeparator()
-        menu.addAction(tr("Loop from here\tI at the playhead"), lambda: timeline.set_in(seconds))
-        menu.addAction(tr("Loop to here\tO at the playhead"), lambda: timeline.set_out(seconds))
+        menu.addAction(tr("Set loop start here\tI at the playhead"), lambda: timeline.set_in(seconds))
+        menu.addAction(tr("Set loop end here\tO at the playhead"), lambda: timeline.set_out(seconds))
         clear = menu.addAction(tr("Clear loop range\tCtrl+Shift+X"), timeline.clear_range)
         clear.setEnabled(timeline.range is not None)
         menu.addSeparator()
@@ -143,20 +143,20 @@ class Ruler:
     def tip(self, at: QPointF) -> str:
         marker = self.marker_at(at)
         if marker is not None:
-            how = tr("Drag moves it, double-click renames it, Delete removes it")
+            how = tr("Drag to move it, double-click to rename it, press Delete to remove it")
             return tr("{name}, at {at:.2f} s\n{how}", name=marker.name or tr("Marker"), at=marker.at, how=how)
         found = self.range
         if self.grip_at(at) is None:
             return ""
         if found is not None:
             words = tr(
-                "Played again and again: {start:.2f} to {end:.2f} s ({length:.2f} s)",
+                "Loop range: {start:.2f} to {end:.2f} s ({length:.2f} s)",
                 start=found[0],
                 end=found[1],
                 length=found[1] - found[0],
             )
-            return tr("{words}\nDrag it or its ends; Ctrl+Shift+X clears it", words=words)
-        return tr("Drag here for the range that is played again and again (I and O set its ends)")
+            return tr("{words}\nDrag it or its ends to change it. Ctrl+Shift+X clears it.", words=words)
+        return tr("Drag here to set the loop range (I and O set its ends)")
 
     # --- painting
 

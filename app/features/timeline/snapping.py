@@ -15,7 +15,7 @@ from app.translation import lazy_texts, tr
 from app.widgets.lane_geometry import LaneScale, RequestMark
 from metagraph.playback.timing.phases import phases
 
-WORDS = lazy_texts(lambda: {"in": tr("in of the range"), "out": tr("out of the range")})
+WORDS = lazy_texts(lambda: {"in": tr("start of the loop range"), "out": tr("end of the loop range")})
 REACH = 8.0  # pixels from which something is drawn to a line; ours
 WIDE = 24.0  # pixels of a gesture from which its stroke is a line of its own
 SETTING = "timeline/magnet"

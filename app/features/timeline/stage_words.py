@@ -19,7 +19,7 @@ def describe_marks(marks: list[RequestMark]) -> str:
     """Return what is said of selected requests."""
     if len(marks) == 1:
         return tr(
-            "{outcome} Asked for: {wanted}.",
+            "{outcome} Requested: {wanted}.",
             outcome=describe_outcome(marks[0].ask, marks[0].answer),
             wanted=describe_wanted(marks[0]),
         ).strip()
@@ -29,13 +29,13 @@ def describe_marks(marks: list[RequestMark]) -> str:
     )
     if not unmet:
         return tr("{requests} selected", requests=chosen)
-    return tr("{requests} selected, {unmet:,} of them could not be met", requests=chosen, unmet=unmet)
+    return tr("{requests} selected, {unmet:,} of them cannot be met", requests=chosen, unmet=unmet)
 
 
 def describe_machine(shown: ShownPlayback, session: StageSession) -> str:
     """Return what is said of the machine drawn by hand."""
     if session.transport.show == "context":
-        return tr("Alone. Esc for the whole machine.")
+        return tr("Plays alone. Press Esc for the whole machine.")
     count = count_cues(shown)
     words = (
         tr(
@@ -44,25 +44,25 @@ def describe_machine(shown: ShownPlayback, session: StageSession) -> str:
             length=shown.length,
         )
         if count
-        else tr("Nothing plays yet: drop clips and draw links.")
+        else tr("Nothing plays yet. Drop clips here and draw links between them.")
     )
     return words + "".join(f" {r.message[:1].upper()}{r.message[1:]}." for r in shown.plan.reports[-1:])
 
 
 def describe_talk(shown: ShownPlayback, talk: Conversation | None) -> str:
     """Return what is said of the one whose plan of a conversation is seen."""
-    who = side_name(talk, shown.side) if talk is not None else tr("One who talks")
+    who = side_name(talk, shown.side) if talk is not None else tr("A speaker")
     if shown.motion is not None:
         return tr(
-            "{who} moves with '{name}'; its graph would do this.",
+            "{who} moves with the recording '{name}'. The graph would play this instead.",
             who=who,
             name=shown.project.clips[shown.motion].name,
         )
     gestures = sum(1 for cue in shown.plan.layers["arms"].cues if cue.action.kind == "gesture")
     nods = len(shown.plan.layers["head"].cues)
     return tr(
-        "{who} in conversation: {gestures} of the hands, {nods}.",
+        "{who} in conversation: {gestures} and {nods}.",
         who=who,
-        gestures=tr_plural("{count:,} gesture", "{count:,} gestures", gestures),
+        gestures=tr_plural("{count:,} hand gesture", "{count:,} hand gestures", gestures),
         nods=tr_plural("{count:,} nod", "{count:,} nods", nods),
     )

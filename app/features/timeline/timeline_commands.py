@@ -174,19 +174,23 @@ COMMANDS = (
     _command(
         "range_in",
         "range",
-        tr_noop("Loop from &here"),
+        tr_noop("Set loop start &here"),
         TimelineFeature.begin_range,
         ("I",),
-        tip=tr_noop("What is between in and out is played again and again, and can be written alone"),
+        tip=tr_noop(
+            "The part between the loop's start and end repeats. You can also write only this part to a file."
+        ),
         enabled=performing,
     ),
     _command(
         "range_out",
         "range",
-        tr_noop("Loop &to here"),
+        tr_noop("Set loop &end here"),
         TimelineFeature.end_range,
         ("O",),
-        tip=tr_noop("What is between in and out is played again and again, and can be written alone"),
+        tip=tr_noop(
+            "The part between the loop's start and end repeats. You can also write only this part to a file."
+        ),
         enabled=performing,
     ),
     _command(
@@ -203,7 +207,7 @@ COMMANDS = (
         tr_noop("Add &marker"),
         TimelineFeature.add_marker,
         ("Ctrl+Alt+M",),
-        tip=tr_noop("A named moment at the playhead; on the timeline, M alone"),
+        tip=tr_noop("A named moment at the playhead. On the timeline, press M."),
         enabled=performing,
     ),
     _command(
@@ -229,7 +233,7 @@ COMMANDS = (
         tr_noop("&Zoom the timeline to the selection"),
         TimelineFeature.zoom_selection,
         ("Z",),
-        tip=tr_noop("The selected requests or action; else the loop range"),
+        tip=tr_noop("Shows the selected requests or action, or the loop range if nothing is selected"),
     ),
     _command(
         "timeline_snap",
@@ -246,7 +250,7 @@ COMMANDS = (
         TimelineFeature.toggle_ripple,
         ("Shift+R",),
         checked=TimelineFeature.ripples,
-        tip=tr_noop("What follows goes along with what is moved"),
+        tip=tr_noop("Moving a request also moves everything after it"),
     ),
     _command(
         "lock_layer",
@@ -254,7 +258,7 @@ COMMANDS = (
         tr_noop("&Lock the layer's requests"),
         TimelineFeature.toggle_lock,
         ("Shift+K",),
-        tip=tr_noop("Requests of the layer that is edited cannot be moved or taken back"),
+        tip=tr_noop("Protects the requests of the current layer from being moved or removed"),
         checked=TimelineFeature.is_locked,
     ),
     _command(
@@ -267,7 +271,7 @@ COMMANDS = (
     _command(
         "lane_lower",
         "timeline",
-        tr_noop("Lower lane"),
+        tr_noop("Shorter lane"),
         partial(TimelineFeature.size_lane, factor=1 / TALLER),
         ("Alt+Shift+Down",),
     ),
@@ -277,7 +281,7 @@ COMMANDS = (
         tr_noop("A&utomatic cuts"),
         TimelineFeature.cut_automatically,
         ("Ctrl+Shift+U",),
-        tip=tr_noop("The camera of the conversation on stage follows who speaks"),
+        tip=tr_noop("The camera cuts to the person who speaks in the conversation on stage"),
         enabled=is_conversation_performed,
     ),
     _command(
@@ -286,30 +290,32 @@ COMMANDS = (
         tr_noop("&Captions"),
         TimelineFeature.toggle_captions,
         ("Shift+C",),
-        tip=tr_noop("The words of who speaks, at the bottom of the picture"),
+        tip=tr_noop("Show the spoken words at the bottom of the picture"),
         checked=TimelineFeature.shows_captions,
     ),
     _command(
         "what_if",
         "timeline",
-        tr_noop("What other seeds would pla&y"),
+        tr_noop("Compare other seed&s"),
         TimelineFeature.toggle_other_seeds,
         ("Shift+W",),
-        tip=tr_noop("Three more rows under the lanes; a click takes one over"),
+        tip=tr_noop("Show what three other seeds would play, in rows under the lanes. Click one to use it."),
     ),
     _command(
         "what_if_others",
         "timeline",
-        tr_noop("Three ot&her seeds"),
+        tr_noop("Compare three &more seeds"),
         TimelineFeature.try_other_seeds,
-        tip=tr_noop("The next three, where other seeds are shown"),
+        tip=tr_noop("Show the next three seeds in the rows under the lanes"),
     ),
     _command(
         "requests_copy",
         "timeline",
         tr_noop("Copy re&quests"),
         TimelineFeature.copy_requests,
-        tip=tr_noop("As a text that another window pastes, too; Ctrl+C on the timeline"),
+        tip=tr_noop(
+            "Copies them as text that you can also paste into another window. Ctrl+C on the timeline."
+        ),
         enabled=all_met(has_kept_requests, has_requests_selected),
     ),
     _command(
@@ -325,7 +331,7 @@ COMMANDS = (
         tr_noop("Li&ve"),
         TimelineFeature.toggle_live,
         ("Ctrl+L",),
-        tip=tr_noop("Let programs on this machine drive the character"),
+        tip=tr_noop("Let other programs on this computer control the character"),
         checked=TimelineFeature.is_live,
     ),
 )

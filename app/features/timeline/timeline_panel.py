@@ -45,10 +45,10 @@ from metagraph.graph.words import FEELINGS
 
 IMPROVISED = tr_noop("Improvised")
 MAGNET = tr_noop(
-    "Snap what is dragged to markers, words, strokes, beginnings, ends and seconds (S; hold Shift for not)"
+    "Snap to markers, words, strokes, starts, ends and seconds while dragging (S; hold Shift to drag freely)"
 )
-GHOSTS = tr_noop("What other seeds would play, as rows under the lanes; a click takes one over (Shift+W)")
-RIPPLE = tr_noop("Ripple: what follows goes along with what is moved (Shift+R)")
+GHOSTS = tr_noop("Show what other seeds would play, in rows under the lanes. Click one to use it (Shift+W)")
+RIPPLE = tr_noop("Ripple: moving a request also moves everything after it (Shift+R)")
 
 
 class TimelinePanel(QWidget):
@@ -97,13 +97,18 @@ class TimelinePanel(QWidget):
         """Add which performance is on stage, what can be done with it, and what is said of it."""
         self.stage = ComboBox(
             self,
-            toolTip=tr("Which performance is on stage; improvised, the models fill the time on their own"),
+            toolTip=tr('The performance on stage. With "Improvised", the models choose all actions.'),
         )
         self.stage.setAccessibleName(tr("Performance"))
         self.stage.setMinimumWidth(150)
         self.stage.activated.connect(self._put_on)
         row.addWidget(self.stage)
-        self.more = MoreButton(self.session.look, tr("Performances"), tr("New, rename, length, remove"), self)
+        self.more = MoreButton(
+            self.session.look,
+            tr("Performances"),
+            tr("Create, rename and remove performances, set their length"),
+            self,
+        )
         self.more_menu = self.more.menu_of
         self.more_menu.aboutToShow.connect(self._fill)
         row.addWidget(self.more)
@@ -114,23 +119,23 @@ class TimelinePanel(QWidget):
     def _add_live(self, row: QHBoxLayout) -> None:
         """Add what was not met, and what is done live."""
         self.lost = make_widget(
-            QToolButton, self, toolTip=tr("Select the next of them; its reason then stands beside")
+            QToolButton, self, toolTip=tr("Select the next request that cannot be met, and show why")
         )
         self.lost.clicked.connect(self.show_lost)
         row.addWidget(self.lost)
         self.now = make_widget(
-            QToolButton, self, text=tr("Back to now"), toolTip=tr("Follow what is played live again")
+            QToolButton, self, text=tr("Back to now"), toolTip=tr("Follow the live performance again")
         )
         self.now.clicked.connect(self.performance.live.follow)
         row.addWidget(self.now)
         self.live = make_widget(QToolButton, self, text=tr("Live"), checkable=True)
         self.live.setToolTip(
-            tr("Let programs on this machine drive the character, over WebSocket and OSC (Ctrl+L)")
+            tr("Let other programs on this computer control the character over WebSocket and OSC (Ctrl+L)")
         )
         self.live.clicked.connect(self.toggle_live)
         row.addWidget(self.live)
         self.ask = make_widget(
-            QToolButton, self, text=tr("Ask for…"), toolTip=tr("Ask the character for something now")
+            QToolButton, self, text=tr("Ask for…"), toolTip=tr("Request an action, a look or a line now")
         )
         self.ask.clicked.connect(self._ask)
         row.addWidget(self.ask)
@@ -140,7 +145,11 @@ class TimelinePanel(QWidget):
         row.addWidget(QLabel(tr("Seed"), self))
         # Whole numbers of 32 bits without a sign, which the other field does not hold.
         self.seed = DoubleSpinBox(
-            self, toolTip=tr("Another seed gives another performance of the same graph")
+            self,
+            toolTip=tr(
+                "The number that decides all random choices. Another seed gives another performance of "
+                "the same graph."
+            ),
         )
         self.seed.setDecimals(0)
         self.seed.setFixedWidth(112)
@@ -219,22 +228,20 @@ class TimelinePanel(QWidget):
         menu.addAction(tr("New performance"), self.new)
         played = self.performance.live.last
         if played is not None:
-            menu.addAction(
-                tr("Keep what was played live"), lambda: self._keep(tr("Keep live session"), played)
-            )
+            menu.addAction(tr("Keep the live session"), lambda: self._keep(tr("Keep live session"), played))
         if kept is None:
             return
         menu.addAction(tr("Rename…"), self.rename)
         menu.addAction(tr("Duplicate"), self.duplicate)
         menu.addAction(tr("Length…"), self.set_length)
         fill = menu.addAction(
-            tr("The models fill the rest"),
-            lambda: self._change(tr("Change who fills the rest"), idle=not kept.idle),
+            tr("Models fill the gaps"),
+            lambda: self._change(tr("Change how gaps are filled"), idle=not kept.idle),
         )
         fill.setCheckable(True)
         fill.setChecked(kept.idle)
         self._fill_moods(menu.addMenu(tr("Mood")), kept)
-        own = menu.addAction(tr("A seed of its own"), self._own_seed)
+        own = menu.addAction(tr("Use its own seed"), self._own_seed)
         own.setCheckable(True)
         own.setChecked(kept.seed is not None)
         menu.addSeparator()
@@ -242,7 +249,7 @@ class TimelinePanel(QWidget):
 
     def _fill_moods(self, menu: QMenu, kept: KeptPerformance) -> None:
         """Fill a menu with the moods a whole performance may be in, and how strongly."""
-        moods: list[tuple[str, str | None]] = [(tr("The character's own"), None)]
+        moods: list[tuple[str, str | None]] = [(tr("As the character"), None)]
         moods += [(MOOD_WORDS[feeling], feeling) for feeling in FEELINGS]
         for words, mood in moods:
             choice = menu.addAction(
@@ -257,7 +264,7 @@ class TimelinePanel(QWidget):
         kept = self.performance.requests.kept
         if kept is not None:
             now = 1.0 if kept.intensity is None else kept.intensity
-            words = tr("How large gestures are played; 1 as they were made")
+            words = tr("How large gestures play; 1 is as in the clips")
             value, ok = QInputDialog.getDouble(self, tr("Intensity"), words, now, 0.0, 2.0, 2)
             if ok:
                 self._change(tr("Change the intensity of a performance"), intensity=value)
@@ -310,7 +317,7 @@ class TimelinePanel(QWidget):
             return
         if kept.asks:
             question = tr(
-                "Remove '{name}' and its {requests}? It can be undone.",
+                "Remove '{name}' and its {requests}? You can undo this.",
                 name=kept.name,
                 requests=tr_plural("{count:,} request", "{count:,} requests", len(kept.asks)),
             )
@@ -405,7 +412,7 @@ class TimelinePanel(QWidget):
         self.lost.setText(tr("⚠ {lost:,} not met", lost=lost))
         self.lost.setAccessibleName(
             tr(
-                "{requests} could not be met",
+                "{requests} cannot be met",
                 requests=tr_plural("{count:,} request", "{count:,} requests", lost),
             )
         )
@@ -416,14 +423,21 @@ class TimelinePanel(QWidget):
         elif self.performance.live.stage is not None and plan:
             self.title.say(self.performance.live.stage.words())
         elif shown.clip is not None:
-            self.title.say(tr("A clip alone. Click it again to play it in context, Esc for the performance."))
+            self.title.say(
+                tr(
+                    "Only this clip plays. Click it again to play it in context, press Esc for the "
+                    "performance."
+                )
+            )
         elif self.session.onstage.mode == "manual":
             self.title.say(describe_machine(shown, self.session))
         elif shown.others and plan:
             talk = self.document.project.conversations.get(self.session.onstage.conversation or "")
             self.title.say(describe_talk(shown, talk))
         elif self.session.transport.show == "context":
-            self.title.say(tr("In context: stance, action, back to the stance. Esc for the performance."))
+            self.title.say(
+                tr("In context: stance, action, back to the stance. Press Esc for the performance.")
+            )
         else:
             count = count_cues(shown)
             words = tr(
@@ -431,12 +445,12 @@ class TimelinePanel(QWidget):
                 actions=tr_plural("{count:,} action", "{count:,} actions", count),
                 length=shown.length,
             )
-            empty = tr("Nothing plays yet: drop a clip on a stance and some around it.")
+            empty = tr("Nothing plays yet. Drop a clip on a stance and others on the nodes around it.")
             self.title.say(
                 (words if count else empty)
                 + (
                     tr(
-                        ", {requests} could not be met",
+                        ", {requests} cannot be met",
                         requests=tr_plural("{count:,} request", "{count:,} requests", lost),
                     )
                     if lost

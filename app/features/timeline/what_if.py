@@ -195,13 +195,13 @@ class WhatIf(QObject):
         )
         if self._live is not None:
             return tr(
-                "{here}What seed {seed} would have played: head, arms, body\n"
-                "Click: the next session plays it",
+                "{here}Seed {seed} would have played this: head, arms, body\nClick to use it in the "
+                "next live session",
                 here=here,
                 seed=seed,
             )
         return tr(
-            "{here}What seed {seed} would play: head, arms, body\nClick plays it instead",
+            "{here}Seed {seed} would play this: head, arms, body\nClick to use this seed",
             here=here,
             seed=seed,
         )

@@ -127,8 +127,8 @@ def describe_kept_hit(facts: Facts, hit: Hit) -> str:
     if kept is None:
         return ""
     return tr(
-        "The {hand} stays at {to}, {first:.2f} to {last:.2f} s.\nDrag it or its ends; "
-        "double-click a number to type. To nothing lets the hand go.",
+        "The {hand} stays at {to} from {first:.2f} to {last:.2f} s.\nDrag the bar or its ends. "
+        "Double-click a number to type it. Shrink the bar to nothing to release the hand.",
         hand=kept.hand,
         to=kept.to,
         first=kept.first,
@@ -147,7 +147,7 @@ def change(host: Host, facts: Facts, kept: KeptHand) -> None:
     # An end that was not moved stays to the bit: within a hold many seconds are one moment of the file.
     first = old.first if kept.first == was.first else first
     last = old.last if kept.last == was.last else last
-    host.document.edit(tr("Keep hand"), lambda p: set_kept(p, clip, kept.place, first, last))
+    host.document.edit(tr("Pin hand"), lambda p: set_kept(p, clip, kept.place, first, last))
 
 
 def set_number(host: Host, facts: Facts, name: str, seconds: float) -> None:

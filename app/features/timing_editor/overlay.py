@@ -20,15 +20,15 @@ from metagraph.suggest.jumps.snapping import Snap
 
 HINTS = lazy_texts(
     lambda: {
-        "start": tr("where it begins in the clip"),
-        "end": tr("where it ends in the clip"),
-        "in": tr("until here it blends in from its stance"),
-        "out": tr("from here on it blends out to its stance"),
-        "exit": tr("from here on it may be left"),
-        "stroke": tr("its most telling moment, which a stressed word is put on"),
-        "ready": tr("its preparation ends"),
-        "hold": tr("its hold begins"),
-        "relax": tr("its retraction begins"),
+        "start": tr("where the action starts in the clip"),
+        "end": tr("where the action ends in the clip"),
+        "in": tr("end of the blend in from its stance"),
+        "out": tr("start of the blend out to its stance"),
+        "exit": tr("from here on, the next action can start"),
+        "stroke": tr("its most expressive moment, which is aligned with a stressed word"),
+        "ready": tr("end of the preparation"),
+        "hold": tr("start of the hold"),
+        "relax": tr("start of the retraction"),
     }
 )
 
@@ -163,11 +163,11 @@ def describe_timing_hit(facts: Facts, hit: Hit, seconds: float) -> str:
         return kept_rows.describe_kept_hit(facts, hit)
     if hit.what == "handle":
         found = facts.handle(hit.name)
-        own = "" if found is None or found.own else tr(", as found from the motion")
+        own = "" if found is None or found.own else tr(", detected from the motion")
         number = f" {found.number:.3f} s" if found is not None else ""
         return tr(
-            "{handle}{number}{own}: {hint}.\nDrag it, with Alt without coming to rest; "
-            "double-click its number to type.",
+            "{handle}{number}{own}: {hint}.\nDrag to move it, with Alt to avoid snapping. "
+            "Double-click its number to type it.",
             handle=vocabulary_word(WORDS[hit.name]),
             number=number,
             own=own,
@@ -175,16 +175,17 @@ def describe_timing_hit(facts: Facts, hit: Hit, seconds: float) -> str:
         )
     if hit.what == "block":
         return tr(
-            "{name}: drag it; with Shift all of it plays another part of the clip.",
+            "{name}: drag to move it. Drag with Shift to slip it: the same length plays another "
+            "part of the clip.",
             name=vocabulary_word(hit.name),
         )
     if hit.what == "stay":
-        return tr("The clip is held here. Drag to hold it longer or shorter; to nothing takes the hold away.")
-    if hit.what == "ruler":
         return tr(
-            "Drag to scrub, with Shift to mark a part that is played again and again; a double click takes "
-            "that back."
+            "The clip holds this pose. Drag to lengthen or shorten the hold. Shrink it to nothing "
+            "to remove it."
         )
+    if hit.what == "ruler":
+        return tr("Drag to scrub. Drag with Shift to set a loop range, double-click to clear it.")
     if not 0 <= seconds <= facts.entry.duration:
         return ""
     far = facts.distance.words(seconds)

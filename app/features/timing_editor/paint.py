@@ -174,7 +174,7 @@ def paint_stays(painter: QPainter, look: TimingLook, axis: Axis, rows: TrackRows
         painter.fillRect(box, QBrush(hatched, Qt.BrushStyle.BDiagPattern))
         painter.setPen(QPen(QColor(look.t.text), 1.2))
         painter.drawLine(box.topRight(), box.bottomRight())
-        words = tr("held +{seconds:.2f} s", seconds=stay.hold.seconds)
+        words = tr("hold +{seconds:.2f} s", seconds=stay.hold.seconds)
         if look.wide(words) + 8 <= box.width():
             label = QRectF(box.center().x() - look.wide(words) / 2 - 4, box.center().y() - 8, 0, 16)
             label.setWidth(look.wide(words) + 8)

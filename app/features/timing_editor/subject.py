@@ -275,7 +275,7 @@ class Subject(QObject):
         clip = facts.action.clip
         at = round(float(course.moments(np.array(facts.span[0] if now is None else now))), 3)
         had = next((h.seconds for h in facts.entry.retime.holds if h.at == at), 0.0)
-        self.document.edit(tr("Hold clip"), lambda p: set_hold(p, clip, at, had + seconds))
+        self.document.edit(tr("Insert hold"), lambda p: set_hold(p, clip, at, had + seconds))
 
     def keep_hand(self, side: str) -> None:
         """Keep a hand where it is on the body: during the part that is looped, where one is, else from the
@@ -292,14 +292,14 @@ class Subject(QObject):
         if part is not None and part[0] == clip:
             first, last = part[1:]
         a, b = course.moments(np.array([first, last])).tolist()
-        self.document.edit(tr("Keep hand"), lambda p: keep_hand(p, clip, side, round(a, 3), round(b, 3)))
+        self.document.edit(tr("Pin hand"), lambda p: keep_hand(p, clip, side, round(a, 3), round(b, 3)))
 
     def let_go(self) -> None:
         """Let all hands of the first action's clip go where they went in the file."""
         facts = next(iter(self.facts().values()), None)
         if facts is not None:
             clip, plain = facts.action.clip, replace(facts.entry.retime, contacts=())
-            self.document.edit(tr("Let go of hands"), lambda p: set_retime(p, clip, plain))
+            self.document.edit(tr("Release hands"), lambda p: set_retime(p, clip, plain))
 
     def compare(self, on: bool) -> None:
         """Show the actions as they were when they were selected, or marked, or as they are."""

@@ -47,24 +47,36 @@ class TimingPanel(QWidget):
         self.name = QLabel(self)
         self.verdict = Sentence(self)
         self.use = make_widget(
-            QPushButton, tr("Use proposed"), self, toolTip=tr("Begin and end where no jump shows")
+            QPushButton,
+            tr("Use proposed"),
+            self,
+            toolTip=tr("Start and end the action where its blends show no jump"),
         )
         self.use.clicked.connect(self._use)
-        self.joint = QuietChooser(self, toolTip=tr("Whose speed is drawn"))
+        self.joint = QuietChooser(self, toolTip=tr("Which joint's speed the graph shows"))
         self.joint.setMinimumContentsLength(12)
         self.joint.activated.connect(lambda n: subject.show(joint=self.joint.itemData(n)))
-        tip = tr("Speed of the clip, 1 as it was read; what uses it follows. The file stays as it is")
+        tip = tr(
+            "Playback speed of the clip; 1 is the speed in the file. Every action that uses the "
+            "clip changes too. The file is not changed."
+        )
         self.speed = Seconds(self, tip, SPEEDS[1], " ×", 0.05)
         self.speed.valueChanged.connect(self._pace)
-        self.hold = self._button(tr("Hold"), tr("Hold the clip at the playhead for a while longer"))
+        self.hold = self._button(
+            tr("Hold"), tr("Insert a hold at the playhead: the clip keeps that pose for a while")
+        )
         self.hold.clicked.connect(lambda: self._try(subject.hold_here))
-        self.onion = self._button(tr("Onion"), tr("See start, stroke and end beside the character"), True)
+        self.onion = self._button(tr("Onion"), tr("Show ghosts of the start, stroke and end poses"), True)
         self.onion.clicked.connect(lambda on: subject.show(onion=on))
-        self.compare = self._button("A/B", tr("Show it as it was when it was selected, or marked"), True)
+        self.compare = self._button(
+            "A/B",
+            tr('Compare with how it was when you selected it, or chose "Compare from now on" in the menu'),
+            True,
+        )
         self.compare.clicked.connect(subject.compare)
-        self.loop = self._button(tr("Loop"), tr("Play only what the action plays, again and again"), True)
+        self.loop = self._button(tr("Loop"), tr("Play only this action, in a loop"), True)
         self.loop.clicked.connect(subject.loop_action)
-        self.more = MoreButton(session.look, tr("What is shown"), tr("What is shown"), self)
+        self.more = MoreButton(session.look, tr("Display options"), tr("Display options"), self)
         self.menu = self.more.menu_of
         self.menu.aboutToShow.connect(self._fill)
         OneStop((self.hold, self.onion, self.compare, self.loop, self.more), self)
@@ -76,7 +88,7 @@ class TimingPanel(QWidget):
         self.area.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.area.setWidget(self.view)
-        self.number = Seconds(self.view, tr("New number of the handle"))
+        self.number = Seconds(self.view, tr("New time of the handle"))
         self.number.hide()
         self.number.valueChanged.connect(self._typed)
         self.number.editingFinished.connect(self._done)
@@ -120,7 +132,7 @@ class TimingPanel(QWidget):
         for widget in (self.use, self.joint, self.speed, self.hold, self.onion, self.compare, self.loop):
             widget.setEnabled(first is not None)
         joints = joints_offered(self.document.project)
-        offered = [(tr("what it moves"), ""), *((words, name) for name, words in joints)]
+        offered = [(tr("Moving parts"), ""), *((words, name) for name, words in joints)]
         self.joint.show_entries(offered, self.subject.shows.joint)
         self.speed.show_value(common_value([f.entry.retime.speed for f in shown.values()]) if shown else 1.0)
         if first is None:
@@ -158,17 +170,17 @@ class TimingPanel(QWidget):
         for words, field in (
             (tr("Poses"), "poses"),
             (tr("Line"), "line"),
-            (tr("What moves when"), "dope"),
-            (tr("… of each joint"), "whole"),
+            (tr("Activity of body parts"), "dope"),
+            (tr("Activity of each joint"), "whole"),
         ):
             action = menu.addAction(words)
             action.setCheckable(True)
             action.setChecked(getattr(subject.shows, field))
             action.setEnabled(field != "whole" or subject.shows.dope)
             action.triggered.connect(lambda on, f=field: subject.show(**{f: on}))
-        lines = menu.addMenu(tr("Line to hear"))
+        lines = menu.addMenu(tr("Spoken line"))
         for words, ident in (
-            (tr("The one that is spoken over it"), ""),
+            (tr("The line from the performance"), ""),
             *((line.text or i, i) for i, line in list(self.document.project.lines.items())[:30]),
         ):
             action = lines.addAction(words[:60])
@@ -177,21 +189,24 @@ class TimingPanel(QWidget):
             action.triggered.connect(lambda _, i=ident: subject.show(heard=i))
         menu.addSeparator()
         for side, words in (
-            ("left", tr("Keep the left hand where it is")),
-            ("right", tr("Keep the right hand where it is")),
+            ("left", tr("Pin the left hand here")),
+            ("right", tr("Pin the right hand here")),
         ):
             action = menu.addAction(words)
             action.setToolTip(
-                tr("During the part that is looped, or from the playhead to the end of its hold")
+                tr(
+                    "Keeps the hand in place during the loop range, or from the playhead to the end of the "
+                    "hold"
+                )
             )
             action.triggered.connect(lambda _, s=side: self._try(lambda: subject.keep_hand(s)))
         first = next(iter(subject.facts().values()), None)
-        action = menu.addAction(tr("Let go of the hands"))
+        action = menu.addAction(tr("Release the hands"))
         action.setEnabled(first is not None and bool(first.kept))
         action.triggered.connect(lambda _: self._try(subject.let_go))
         menu.addSeparator()
-        menu.addAction(tr("Compare with what it is now"), subject.mark)
-        menu.addAction(tr("Show the whole clip"), self.view.show_all)
+        menu.addAction(tr("Compare from now on"), subject.mark)
+        menu.addAction(tr("Zoom to the whole clip"), self.view.show_all)
 
     # --- editing
 

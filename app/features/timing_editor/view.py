@@ -50,8 +50,8 @@ from metagraph.suggest.jumps.snapping import Snap, snaps_of
 
 ZOOM = 1.2
 TEXT = tr_noop(
-    "Timing of the selected actions. Left and Right move the playhead by a frame, I and O begin and end the "
-    "action there, plus and minus zoom, 0 shows everything."
+    "Timing of the selected actions. Left and Right move the playhead by one frame. I and "
+    "O set the start and end of the action there. Plus and minus zoom, 0 shows everything."
 )
 
 

@@ -72,7 +72,7 @@ def write_blocks(order: ExportOrder) -> ExportedFiles:
         try:
             content = write_bml(numbered).encode()
         except RequestError as error:
-            notes.append(phrase("'{name}' is left out: {why}", name=name, why=describe_error(error)))
+            notes.append(phrase("skipped '{name}': {why}", name=name, why=describe_error(error)))
             continue
         lost = replaced_note([msgspec.to_builtins(numbered)])
         if lost is not None:
@@ -201,22 +201,22 @@ def _unsaid(project: Project) -> int:
     return sum(isinstance(x, a.Bml) for p in project.performances.values() for x in p.asks)
 
 
-_ALONE = phrase("written by its documentation; the system was not at hand to run it")
+_ALONE = phrase("written according to its documentation; not tested in the system itself")
 TARGETS = (
     ExportTarget(
         "bml",
         phrase("BML blocks"),
-        phrase("a block for each kept performance and each line, and the vocabulary they may use"),
+        phrase("a block for each performance and each line, and the vocabulary they use"),
         write_blocks,
         (
             Loss(
                 phrase(
-                    "what was asked, not what is played: the planner that hears a block chooses "
-                    "actions of its own"
+                    "blocks contain the requests, not the actions that play: the planner that reads a "
+                    "block chooses its own actions"
                 )
             ),
-            Loss(phrase("when an ask became known is not kept")),
-            Loss(phrase("{n} asks that are blocks themselves are left out"), _unsaid),
+            Loss(phrase("blocks do not store when a request became known")),
+            Loss(phrase("{n} requests that are BML blocks themselves are skipped"), _unsaid),
         ),
         group=phrase("Agents"),
     ),
@@ -227,8 +227,8 @@ TARGETS = (
         write_smartbody,
         (
             *MACHINE,
-            Loss(phrase("transitions and fidgets: SmartBody moves between postures by itself")),
-            Loss(phrase("a gesture has one lexeme and one type: its first two tags")),
+            Loss(phrase("no transitions or fidgets: SmartBody moves between postures by itself")),
+            Loss(phrase("a gesture has only one lexeme and one type: its first two tags")),
         ),
         _ALONE,
         phrase("Agents"),
@@ -242,7 +242,7 @@ TARGETS = (
             *MACHINE,
             Loss(
                 phrase(
-                    "stances, fidgets and transitions are in the GLB alone; gesture.json has no word for them"
+                    "stances, fidgets and transitions are only in the GLB; gesture.json cannot describe them"
                 )
             ),
         ),

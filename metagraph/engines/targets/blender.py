@@ -31,14 +31,14 @@ TARGETS = (
         "blender",
         phrase("Blender add-on"),
         phrase(
-            "JSON and GLB, and the add-on that reads them, labels actions, sends them back "
-            "and follows a session"
+            "JSON, GLB and the add-on, which reads them, labels actions, sends them back and "
+            "follows a live session"
         ),
         write,
         (
             Loss(
                 phrase(
-                    "no planner: Blender shows single actions, and a whole performance only live or "
+                    "no planner: Blender shows single actions; it shows a whole performance only live or "
                     "from a bake"
                 )
             ),

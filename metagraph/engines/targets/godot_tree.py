@@ -303,28 +303,32 @@ def _left_early(project: Project) -> int:
 LOSSES: tuple[Loss, ...] = (
     Loss(
         phrase(
-            "Godot 4: layers are added to the skeleton's rest; retargeting on import changes it, and with it the poses"
+            "Godot 4: layers are added to the skeleton's rest pose; retargeting on import changes "
+            "the rest pose and so all poses"
         )
     ),
     Loss(
         phrase(
-            "Godot 3: layers are not added: spine and legs are the body's alone, arms the arms', head and face the head's"
+            "Godot 3: layers are not added: only the body layer moves spine and legs, only the "
+            "arms layer the arms, only the head layer head and face"
         )
     ),
-    Loss(phrase("{n} actions that may be left early are left at their end"), _left_early),
-    Loss(phrase("what plays is not begun anew when it is asked for again")),
-    Loss(phrase("where no transition joins two stances, the way between them need not be the planner's")),
+    Loss(phrase("{n} actions that can exit early play to their end"), _left_early),
+    Loss(phrase("an action that already plays does not restart when you request it again")),
+    Loss(phrase("if no transition joins two stances, the path between them can differ from the planner's")),
 )
 TARGETS = (
     ExportTarget(
         "godot-tree",
         "Godot AnimationTree (.tres)",
         phrase(
-            "an AnimationTree's root for Godot 4 and one for Godot 3, a guide to their states, and one GLB with "
-            "an animation for each state"
+            "an AnimationTree root for Godot 4 and one for Godot 3, a guide to their states, and "
+            "one GLB with an animation for each state"
         ),
         write,
         (*MACHINE, WEIGHTS, CROSSFADE, *LOSSES),
-        phrase("the tree for Godot 4 was not run there; the one for Godot 3 was, in 3.2.3"),
+        phrase(
+            "the tree for Godot 3 was tested in Godot 3.2.3; the tree for Godot 4 was not tested in Godot"
+        ),
     ),
 )

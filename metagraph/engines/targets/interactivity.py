@@ -249,12 +249,12 @@ TARGETS = (
     ExportTarget(
         "interactivity",
         "glTF + KHR_interactivity",
-        phrase("one GLB that plays by itself, and a list of the events it hears"),
+        phrase("one GLB that plays by itself, and a list of the events that it accepts"),
         write,
         (
             *MACHINE,
-            Loss(phrase("layers do not add: body, arms and head each move their own joints alone")),
-            Loss(phrase("no blends: one animation stops where the next begins")),
+            Loss(phrase("layers are not added: body, arms and head each move only their own joints")),
+            Loss(phrase("no blends: each animation stops where the next one starts")),
         ),
     ),
 )

@@ -42,36 +42,39 @@ def _weighted(project: Project) -> int:
 MACHINE: tuple[Loss, ...] = (
     Loss(
         phrase(
-            "no planner: nothing is drawn by tags, limb or likelihood, nothing is scheduled ahead, "
-            "no stroke is timed; each action is asked for"
+            "no planner: it does not choose actions by tags, limb or likelihood, plan ahead, or "
+            "time strokes; you must request each action"
         )
     ),
-    Loss(phrase("no statistics: nobody performs when nothing is asked")),
-    Loss(phrase("no life layers: breathing, gaze, blinks and lips are not played")),
-    Loss(phrase("holds play as they were made, and preparations are not skipped")),
-    Loss(phrase("of the loops of {n} stances the first plays of itself, the others when asked for"), _varied),
+    Loss(phrase("no Markov models: without requests, the character does not perform")),
+    Loss(phrase("no life layers: no breathing, gaze, blinks or lip sync")),
+    Loss(phrase("holds have the length they have in the clip, and preparations are never skipped")),
+    Loss(
+        phrase("{n} stances have several loops: only the first plays automatically, the others on request"),
+        _varied,
+    ),
     Loss(
         phrase(
-            "{n} transitions that are not the first between their stances play only when asked for "
-            "by themselves"
+            "{n} transitions are not the first between their stances: each plays only if you "
+            "request that transition"
         ),
         _ways,
     ),
     Loss(
         phrase(
-            "{n} actions that move part of their layer hold the rest as their stance begins, instead "
-            "of letting it play on"
+            "{n} actions move only a part of their layer: the rest holds the first pose of the "
+            "stance instead of playing on"
         ),
         _masked,
     ),
     Loss(
         phrase(
-            "soft weights of joints in {n} actions are part of their clips, as far from how the "
-            "stance begins, and cannot be changed there"
+            "{n} actions have partial joint weights: these are baked into the clips, relative to "
+            "the first pose of the stance, and cannot be changed there"
         ),
         _soft,
     ),
-    Loss(phrase("{n} loops that play with a seam jump where they repeat"), _seams),
+    Loss(phrase("{n} loops blend their seam here but jump at the seam there"), _seams),
 )
-WEIGHTS = Loss(phrase("{n} weights of layers on body parts other than 0 and 1 count as 1"), _weighted)
-CROSSFADE = Loss(phrase("blends are plain crossfades: a clip is held back and hurried while it blends"))
+WEIGHTS = Loss(phrase("{n} layer weights other than 0 and 1 count as 1"), _weighted)
+CROSSFADE = Loss(phrase("blends are plain crossfades: they slow a clip down and then speed it up"))

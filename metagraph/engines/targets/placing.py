@@ -143,11 +143,11 @@ class Staging:
             sweep_staging(folder)
             self.path = Path(tempfile.mkdtemp(prefix=f"{STAGED}{process_mark()}-", dir=folder))
         except (OSError, ValueError) as error:
-            remedy = "Choose a folder you may write to."
+            remedy = "Choose a folder that you can write to."
             raise FileError(
                 folder,
-                phrase("cannot be made ({value})", value=getattr(error, "strerror", None) or error),
-                phrase("on making the folder"),
+                phrase("cannot be created ({value})", value=getattr(error, "strerror", None) or error),
+                phrase("creating the folder"),
                 remedy,
             ) from None
 
@@ -190,7 +190,7 @@ class Staging:
             raise FileError(
                 where,
                 phrase("cannot be written ({value})", value=error.strerror or error),
-                phrase("on exporting"),
+                phrase("exporting"),
                 remedy,
             ) from None
         except BaseException:

@@ -84,7 +84,7 @@ def write_for_target(
         able = ", ".join(t.name for t in targets().values() if t.unpacks)
         raise ExportError(
             phrase(
-                "'{name}' is not read by what unpacks a GLB: export it without --compress, or for {able}",
+                "'{name}' cannot read a compressed GLB: export it without --compress, or for {able}",
                 name=name,
                 able=able,
             )

@@ -17,7 +17,7 @@ REQUESTS = (
     "../../../../docs/agents/requests.md"  # where a README finds them here; an export carries them along
 )
 SPEECH = "../../../../docs/agents/speech.md"
-BML = Loss(phrase("requests in Behaviour Markup Language are read by the desktop alone"))
+BML = Loss(phrase("only the desktop app reads requests in Behaviour Markup Language"))
 
 
 def write_with_sounds(order: ExportOrder) -> ExportedFiles:
@@ -59,8 +59,8 @@ def copy_runtime(source: Path, target: Path, leave: tuple[str, ...] = ()) -> lis
             raise FileError(
                 place,
                 phrase("cannot be written ({strerror})", strerror=error.strerror),
-                phrase("on copying the runtime"),
-                phrase("Choose a place you may write to, with space left."),
+                phrase("copying the runtime"),
+                phrase("Choose a folder that you can write to, with enough free space."),
             ) from None
         out.append(place)
     return out
@@ -92,54 +92,54 @@ TARGETS = (
     ExportTarget(
         "metagraph",
         "Metagraph (JSON + GLB)",
-        phrase("one JSON, the graph, and one GLB, its clips"),
+        phrase("a JSON file with the graph and a GLB file with its clips"),
         write_with_sounds,
-        group=phrase("Played as the preview does"),
+        group=phrase("Same playback as the preview"),
         unpacks=True,
     ),
     ExportTarget(
         "javascript",
         "JavaScript, three.js",
-        phrase("JSON and GLB, and in metagraph/ the runtime: ES modules for browsers, Node and three.js"),
+        phrase("JSON, GLB and the runtime in metagraph/: ES modules for browsers, Node and three.js"),
         _with("javascript", "metagraph"),
         (BML,),
-        group=phrase("Played as the preview does"),
+        group=phrase("Same playback as the preview"),
         unpacks=True,
     ),
     ExportTarget(
         "godot",
         phrase("Godot 4 add-on"),
-        phrase("JSON and GLB, and in addons/metagraph/ the runtime in GDScript"),
+        phrase("JSON, GLB and the GDScript runtime in addons/metagraph/"),
         _with("godot", "."),
         (BML,),
-        group=phrase("Played as the preview does"),
+        group=phrase("Same playback as the preview"),
     ),
     ExportTarget(
         "unity",
         phrase("Unity package"),
-        phrase("JSON and GLB, and in Metagraph/ the runtime in C#"),
+        phrase("JSON, GLB and the C# runtime in Metagraph/"),
         _with("unity", "Metagraph"),
         (BML,),
-        untried=phrase("compiled and checked outside Unity; not run in Unity"),
-        group=phrase("Played as the preview does"),
+        untried=phrase("compiled and tested outside Unity; not tested in Unity"),
+        group=phrase("Same playback as the preview"),
         unpacks=True,
     ),
     ExportTarget(
         "cpp",
         "C++17",
-        phrase("JSON and GLB, and in metagraph/ the runtime: headers that need the standard library alone"),
+        phrase("JSON, GLB and the runtime in metagraph/: headers that need only the standard library"),
         _with("cpp", "metagraph"),
         (BML,),
-        group=phrase("Played as the preview does"),
+        group=phrase("Same playback as the preview"),
         unpacks=True,
     ),
     ExportTarget(
         "unreal",
         phrase("Unreal 5 plugin"),
-        phrase("JSON and GLB, and in Plugins/Metagraph/ a plugin with the runtime in C++"),
+        phrase("JSON, GLB and a plugin with the C++ runtime in Plugins/Metagraph/"),
         _plugin,
         (BML,),
-        untried=phrase("compiled and played against stand-ins for Unreal's types; not run in Unreal"),
-        group=phrase("Played as the preview does"),
+        untried=phrase("compiled and tested with stand-ins for Unreal's types; not tested in Unreal"),
+        group=phrase("Same playback as the preview"),
     ),
 )

@@ -21,13 +21,15 @@ from metagraph.formats.atomic import write_atomically
 
 HOST = Loss(
     phrase(
-        "it decides only: who runs it plays each state's animation, blends for as long as the arrow "
-        "says, and adds the layers"
+        "the chart only decides: your program plays each state's animation, blends for the "
+        "time that the arrow gives, and adds the layers"
     )
 )
-FORGETFUL = Loss(phrase("what is asked while an action plays that may not be left yet is not remembered"))
+FORGETFUL = Loss(phrase("a request is forgotten if it comes while the playing action cannot exit yet"))
 TOLD = Loss(
-    phrase("what is asked while an action plays that may not be left yet is told as missed, not remembered")
+    phrase(
+        "a request is reported as missed and forgotten if it comes while the playing action cannot exit yet"
+    )
 )
 
 

@@ -53,10 +53,11 @@ Row = tuple[int, int, str, Mapping[str, Any]]
 
 MOMENT = Loss(
     phrase(
-        "what is asked for after the moment from which an action may be left waits until it has ended: an exit time is one moment"
+        "a request that comes after an action's earliest exit waits until the action ends, "
+        "because an exit time is a single moment"
     )
 )
-UNTRIED = phrase("written field by field as Unity writes its own files; there was no Unity to open it with")
+UNTRIED = phrase("written field by field as Unity writes its own files; not tested in Unity")
 
 
 def controller(
@@ -385,8 +386,8 @@ TARGETS = (
         "unity-controller",
         "Unity Animator Controller",
         phrase(
-            "an Animator Controller with Avatar Masks and clips as Unity's own text assets, a guide to them, and "
-            "the mesh as a GLB"
+            "an Animator Controller, Avatar Masks and clips as Unity text assets, a guide to them, "
+            "and the mesh as a GLB"
         ),
         write,
         (*MACHINE, WEIGHTS, CROSSFADE, MOMENT),

@@ -149,16 +149,21 @@ TARGETS = (
         "usd",
         "USD (UsdSkel)",
         phrase(
-            "a stage: skeleton, skinned mesh with blend shapes, an animation for each "
-            "clip, the graph; JSON and "
-            "GLB beside it"
+            "a stage with skeleton, skinned mesh, blend shapes, an animation for each clip and the "
+            "graph; plus JSON and GLB"
         ),
         write,
         (
-            Loss(phrase("no planner: the stage holds clips and graph for programs that ask; one clip plays")),
             Loss(
                 phrase(
-                    "no life layers: breathing, gaze, blinks and lips are not in the clips; a bake has them"
+                    "no planner: the stage contains the clips and the graph for other programs; only one "
+                    "clip plays"
+                )
+            ),
+            Loss(
+                phrase(
+                    "no life layers: the clips have no breathing, gaze, blinks or lip sync; a baked "
+                    "performance has them"
                 )
             ),
         ),

@@ -99,7 +99,10 @@ def meta_of(project: Project, folder: Path | None) -> tuple[dict[str, Any], bool
         said = msgspec.json.decode(read_file(path, _LARGEST), type=dict[str, Any])
     except msgspec.MsgspecError as error:
         raise FileError(
-            path, phrase("it is no JSON object ({error})", error=error), phrase("its content"), _remedy()
+            path,
+            phrase("the file is not a JSON object ({error})", error=error),
+            phrase("its content"),
+            _remedy(),
         ) from None
     for key, value in said.items():
         fits = (
@@ -112,7 +115,7 @@ def meta_of(project: Project, folder: Path | None) -> tuple[dict[str, Any], bool
             allowed = f"one of {', '.join(_WORDS[key])}" if key in _WORDS else "known to VRM"
             raise FileError(
                 path,
-                phrase("what it says is not {allowed}", allowed=allowed),
+                phrase("the value is not {allowed}", allowed=allowed),
                 phrase("field '{key}'", key=key),
                 _remedy(),
             )
@@ -170,18 +173,19 @@ def _write(order: ExportOrder) -> ExportedFiles:
     if lacking:
         raise ExportError(
             phrase(
-                "VRM needs a humanoid: no joint was found for {names}. Say which it is under the "
-                "character's joints",
+                "VRM needs a humanoid: no joint was found for {names}. Assign the joints in 'Skeleton'",
                 names=", ".join(lacking[:3]),
             )
         )
     _, at = skeleton.globals(skeleton.rest)
     axes = axes_of(skeleton, roles, at)
     if axes[2] @ [0, 0, 1] < 0.95:
-        raise ExportError(phrase("VRM's figures look along +Z in their rest pose, and this one does not"))
+        raise ExportError(phrase("a VRM character must face +Z in its rest pose, and this one does not"))
     body, notes = mesh_of(order)
     if body is None:
-        raise ExportError(phrase("VRM is a character: choose a mesh that fits the clips, and export with it"))
+        raise ExportError(
+            phrase("VRM needs a character: choose a mesh that fits the clips, then export again")
+        )
     order.tell(0, 2, "clips")
     bones = humanoid(skeleton, roles)
     meta, said = meta_of(project, order.contents.base)
@@ -220,11 +224,14 @@ TARGETS = (
     ExportTarget(
         "vrm",
         phrase("VRM 1.0 avatar"),
-        phrase("a VRM: the character in a T, its bones, expressions and licence, clips as animations"),
+        phrase(
+            "a VRM file: the character in T-pose, its bones, expressions and licence, and the "
+            "clips as animations"
+        ),
         _write,
         (
-            Loss(phrase("no meta-graph: an avatar's program moves it, the clips are there by their names")),
-            Loss(phrase("no life layers: breathing, gaze, blinks and lips are the program's")),
+            Loss(phrase("no meta-graph: the avatar's program moves it and finds the clips by name")),
+            Loss(phrase("no life layers: the avatar's program does breathing, gaze, blinks and lip sync")),
         ),
     ),
 )

@@ -62,8 +62,8 @@ def write(order: ExportOrder) -> ExportedFiles:
             said = _FROM_THE_NET
             notes.append(
                 phrase(
-                    "three.js is not at hand: the page loads version {version} from the net, and the browser "
-                    "checks its digest. With npm installed, exporting again puts it beside the page",
+                    "three.js was not found: the page loads version {version} from the internet, and the "
+                    "browser checks its digest. To include three.js, install npm and export again",
                     version=THREE,
                 )
             )
@@ -89,11 +89,17 @@ TARGETS = (
         "web",
         phrase("Web page"),
         phrase(
-            "a folder for any static server: a page, the character as an element for any other, JSON and GLB"
+            "a folder for any static server: a page, the character as an element for other pages, "
+            "JSON and GLB"
         ),
         write,
-        (BML, Loss(phrase("the picture: light and floor are the page's own, the motion is the same"))),
-        group=phrase("Played as the preview does"),
+        (
+            BML,
+            Loss(
+                phrase("not the same picture: the page has its own light and floor; the motion is the same")
+            ),
+        ),
+        group=phrase("Same playback as the preview"),
         unpacks=True,
     ),
 )

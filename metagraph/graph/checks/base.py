@@ -48,7 +48,7 @@ def _past_the_end(frame: int, entry: ClipEntry) -> Problem:
         "error",
         "base-frame",
         phrase(
-            "the base pose is frame {frame} of '{name}', which ends at {last}",
+            "the base pose is frame {frame} of '{name}', but that clip ends at frame {last}",
             frame=frame,
             name=entry.name,
             last=last,
@@ -68,12 +68,12 @@ def _rest_pose(project: Project, skeleton: Skeleton) -> Iterator[Problem]:
             "warning",
             "base-rest",
             phrase(
-                "the base pose is the skeleton's rest pose, far from how the character stands; "
-                "layers will add up to a twisted pose"
+                "the base pose is the skeleton's rest pose, far from the character's stances; adding "
+                "the layers twists the pose"
             ),
             phrase(
-                "Take the base pose from a frame with the hands at the sides: right-click a clip, "
-                "'Use this frame as base pose'."
+                "Find a frame with the hands at the sides, right-click its clip and choose 'Use this "
+                "frame as base pose'."
             ),
         )
 
@@ -98,13 +98,13 @@ def _beside_stance(project: Project, skeleton: Skeleton) -> Iterator[Problem]:
             "warning",
             "base-floats",
             phrase(
-                "the base pose stands {far:.0f} cm {way} stance '{rests}'; the character will "
-                "leave the ground",
+                "the base pose is {far:.0f} cm {way} stance '{rests}'; the character will not stay on "
+                "the ground",
                 far=abs(lift) * 100,
                 way=way,
                 rests=rests,
             ),
-            phrase("Take the base pose from a clip in which the character stands as in its stances."),
+            phrase("Choose a base pose from a clip in which the character stands as in its stances."),
             clip=project.base.clip,
         )
     hips = roles.get("hips", 0)
@@ -114,12 +114,12 @@ def _beside_stance(project: Project, skeleton: Skeleton) -> Iterator[Problem]:
             "warning",
             "base-twisted",
             phrase(
-                "the base pose's hips are turned {degrees:.0f} degrees from stance '{rests}'; the "
+                "the hips of the base pose are turned {degrees:.0f}° away from stance '{rests}'; the "
                 "character will twist",
                 degrees=np.degrees(turn),
                 rests=rests,
             ),
-            phrase("Take the base pose from a clip facing the same way."),
+            phrase("Choose a base pose from a clip that faces the same way."),
             clip=project.base.clip,
         )
 

@@ -201,7 +201,7 @@ def address_segments(project: Project, ident: str, places: Collection[Place], to
     of = _conversation(project, ident)
     for side, at in places:
         if to is not None and to != EVERYBODY and (to == side or not 0 <= to < len(of.sides)):
-            raise EditError(phrase("nobody speaks to that one: choose another who talks in the conversation"))
+            raise EditError(phrase("a segment can only be addressed to another speaker of this conversation"))
         segment = msgspec.structs.replace(_segment(project, ident, side, at), to=to)
         project = _set(project, ident, side, at, segment)
     return project
@@ -217,7 +217,7 @@ def split_segment(
     if not of.start + SHORTEST <= seconds <= of.end - SHORTEST:
         raise EditError(
             phrase(
-                "a segment can be split between {first:.2f} and {last:.2f} s, inside it",
+                "a segment can only be split inside it, between {first:.2f} and {last:.2f} s",
                 first=of.start + SHORTEST,
                 last=of.end - SHORTEST,
             )
@@ -260,7 +260,10 @@ def add_segment(
     start, end = max(low, start), min(high, end)
     if end - start < SHORTEST:
         raise EditError(
-            phrase("there is no room for a segment here; it lasts {shortest:g} s at least", shortest=SHORTEST)
+            phrase(
+                "there is no room for a segment here; a segment is at least {shortest:g} s long",
+                shortest=SHORTEST,
+            )
         )
     at = sum(1 for s in segments if s.end <= start)
     held = None if peak is None else min(max(start, peak), end)
@@ -300,7 +303,7 @@ def gap_at(conversation: Conversation, side: int, seconds: float) -> tuple[float
 def _conversation(project: Project, ident: str) -> Conversation:
     found = project.conversations.get(ident)
     if found is None:
-        raise EditError(phrase("that conversation is not kept in this project"))
+        raise EditError(phrase("that conversation is not in this project"))
     return found
 
 
@@ -322,7 +325,7 @@ def _room(project: Project, ident: str, side: int, at: int) -> tuple[Segment, fl
 
 def _spoken(kind: Sound) -> None:
     if kind not in SPOKEN:
-        raise EditError(phrase("idle is what lies between segments: remove a segment to make it idle"))
+        raise EditError(phrase("a segment cannot be idle: remove the segment instead"))
 
 
 def _text(words: Sequence[Word], start: float, end: float) -> str:
@@ -346,7 +349,7 @@ def _valid(before: Any, changes: dict[str, Any], **unchecked: Any) -> Any:
         }
         return msgspec.structs.replace(before, **made, **unchecked)
     except KeyError as error:
-        raise EditError(phrase("there is nothing called {error} to set", error=error)) from None
+        raise EditError(phrase("there is no setting named {error}", error=error)) from None
     except (msgspec.ValidationError, ValueError, TypeError) as error:
         raise EditError(str(error)) from None
 

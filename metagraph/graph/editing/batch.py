@@ -43,7 +43,7 @@ def paste_properties(
     if unknown:
         raise EditError(
             phrase(
-                "there is nothing called '{unknown}' to paste; there are {names}",
+                "there is no setting named '{unknown}' to paste; choose from {names}",
                 unknown=unknown[0],
                 names=", ".join(PROPERTIES),
             )
@@ -113,7 +113,7 @@ def names_by_pattern(project: Project, actions: Sequence[str], pattern: str) -> 
         except (KeyError, IndexError, ValueError, AttributeError):
             raise EditError(
                 phrase(
-                    "'{pattern}' cannot be read; in braces there may be {names}, as in {{name}} {{n:02}}",
+                    "'{pattern}' cannot be read; braces can contain {names}, as in {{name}} {{n:02}}",
                     pattern=pattern,
                     names=", ".join(FIELDS),
                 )
@@ -130,7 +130,7 @@ def names_replaced(
     be read, or names that would be empty.
     """
     if not find:
-        raise EditError(phrase("say what to look for"))
+        raise EditError(phrase("enter the text to find"))
     try:
         search = re.compile(find if regex else re.escape(find))
         out = {}
@@ -141,7 +141,7 @@ def names_replaced(
         return out
     except re.error as error:
         raise EditError(
-            phrase("'{find}' is no regular expression: {error}", find=find, error=error)
+            phrase("'{find}' is not a valid regular expression: {error}", find=find, error=error)
         ) from None
 
 

@@ -29,11 +29,11 @@ _KINDS = {
 _REST = {
     "name": phrase("Name"),
     "character": phrase("Character"),
-    "hidden": phrase("Hidden"),
-    "base": phrase("Base"),
+    "hidden": phrase("Hidden meshes"),
+    "base": phrase("Base pose"),
     "roles": phrase("Roles"),
-    "parts": phrase("Parts"),
-    "markov": phrase("Markov"),
+    "parts": phrase("Body parts"),
+    "markov": phrase("Markov models"),
     "settings": phrase("Settings"),
     "language": phrase("Language"),
     "life": phrase("Life"),
@@ -74,7 +74,7 @@ def describe_differences(before: Project, after: Project) -> list[str]:
             ]
             first, then = (" ".join(n.split()) if n.startswith("'") else n for n in names)
             words = phrase(
-                "First stance of {layer}: {before} → {after}", layer=_plain(layer), before=first, after=then
+                "Start stance of {layer}: {before} → {after}", layer=_plain(layer), before=first, after=then
             )
             lines.append(words)
         if old.weights != new.weights:

@@ -77,7 +77,7 @@ def _mirrored(project: Project, wanted: Mapping[str, tuple[str, tuple[str, ...]]
         if distance < SAME and not _faces_differ(entry.motion, twin):
             raise EditError(
                 phrase(
-                    "'{called}' has no side: it is within {far:.1f} cm of its mirror image",
+                    "'{called}' does not need a mirrored twin: it is within {far:.1f} cm of its mirror image",
                     called=called,
                     far=100 * distance,
                 )
@@ -106,7 +106,7 @@ def place_twins(project: Project, pairs: Mapping[str, str]) -> Project:
         if before is not None and (entry.frames, entry.fps) != (before.frames, before.fps):
             raise EditError(
                 phrase(
-                    "'{name}' is not as long as '{other}', whose twin it is to be",
+                    "'{name}' cannot be the twin of '{other}': they differ in length",
                     name=entry.name,
                     other=before.name,
                 )
@@ -117,7 +117,8 @@ def place_twins(project: Project, pairs: Mapping[str, str]) -> Project:
         if action.kind == "transition" and end == stance:
             raise EditError(
                 phrase(
-                    "the twin of '{name}' would end where it starts: the stances have no twins by name",
+                    "the twin of '{name}' would end where it starts: no stances have matching left and "
+                    "right names",
                     name=action.name,
                 )
             )

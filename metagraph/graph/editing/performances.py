@@ -83,7 +83,7 @@ def remove_performance(project: Project, ident: str) -> Project:
 def _performance(project: Project, ident: str) -> Performance:
     found = project.performances.get(ident)
     if found is None:
-        raise EditError(phrase("that performance is not kept in this project"))
+        raise EditError(phrase("that performance is not in this project"))
     return found
 
 
@@ -186,7 +186,7 @@ def set_line(project: Project, ident: str, line: Line | None) -> Project:
     """Set or, with None, remove a line of dialogue. Raises EditError for an id of nothing."""
     ident = ident.strip()
     if not ident:
-        raise EditError(phrase("a line needs an id to be called by"))
+        raise EditError(phrase("a line needs an id"))
     lines = (
         {i: x for i, x in project.lines.items() if i != ident}
         if line is None
@@ -207,9 +207,7 @@ def rename_line(project: Project, ident: str, new: str) -> Project:
         return project
     if not new or new in project.lines:
         raise EditError(
-            phrase("there is a line '{new}' already", new=new)
-            if new
-            else phrase("a line needs an id to be called by")
+            phrase("there is already a line '{new}'", new=new) if new else phrase("a line needs an id")
         )
     lines = {new if i == ident else i: x for i, x in project.lines.items()}
     voices = {new if i == ident else i: v for i, v in project.voices.items()}

@@ -43,7 +43,7 @@ def set_retime(project: Project, clip: str, retime: Retime) -> Project:
     source, before = source_of(entry), course_of(entry)
     if source is None or before is None:
         raise EditError(
-            phrase("the file of '{name}' is missing: find it, then change its speed", name=entry.name)
+            phrase("the file of '{name}' is missing: find the file, then change the speed", name=entry.name)
         )
     after = with_source(replace(entry, retime=retime.kept(source.duration)), source)
     if after.retime == entry.retime:
@@ -96,18 +96,18 @@ def keep_hand(project: Project, clip: str, side: str, first: float, last: float)
     roles = anatomy.project_roles(project)
     limb = [roles.get(f"{side}_{part}") for part in ("upper_arm", "lower_arm", "hand")]
     if entry is None or source is None or source.skeleton != project.skeleton:
-        raise EditError(phrase("that clip has no motion of this skeleton: find its file"))
+        raise EditError(phrase("that clip has no motion for this skeleton: find its file"))
     if None in limb:
         raise EditError(
             phrase(
-                "the {side} arm is not known: say which joints it has in the skeleton's roles",
+                "the joints of the {side} arm are not known: assign them in 'Skeleton'",
                 side=phrase(side),
             )
         )
     upper, lower, hand = (int(j) for j in limb if j is not None)
     to = find_nearest_joint(source, hand, _touched(project, side), first)
     if to is None or last <= first:
-        raise EditError(phrase("there is nothing the hand could stay with"))
+        raise EditError(phrase("there is nothing that the hand could stay at"))
     names = source.skeleton.names
     contact = Contact(names[upper], names[lower], names[hand], names[to], first, last)
     kept = tuple(c for c in entry.retime.contacts if c.hand != contact.hand or not _meet(c, contact))
@@ -122,7 +122,7 @@ def set_kept(project: Project, clip: str, place: int, first: float, last: float)
     entry = project.clips.get(clip)
     source = source_of(entry) if entry is not None else None
     if entry is None or source is None or place >= len(entry.retime.contacts):
-        raise EditError(phrase("that hand is kept there no longer"))
+        raise EditError(phrase("that hand is no longer pinned there"))
     contacts, old = list(entry.retime.contacts), entry.retime.contacts[place]
     others = [c for n, c in enumerate(contacts) if n != place and c.hand == old.hand]
     first = max([0.0, first, *(c.last for c in others if c.last <= old.first)])

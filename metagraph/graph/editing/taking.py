@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
-from metagraph.common.wording import join_phrases, phrase
+from metagraph.common.wording import join_phrases, phrase, plural_phrase
 from metagraph.graph import ids
 from metagraph.graph.clip_source import source_of, with_source
 from metagraph.graph.editing.retargeting import Bringing
@@ -160,13 +160,15 @@ def _take_layer(
     for ident, stance in source.stances.items():
         if ident not in new:
             things.append(
-                TakenItem("stance", layer, stance.name, "joined", phrase("joins the stance of that name"))
+                TakenItem(
+                    "stance", layer, stance.name, "joined", phrase("is added to the stance with that name")
+                )
             )
         elif places[ident] in needed or ident in empty:
             stances[places[ident]] = new[ident]
             things.append(TakenItem("stance", layer, stance.name, "new", phrase("a new stance")))
         else:
-            words = phrase("none of its actions can be taken")
+            words = phrase("none of its actions can be copied")
             things.append(TakenItem("stance", layer, stance.name, "left out", words))
     things += taken
     if not graph.stances:
@@ -206,7 +208,7 @@ def _action(
         return thing("left out", words), None
     same = there.get(_same(made))
     if same is not None:
-        return thing("there", phrase("is here already, as '{name}'", name=same.name)), None
+        return thing("there", phrase("is already here, as '{name}'", name=same.name)), None
     ident = ids.new_id(project, "a", action.layer, action.kind, stance, end or "", clip, more=added)
     return thing("new", words or _NEW[action.kind]), replace(made, id=ident)
 
@@ -247,10 +249,10 @@ class _Clips:
         named = tuple(joints[name] for name in action.joints if name in joints)
         weights = tuple((joints[name], weight) for name, weight in action.joint_weights if name in joints)
         if action.joints and not named:
-            return None, phrase("none of the joints that it moves is here")
+            return None, phrase("this skeleton has none of the joints that it moves")
         words = ""
         if action.contacts:
-            words = phrase("{what}; its contacts are left out: find them anew", what=_NEW[action.kind])
+            words = phrase("{what}; its contacts are not copied: find them again", what=_NEW[action.kind])
         return replace(action, joints=named, joint_weights=weights, contacts=()), words
 
     def why(self, ident: str) -> str:
@@ -264,7 +266,7 @@ class _Clips:
         same = self.known.get(_content(entry))
         if same is not None:
             self.given[ident] = same
-            words = phrase("is here already, as '{name}'", name=self.entries[same].name)
+            words = phrase("is already here, as '{name}'", name=self.entries[same].name)
             self.things.append(TakenItem("clip", None, entry.name, "there", words))
             return same
         try:
@@ -303,7 +305,8 @@ class _Clips:
         if entry.brought_from:
             raise RetargetError(
                 phrase(
-                    "it was retargeted there already: import its file ({path}) here instead", path=entry.path
+                    "it was already retargeted in the other project: import its file ({path}) here instead",
+                    path=entry.path,
                 )
             )
         joint_map = self.bringing.known(source) or self.bringing.propose(source.skeleton)
@@ -322,26 +325,25 @@ def _content(entry: ClipEntry) -> tuple[object, ...]:
 def words_of_taking(taking: Taking) -> str:
     """Say in a line what was taken."""
     counts = [
-        _count(taking.count("stance"), phrase("new stance"), phrase("new stances")),
-        _count(taking.count("action"), phrase("new action"), phrase("new actions")),
-        _count(taking.count("clip"), phrase("new clip"), phrase("new clips")),
+        plural_phrase("{count:,} new stance", "{count:,} new stances", taking.count("stance")),
+        plural_phrase("{count:,} new action", "{count:,} new actions", taking.count("action")),
+        plural_phrase("{count:,} new clip", "{count:,} new clips", taking.count("clip")),
     ]
-    words = join_phrases([x for x in counts if x], ", ") if any(counts) else phrase("Nothing new")
+    counts = [x for x in counts if x.values["count"]]
+    words = join_phrases(counts, ", ") if counts else phrase("Nothing new")
     if there := taking.count("action", ["there"]):
-        words = phrase(
-            "{taken}; {there} here already",
+        words = plural_phrase(
+            "{taken}; {count:,} action is already here",
+            "{taken}; {count:,} actions are already here",
+            there,
             taken=words,
-            there=_count(there, phrase("action is"), phrase("actions are")),
         )
     if left := taking.count("action", ["left out"]):
-        words = phrase(
-            "{taken}; {left} left out", taken=words, left=_count(left, phrase("action"), phrase("actions"))
+        words = plural_phrase(
+            "{taken}; {count:,} action skipped", "{taken}; {count:,} actions skipped", left, taken=words
         )
     elif left := taking.count("clip", ["left out"]):
-        count = _count(left, phrase("clip"), phrase("clips"))
-        words = phrase("{taken}; {left} left out", taken=words, left=count)
+        words = plural_phrase(
+            "{taken}; {count:,} clip skipped", "{taken}; {count:,} clips skipped", left, taken=words
+        )
     return words
-
-
-def _count(number: int, one: str, many: str) -> str:
-    return phrase("{number} {what}", number=number, what=one if number == 1 else many) if number else ""

@@ -28,8 +28,8 @@ def _machine(project: Project, manual: Manual) -> Iterator[Problem]:
         yield Problem(
             "error",
             "no-start",
-            phrase("the {layer} layer has no state to begin in", layer=phrase(layer)),
-            phrase("Right-click a state and 'Start here'."),
+            phrase("the {layer} layer has no start state", layer=phrase(layer)),
+            phrase("Right-click a state and choose 'Start here'."),
             layer,
         )
     reached = manual.reachable()
@@ -52,7 +52,7 @@ def _machine(project: Project, manual: Manual) -> Iterator[Problem]:
                 "warning",
                 "unreachable",
                 phrase("cannot be reached"),
-                phrase("Draw a link to it from a state that can."),
+                phrase("Draw a link to it from a state that can be reached."),
             )
         ways = [x for x in manual.leaving(state.id) if x.target != state.id]
         if not ways and len(manual.states) > 1:
@@ -60,19 +60,21 @@ def _machine(project: Project, manual: Manual) -> Iterator[Problem]:
                 yield at(
                     "warning",
                     "no-exit",
-                    phrase("loops for ever: no link leads out of it"),
+                    phrase("loops forever: no link leads out of it"),
                     phrase("Draw a link from it to another state."),
                 )
             else:
                 yield at(
                     "warning",
                     "dead-end",
-                    phrase("cannot be left: it holds its last frame"),
+                    phrase("has no way out: it holds its last frame"),
                     phrase("Draw a link from it to another state."),
                 )
         elif ways and not state.loop and not any(x.condition.when == "finished" for x in ways):
             message = phrase("holds its last frame until something is requested")
-            yield at("hint", "waits", message, phrase("Let one of its links be taken when it has finished."))
+            yield at(
+                "hint", "waits", message, phrase("Set one of its links to fire when the state has finished.")
+            )
     for alias in manual.aliases.values():
         yield from _alias(manual, alias)
     seen: set[tuple[str, str, str, str]] = set()
@@ -102,20 +104,20 @@ def _state(
     latest = entry.duration + 0.5 / entry.fps
     if not (0 <= state.start <= latest and end <= latest):  # also where one of them is not a number
         message = phrase(
-            "plays {start:.2f}-{end:.2f} s of a clip of {duration:.2f} s",
+            "plays {start:.2f} to {end:.2f} s, but its clip is {duration:.2f} s long",
             start=state.start,
             end=end,
             duration=entry.duration,
         )
-        yield at("error", "trim", message, phrase("Bring start and end inside the clip."))
+        yield at("error", "trim", message, phrase("Move start and end inside the clip."))
     elif end <= state.start and entry.frames > 1:
         message = phrase(
-            "ends at {end:.2f} s, not after its start at {start:.2f} s", end=end, start=state.start
+            "ends at {end:.2f} s, which is not after its start at {start:.2f} s", end=end, start=state.start
         )
-        yield at("error", "empty", message, phrase("Move its end behind its start."))
+        yield at("error", "empty", message, phrase("Move its end after its start."))
     if unknown := anatomy.unknown_joints(project.skeleton, state):
         message = phrase("moves joint '{unknown}', which the skeleton does not have", unknown=unknown[0])
-        yield at("error", "mask", message, phrase("Correct its joints."))
+        yield at("error", "mask", message, phrase("Choose its joints again."))
 
 
 def _alias(manual: Manual, alias: Alias) -> Iterator[Problem]:
@@ -134,22 +136,18 @@ def _alias(manual: Manual, alias: Alias) -> Iterator[Problem]:
         yield at(
             "warning" if used else "hint",
             "alias-empty",
-            phrase("stands for no state"),
+            phrase("contains no states"),
             phrase("Choose its states."),
         )
     elif not used:
         yield at("hint", "alias-unused", phrase("has no links"), phrase("Draw a link from it, or remove it."))
     if alias.entry is not None and alias.entry not in manual.members(alias):
-        name = (
-            manual.states[alias.entry].name
-            if alias.entry in manual.states
-            else phrase("a state that is gone")
-        )
+        name = manual.states[alias.entry].name if alias.entry in manual.states else phrase("a missing state")
         yield at(
             "warning",
             "alias-entry",
-            phrase("is entered by '{name}', not one of its states", name=name),
-            phrase("Choose another entry."),
+            phrase("is entered at '{name}', which is not one of its states", name=name),
+            phrase("Choose another entry state."),
         )
 
 
@@ -185,29 +183,29 @@ def _link(project: Project, manual: Manual, link: Link) -> Iterator[Problem]:
         yield at(
             "error",
             "weight",
-            phrase("has the weight {weight:g} and can never be drawn", weight=link.condition.weight),
-            phrase("Set it above 0."),
+            phrase("has weight {weight:g} and is never taken", weight=link.condition.weight),
+            phrase("Set it to more than 0."),
         )
     if not link.blend >= 0:
         yield at(
             "error",
             "blend",
-            phrase("blends for {blend:g} s", blend=link.blend),
+            phrase("has a blend of {blend:g} s", blend=link.blend),
             phrase("Set its blend to 0 or more."),
         )
     if manual.end(link) is None:
         yield at(
             "error",
             "no-entry",
-            phrase("leads to an alias that has no entry"),
-            phrase("Choose the state that it is entered by."),
+            phrase("leads to an alias without an entry state"),
+            phrase("Choose the alias's entry state."),
         )
     if link.source == ANY and link.condition.when == "finished":
         yield at(
             "warning",
             "any-finished",
-            phrase("is taken whenever any state has finished"),
-            phrase("Let it wait for a request."),
+            phrase("is taken every time any state finishes"),
+            phrase("Make it wait for a request."),
         )
     source = manual.states.get(link.source)
     entry = project.clips.get(source.clip) if source is not None else None
@@ -219,7 +217,7 @@ def _link(project: Project, manual: Manual, link: Link) -> Iterator[Problem]:
     )
     if link.exit_time is not None and not start <= link.exit_time <= end + 0.5 / entry.fps:
         message = phrase(
-            "may be taken at {exit_time:.2f} s, outside what '{name}' plays",
+            "can be taken from {exit_time:.2f} s, outside the part that '{name}' plays",
             exit_time=link.exit_time,
             name=source.name,
         )
@@ -227,12 +225,14 @@ def _link(project: Project, manual: Manual, link: Link) -> Iterator[Problem]:
             "warning",
             "exit",
             message,
-            phrase("Bring it between {start:.2f} and {end:.2f} s.", start=start, end=end),
+            phrase("Move it between {start:.2f} and {end:.2f} s.", start=start, end=end),
         )
     elif link.blend > end - start > 0 and not source.loop:
         yield at(
             "warning",
             "blend",
-            phrase("blends for {blend:.2f} s of {plays:.2f} s", blend=link.blend, plays=end - start),
+            phrase(
+                "blends for {blend:.2f} s, but only {plays:.2f} s play", blend=link.blend, plays=end - start
+            ),
             phrase("Shorten its blend."),
         )

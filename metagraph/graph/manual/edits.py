@@ -39,7 +39,7 @@ def find_state_refusal(project: Project, clips: Sequence[str]) -> str | None:
             and project.skeleton is not None
             and entry.motion.skeleton != project.skeleton
         ):
-            return phrase("'{name}' has another skeleton than this project", name=entry.name)
+            return phrase("'{name}' has a different skeleton from this project", name=entry.name)
     return None
 
 
@@ -86,10 +86,10 @@ def link_refusal(project: Project, layer: Layer, source: str, target: str) -> st
     """Return in words why a link cannot be drawn, or None when it can."""
     found = get_machine(project, layer)
     if target == ANY:
-        return phrase("no link can lead to any state: draw it the other way round")
+        return phrase("a link cannot lead to 'any state': draw it the other way round")
     group = found.aliases.get(target)
     if group is not None and found.end(Link("", source, target)) is None:
-        return phrase("'{name}' has no entry: choose the state it is entered by first", name=group.name)
+        return phrase("'{name}' has no entry state: choose one first", name=group.name)
     known = found.states.keys() | found.aliases.keys()
     if target not in known or (source != ANY and source not in known):
         return phrase("a link joins two states of one layer")
@@ -125,7 +125,7 @@ def add_links(project: Project, layer: Layer, sources: Sequence[str], targets: S
     there = {(x.source, x.target) for x in found.links.values()}
     pairs = [(a, b) for a in sources for b in targets if a != b and (a, b) not in there]
     if not pairs:
-        raise EditError(phrase("these links are drawn already"))
+        raise EditError(phrase("these links already exist"))
     links = {**found.links, **_new(project, found, pairs)}
     return project.with_manual(replace(found, links=links))
 

@@ -26,7 +26,7 @@ def add_alias(project: Project, layer: Layer, states: Sequence[str], every: bool
     found = get_machine(project, layer)
     chosen = tuple(i for i in found.states if i in states)
     if not chosen and not (every and found.states):
-        raise EditError(phrase("select the states the alias is to stand for"))
+        raise EditError(phrase("select the states that the alias contains"))
     mine = [found.states[i] for i in chosen or found.states]
     taken = {a.name for a in found.aliases.values()}
     name = "every state" if every else find_shared_words([s.name for s in mine]) or "alias"
@@ -109,7 +109,7 @@ def paste_copied_links(
     found = get_machine(project, layer)
     sources, targets = Counter(x.source for x in links), Counter(x.target for x in links)
     if len(sources) > 1 and len(targets) > 1:
-        raise EditError(phrase("copy links that leave one state, or that lead to one"))
+        raise EditError(phrase("copy links that all leave one state, or that all lead to one state"))
     there = {(x.source, x.target) for x in found.links.values()}
     out: dict[str, Link] = {}
     for node in nodes:
@@ -124,6 +124,6 @@ def paste_copied_links(
                 ident = ids.new_id(project, "l", layer, one.source, one.target, more=out)
                 out[ident] = replace(one, id=ident)
     if not out:
-        raise EditError(phrase("these links are drawn already"))
+        raise EditError(phrase("these links already exist"))
     after = replace(found, links={**found.links, **out})
     return project.with_manual(after)

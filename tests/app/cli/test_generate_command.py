@@ -254,7 +254,7 @@ def test_sounds_that_nobody_can_move_to_are_refused_in_words(
         "is silent": sound(tmp_path / "silent.wav", 0 * voice),
         "lasts 0.50 s": sound(tmp_path / "short.wav", voice[:, : RATE // 2]),
         "3 channels": sound(tmp_path / "three.wav", np.stack([voice[0]] * 3)),
-        "no such sound": tmp_path / "none.wav",
+        "sound file does not exist": tmp_path / "none.wav",
         "is no sound": model,
     }
     for words, path in bad.items():
@@ -280,7 +280,7 @@ def test_what_is_odd_about_a_sound_is_told_and_it_is_used(
     assert np.isfinite(
         read_clip_file(_sampled(model, sound(tmp_path / "h.wav", holed, "FLOAT")))[0].rotations
     ).all()
-    for path, words in ((alone, "one voice only"), (loud, "cut off at full scale")):
+    for path, words in ((alone, "only one voice"), (loud, "is clipped")):
         assert (
             main(["generate", "sample", str(model), "--speech", str(path), "-o", str(tmp_path / "o.bvh")])
             == 0

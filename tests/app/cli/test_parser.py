@@ -120,7 +120,7 @@ def test_wrong_usage_is_exit_code_2_with_a_hint(
         (["render", SAMPLE, "-o", "x.mp4", "--fps", "0"], "1 to 240 pictures a second"),
         (["render", SAMPLE, "-o", "x.png", "--frames", "0"], "2 to 1000 pictures"),
         (["render", SAMPLE, "-o", "x.png", "--clip", "nobody"], "there is no clip 'nobody'"),
-        (["export", SAMPLE, "-o", str(ROOT / "pyproject.toml")], "cannot be made"),
+        (["export", SAMPLE, "-o", str(ROOT / "pyproject.toml")], "cannot be created"),
     ],
 )
 def test_an_error_is_exit_code_1_in_words_that_help(
@@ -224,8 +224,8 @@ def test_check_lists_problems_with_what_to_do(small: Path, capsys: pytest.Captur
     save_project(edits.update_actions(read_project(small), ["a6"], likelihood=0.0), small)
     assert main(["check", str(small)]) == 3
     out = capsys.readouterr().out
-    assert "can never be chosen" in out
-    assert "Set it above 0." in out
+    assert "never plays" in out
+    assert "Set it to more than 0." in out
     assert main(["check", str(small), "--json"]) == 3
     problems = json.loads(capsys.readouterr().out)["problems"]
     assert problems[0]["code"] == "likelihood"

@@ -181,7 +181,7 @@ def test_a_dragged_request_is_given_up_with_escape_and_copied_with_ctrl(stage):
         and copy.at == pytest.approx(5.0, abs=0.05)
         and drive.session.onstage.requests == (copy.id,)
     )
-    assert drive.document.undo_stack.undoText() == "Copy request"
+    assert drive.document.undo_stack.undoText() == "Copy 1 request"
     drive.document.undo()
     assert drive.performance.asks == (ask,)
     # Nothing is dragged to before the beginning, and a click with Ctrl alone selects and unselects.
@@ -250,7 +250,7 @@ def test_a_request_that_vanishes_while_its_fields_are_open_says_so(stage):
     board(drive).edit(ask.id)
     editor = QApplication.activeModalWidget()
     drive.performance.requests.withdraw(ask.id)
-    drive.wait(lambda: "not there any more" in editor.words.text())
+    drive.wait(lambda: "no longer exists" in editor.words.text())
     assert not editor.fields["at"].isEnabled() and not editor.remove.isEnabled()
     drive.document.undo()
     drive.wait(lambda: editor.fields["at"].isEnabled())
@@ -368,7 +368,7 @@ def test_a_client_drives_a_gesture_that_is_seen_in_the_preview(live):
         process.wait(20)
         reader.join(5)
         process.stdout.close()
-    drive.wait(lambda: "nobody" in drive.performance.live.stage.words())
+    drive.wait(lambda: "no clients" in drive.performance.live.stage.words())
 
 
 def test_the_past_of_a_live_session_can_be_scrubbed_and_now_is_found_again(live):
@@ -397,7 +397,7 @@ def test_what_was_played_live_is_kept_and_plays_again_as_it_was(live):
     drive.performance.live.end()
     assert drive.performance.live.last is not None
     drive.timeline.more_menu.aboutToShow.emit()
-    drive.pick(drive.timeline.more_menu, "Keep what was played live")
+    drive.pick(drive.timeline.more_menu, "Keep the live session")
     assert drive.timeline.stage.currentText() == "Live session"
     drive.wait(
         lambda: (

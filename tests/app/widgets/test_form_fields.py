@@ -86,9 +86,9 @@ def test_a_chooser_shows_what_is_set_and_says_nothing_itself(qtbot):
     chooser.currentIndexChanged.connect(told.append)
     chooser.show_entries([("rest", "s1"), ("up", "s2")], "s2")
     assert chooser.currentData() == "s2"
-    chooser.show_entries([("rest", "s1"), ("up", "s2")], "gone", "choose one")
+    chooser.show_entries([("rest", "s1"), ("up", "s2")], "gone", "choose a stance")
     assert chooser.currentIndex() == -1
-    assert chooser.placeholderText() == "choose one"
+    assert chooser.placeholderText() == "choose a stance"
     chooser.show_entries([("rest", "s1"), ("same", "s2"), ("same", "s3")], "s3")
     assert chooser.currentIndex() == 2, "names need not differ"
     assert told == []

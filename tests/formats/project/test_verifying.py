@@ -212,7 +212,7 @@ def test_an_action_that_plays_another_clip_than_it_was_made_of_is_told(home: Pat
     (action,) = project.actions()
     other = next(i for i in project.clips if i != action.clip)
     home.write_text(home.read_text().replace(f"clip: {action.clip},", f"clip: {other},"))
-    assert "was made of clip" in said(verify_project(home))["graph"][0]
+    assert "was made from clip" in said(verify_project(home))["graph"][0]
 
 
 def test_a_damaged_earlier_version_is_told(home: Path) -> None:

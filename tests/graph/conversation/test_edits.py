@@ -275,7 +275,7 @@ def test_whom_segments_are_said_to_is_set_and_taken_back() -> None:
     both = {(0, 0), (2, 0)}
     assert c.address_segments(said, ident, both, None) == project
     for to in (0, 3, -2):
-        with pytest.raises(EditError, match="nobody speaks"):
+        with pytest.raises(EditError, match="another speaker"):
             c.address_segments(project, ident, {(0, 0)}, to)
 
 

@@ -51,7 +51,7 @@ def test_a_name_is_never_left_empty(project: Project) -> None:
     name = project.action(gestures(project)[0]).name  # type: ignore[union-attr]
     with pytest.raises(EditError, match="empty"):
         batch.names_replaced(project, gestures(project)[:1], name, "")
-    with pytest.raises(EditError, match="what to look for"):
+    with pytest.raises(EditError, match="text to find"):
         batch.names_replaced(project, gestures(project), "", "x")
 
 
@@ -63,9 +63,9 @@ def test_a_text_is_replaced_only_where_it_stands(project: Project) -> None:
         first: "01 Wave"
     }
     assert batch.names_replaced(named, ["nobody"], "Wave", "x") == {}
-    with pytest.raises(EditError, match="no regular expression"):
+    with pytest.raises(EditError, match="not a valid regular expression"):
         batch.names_replaced(named, gestures(named), "(", "x", regex=True)
-    with pytest.raises(EditError, match="no regular expression"):
+    with pytest.raises(EditError, match="not a valid regular expression"):
         batch.names_replaced(named, gestures(named), "Wave", r"\7", regex=True)
 
 

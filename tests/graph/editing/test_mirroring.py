@@ -189,7 +189,7 @@ def test_a_clip_that_is_missing_the_original_or_of_another_length_is_refused(toy
         (toy.id(project, "up beat"), None),
     ):
         clip = clip if words else project.action(clip).clip  # type: ignore[union-attr]
-        with pytest.raises(EditError, match=words or "is not as long as"):
+        with pytest.raises(EditError, match=words or "differ in length"):
             place_twins(project, {ident: clip})
 
 

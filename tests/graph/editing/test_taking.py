@@ -171,7 +171,7 @@ def test_clips_of_another_skeleton_are_retargeted_with_the_joints_that_actions_n
     assert touch.joints == ("x_LeftUpperArm",) and touch.joint_weights == (("x_LeftUpperArm", 0.5),)
     assert touch.contacts == (), "they are places on another body"
     (words,) = (x.words for x in taking.things if x.kind == "action" and x.name == "their touch")
-    assert "contacts" in words and "left out" in words
+    assert "contacts" in words and "not copied" in words
     assert not [p for p in check_project(taking.project) if p.code == "mask"]
 
 
@@ -180,7 +180,7 @@ def test_an_action_that_moves_no_joint_of_this_project_is_left_out(other: Projec
     touch = [*theirs.actions()][-1].id
     taking = take(renamed(other), edits.update_actions(theirs, [touch], joints=("LeftIndexProximal",)))
     assert became(taking, "action") == {"their pose": "new", "their touch": "left out"}
-    assert "1 action left out" in words_of_taking(taking)
+    assert "1 action skipped" in words_of_taking(taking)
 
 
 def test_without_retargeting_clips_are_left_out_and_so_are_stances_that_would_be_empty(

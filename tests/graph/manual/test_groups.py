@@ -119,7 +119,7 @@ def test_many_links_are_drawn_at_once_none_twice_and_none_to_itself() -> None:
     some = [ids["idle"], ids["wave"]]
     p = m.add_links(p, "arms", some, some)
     assert pairs(p, ids) == {"idle>wave", "wave>idle"} and len(p.manual["arms"].links) == 2
-    with pytest.raises(EditError, match="drawn already"):
+    with pytest.raises(EditError, match="already exist"):
         m.add_links(p, "arms", some, some)
     with pytest.raises(EditError, match="other way round"):
         m.add_links(p, "arms", some, [ANY])
@@ -147,7 +147,7 @@ def test_copied_links_are_drawn_for_other_states_with_their_settings() -> None:
     p = g.paste_copied_links(p, "arms", copies, [ids["sit"], ids["nod"]])
     assert pairs(p, ids) == {"idle>wave", "idle>nod", "sit>wave", "sit>nod", "nod>wave"}
     assert [x.blend for x in p.manual["arms"].links.values() if x.target == ids["wave"]] == [0.5] * 3
-    with pytest.raises(EditError, match="drawn already"):
+    with pytest.raises(EditError, match="already exist"):
         g.paste_copied_links(p, "arms", copies, [ids["sit"]])
 
 

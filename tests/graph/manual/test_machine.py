@@ -73,7 +73,7 @@ def test_a_clip_of_another_skeleton_is_refused() -> None:
 
     other = Skeleton(("Root",), np.array([-1]), np.array([[0, 0, 0, 1.0]]), np.zeros((1, 3)))
     strange = Clip("strange", other, 30, np.array([[[0, 0, 0, 1.0]]]), np.zeros((1, 1, 3)))
-    with pytest.raises(EditError, match="another skeleton"):
+    with pytest.raises(EditError, match="a different skeleton"):
         m.add_states(edits.add_clips(project(), [("strange.glb", 0, "", strange)]), ["c9"], "arms")
 
 

@@ -7,7 +7,7 @@ from PySide6.QtCore import QPointF, Qt
 from app.features.manual.drags.host import ManualHost
 from app.features.manual.drags.node import NodeDrag
 from app.features.manual.manual_scene import ManualHit
-from app.translation import tr, tr_phrase
+from app.translation import tr, tr_phrase, tr_plural
 from app.widgets.gesture import Reason
 from metagraph.graph.manual import edits as manual_edits
 
@@ -48,7 +48,7 @@ class DrawLink(NodeDrag):
 
     def _tell(self) -> str:
         count = len(self.nodes) * len(self.targets)
-        return tr("{count} links at once", count=count) if self.target and count > 1 else ""
+        return tr_plural("{count:,} link", "{count:,} links", count) if self.target and count > 1 else ""
 
     def finish(self, at: QPointF) -> None:
         self.update(at)
@@ -62,7 +62,7 @@ class DrawLink(NodeDrag):
         elif self.target:
             self.host.add_links(self.nodes, self.targets)
         else:
-            self.host.refuse(tr("let a link go on a state"))
+            self.host.refuse(tr("drop the link on a state"))
 
     def cancel(self, reason: Reason) -> None:
         self.host.show_link("", QPointF(), "")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import QPointF
 
 from app.features.manual.drags.node import NodeDrag
-from app.translation import tr
+from app.translation import tr_plural
 from app.widgets.gesture import Reason
 from metagraph.graph.manual import edits as manual_edits
 
@@ -35,7 +35,7 @@ class Move(NodeDrag):
         self.host.drag_nodes({})
         if places:
             layer = self.host.session.place.layer
-            text = tr("Move node") if len(places) == 1 else tr("Move {places} nodes", places=len(places))
+            text = tr_plural("Move {count:,} node", "Move {count:,} nodes", len(places))
             self.host.document.edit(text, lambda p: manual_edits.move_nodes(p, layer, places))
 
     def cancel(self, reason: Reason) -> None:

@@ -45,8 +45,8 @@ class KeptDrag(RowsDrag):
             by = min(max(by, -self.kept.first), last - self.kept.last)
             self.now = replace(self.kept, first=self.kept.first + by, last=self.kept.last + by)
             moment = self.now.first
-        kept = tr("kept {first:.2f} to {last:.2f} s", first=self.now.first, last=self.now.last)
-        host.held = f"{self.kept.hand} {kept if self.now.last > self.now.first else tr('let go')}"
+        kept = tr("held {first:.2f} to {last:.2f} s", first=self.now.first, last=self.now.last)
+        host.held = f"{self.kept.hand} {kept if self.now.last > self.now.first else tr('released')}"
         host.snapped, host.snaps, host.stretched = snap, self.snaps, (self.facts.action.id, self.now)
         host.transport.scrub(self.facts.action.clip, moment)
         host.update()
@@ -62,7 +62,7 @@ def _snaps(facts: Facts, playhead: float | None) -> Iterator[Snap]:
         if handle.name not in ("in", "out"):
             yield Snap(handle.at, tr("the action's {handle}", handle=vocabulary_word(WORDS[handle.name])))
     for stay in facts.stays:
-        yield Snap(stay.first, tr("the clip is held from here on"))
-        yield Snap(stay.last, tr("the clip goes on here"))
+        yield Snap(stay.first, tr("start of the inserted hold"))
+        yield Snap(stay.last, tr("end of the inserted hold"))
     if playhead is not None:
         yield Snap(playhead, tr("the playhead"))

@@ -26,7 +26,7 @@ class StayDrag(RowsDrag):
         longer = (at.x() - self.origin.x()) / self.host.axis.each
         self.seconds = round(min(max(0.0, self.stay.hold.seconds + longer), LONGEST), 2)
         self.host.held = (
-            tr("held {seconds:.2f} s", seconds=self.seconds) if self.seconds >= SHORTEST else tr("no hold")
+            tr("hold of {seconds:.2f} s", seconds=self.seconds) if self.seconds >= SHORTEST else tr("no hold")
         )
         self.host.update()
 

@@ -185,7 +185,7 @@ def test_the_button_in_the_view_has_it_all_and_what_was_chosen_is_kept(shown):
     menu.aboutToShow.emit()
     actions = {a.text().replace("&", ""): a for a in menu.actions() if not a.isSeparator()}
     assert {
-        "Marks of the feet",
+        "Foot contacts",
         "Ghost of the stance",
         "Onion skin",
         "Show the skeleton",

@@ -74,9 +74,9 @@ def test_reading_that_was_cancelled_is_told_and_begun_anew_when_it_is_chosen_aga
 def test_while_a_machine_is_drawn_the_panel_says_that_it_moves_the_character(talk: Any) -> None:
     panel, drive = talk.drive.conversation, talk.drive
     drive.actions["manual"].trigger()
-    drive.wait(lambda: "the machine you draw" in panel.title.words)
+    drive.wait(lambda: "The manual state machine" in panel.title.words)
     drive.actions["manual"].trigger()
-    drive.wait(lambda: "the machine you draw" not in panel.title.words)
+    drive.wait(lambda: "The manual state machine" not in panel.title.words)
 
 
 def test_sound_dropped_on_the_panel_opens_the_dialog(talk: Any) -> None:
@@ -113,7 +113,7 @@ def test_a_click_on_a_name_shows_that_ones_plan_and_marks_it_and_leaves_the_rest
     assert (mark(0), mark(1)) == (plain, marked)
     assert talk.editing.chosen == {(0, 2)}
     assert (view.first, view.each) == (3.0, 50.0)
-    assert "Performance shows" in view.tip(name.toPointF())
+    assert "The Performance panel shows" in view.tip(name.toPointF())
 
 
 def test_a_playhead_that_is_moved_out_of_sight_is_followed_and_one_in_sight_is_not(talk: Any) -> None:

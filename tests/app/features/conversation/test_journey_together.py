@@ -44,7 +44,7 @@ def test_dropped_seen_heard_and_written(drive: Any, tmp_path: Path) -> None:
         assert all(a.stroke in peaks and abs(found[a.id] - a.stroke) <= 0.1 for a in asked)
         nods += len(one.plan.layers["head"].cues)
     assert nods >= 2
-    drive.wait(lambda: "75 % and 75 % were asked for" in drive.conversation.title.words)
+    drive.wait(lambda: "the rates ask for 75 % and 75 %" in drive.conversation.title.words)
     drive.actions["rates"].trigger()
     rates = drive.window.findChild(SideRatesDialog)
     assert rates.delivered.isVisible() and rates.delivered.text().count("asked 75 %, drawn") == 2

@@ -169,7 +169,7 @@ def test_what_cannot_be_done_is_told_and_leaves_no_step(talk: Any) -> None:
     talk.editing.select({(0, len(talk.segments()) - 1)})
     press(talk, Key.Key_M)
     assert [w.split(":")[0] for w in talk.drive.told] == [
-        "No segment is here",
+        "There is no segment here. Move the playhead or the pointer to where you want to split one.",
         "There is no segment after this one to merge it with.",
     ]
     assert steps(talk) == before

@@ -49,7 +49,7 @@ def test_what_lies_beside_the_project_is_offered_and_what_is_so_is_checked(two):
     drive, ident = two
     found = choices(make_partner_menu(drive.conversation, drive.document, ident, 0))
     assert list(found["Character"])[1:] == ["ada", "ben"]
-    assert list(found["Body language, moved by"]) == ["This project", "other"]
+    assert list(found["Body language from"]) == ["This project", "other"]
     assert list(found["Voice"]) == ["No sound", "talk.wav, left", "talk.wav, right", "solo.wav"]
     checked = [[x.isChecked() for x in of.values()].index(True) for of in found.values()]
     assert checked == [0, 0, 1], "the project's own character, this project, the left of the sound"
@@ -82,4 +82,4 @@ def test_the_menu_bar_offers_the_same_for_all_who_talk(two):
     assert [x.text() for x in menu.actions()] == ["Ada", "Ben"]
     assert [x.text() for x in menu.actions()[0].menu().actions() if x.text()][
         -1
-    ] == "Others, and where it stands…"
+    ] == "More options and position…"

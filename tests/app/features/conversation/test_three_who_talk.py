@@ -93,17 +93,17 @@ def test_whom_a_segment_is_said_to_is_told_chosen_and_undone(drive: Any) -> None
         lane = place_segment_lanes(view.width(), view.height(), 3)[0]
         return str(view.tip(QPoint(round(view.scale().x(1.5)), round(lane.segments.center().y())).toPointF()))
 
-    assert tip().endswith("To Ben, as it seems"), "he answers"
+    assert tip().endswith("To Ben (detected)"), "he answers"
     editing.select({(0, 0)})
     whom = next(a.menu() for a in view.menu(1.5).actions() if a.text() == "Said to")
-    assert [a.text() for a in whom.actions()] == ["As it is inferred", "Everybody", "Ben", "Cleo"]
+    assert [a.text() for a in whom.actions()] == ["Automatic", "Everyone", "Ben", "Cleo"]
     assert [a.isChecked() for a in whom.actions()] == [True, False, False, False]
     whom.actions()[3].trigger()
     assert tip().endswith("To Cleo")
     segment = drive.document.project.conversations[ident].sides[0].segments[0]
     assert segment.to == 2
     next(a.menu() for a in view.menu(1.5).actions() if a.text() == "Said to").actions()[1].trigger()
-    assert tip().endswith("To everybody") and editing.segment((0, 0)).to == EVERYBODY
+    assert tip().endswith("To everyone") and editing.segment((0, 0)).to == EVERYBODY
     drive.document.undo_stack.undo()
     assert editing.segment((0, 0)).to == 2
 

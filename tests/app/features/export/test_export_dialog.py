@@ -55,7 +55,7 @@ def test_every_target_is_offered_and_says_what_it_writes_and_loses(toys):
         for words in registry.losses(drive.document.project, name):
             assert words[:25] in dialog.losses.text().replace("&#x27;", "'")
         assert ("Experimental" in dialog.losses.text()) == bool(target.untried)
-        assert dialog.vectors.isHidden() == (target.group != "Played as the preview does")
+        assert dialog.vectors.isHidden() == (target.group != "Same playback as the preview")
         assert dialog.compress.isHidden() != target.unpacks
     dialog.reject()
 

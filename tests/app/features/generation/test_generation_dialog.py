@@ -93,7 +93,7 @@ def takes(folder: Path) -> Path:
 
 def test_a_model_moves_a_side_of_a_conversation_and_one_undo_takes_it_back(shown, tmp_path):
     drive, dialog = shown
-    assert dialog.use.model.currentText() == "tiny" and "this project's figure" in dialog.use.about.text()
+    assert dialog.use.model.currentText() == "tiny" and "this project's skeleton" in dialog.use.about.text()
     assert dialog.use.side.currentText() == "talk: Ada" == dialog.use.speech.currentText()
     shot(dialog, "use")
     dialog.use.seed.setValue(7)
@@ -188,7 +188,7 @@ def test_takes_are_listed_with_what_is_wrong_with_them_in_words(shown, tmp_path)
     learn.look_through([takes(tmp_path / "takes"), tmp_path / "gone"])
     drive.wait(lambda: not learn.busy and learn.table.rowCount() > 0, 60)
     rows = [[learn.table.item(r, c).text() for c in range(4)] for r in range(learn.table.rowCount())]
-    bad = [r for r in rows if r[1] == "left out"]
+    bad = [r for r in rows if r[1] == "skipped"]
     assert len(bad) == 3 and {"gone", "talk4.glb", "talk3"} == {r[0] for r in bad}, bad
     assert any("no sound beside it" in r[3] for r in bad) and any("silent" in r[3] for r in bad)
     good = [r for r in rows if r not in bad]
@@ -320,7 +320,7 @@ def test_a_training_that_was_cut_short_is_offered_and_not_written_over(shown, tm
     learn.look_through([takes(tmp_path / "takes")])
     drive.wait(lambda: not learn.busy and learn.table.rowCount() > 0, 60)
     learn.start()
-    assert "begun before" in dialog.said.text() and learn.run is None
+    assert "unfinished training" in dialog.said.text() and learn.run is None
     dialog.close()
 
 
@@ -332,11 +332,11 @@ def test_what_a_killed_training_had_learned_can_be_kept_as_it_is(shown, tmp_path
     dialog.tabs.setCurrentWidget(dialog.learn)
     learn = dialog.learn
     learn.begun.which.setCurrentIndex(1)
-    assert "nothing kept yet" in learn.begun.which.currentText() and not learn.begun.keep.isEnabled()
+    assert "nothing saved yet" in learn.begun.which.currentText() and not learn.begun.keep.isEnabled()
     learn.begun.which.setCurrentIndex(0)
     held = hold(folder_of(out))
     press(learn.begun.go)
-    assert "another process" in dialog.said.text() and learn.run is None
+    assert "Another process" in dialog.said.text() and learn.run is None
     held.close()
     press(learn.begun.keep)
     drive.wait(lambda: out.is_file() and learn.run is None, 300)
@@ -353,7 +353,7 @@ def test_a_model_that_is_there_is_not_written_over(shown, tmp_path):
     assert "already" in dialog.said.text() and learn.run is None
     learn.name.setText("a/b")
     learn.start()
-    assert "file's name" in dialog.said.text()
+    assert "file name" in dialog.said.text()
 
 
 def test_without_torch_it_says_what_to_install_and_still_samples(shown, monkeypatch):
@@ -378,7 +378,7 @@ def test_without_a_conversation_it_says_how_to_get_one(shown):
     assert use.side.isVisible() and not use.nobody.isVisible()
     drive.document.edit("No talk", lambda p: replace(p, conversations={}))
     assert not use.side.isVisible() and not use.move_button.isVisible()
-    assert use.nobody.isVisible() and "drop a recording" in use.nobody.text()
+    assert use.nobody.isVisible() and "Drop a recording" in use.nobody.text()
     drive.document.undo()
     assert use.side.isVisible() and use.move_button.isEnabled() and not use.nobody.isVisible()
 

@@ -90,7 +90,7 @@ def test_from_training_to_an_export_that_says_what_was_generated(drive, tmp_path
         assert read_card(tmp_path / "models" / "learned.mgmodel").steps == 40
         # There are more minutes to be had, and nothing is left to keep.
         begun = dialog.learn.begun
-        assert "its time is over" in begun.which.currentText() and not begun.keep.isVisible()
+        assert "training time is up" in begun.which.currentText() and not begun.keep.isVisible()
         assert dialog.learn.preview.moves[0] is not None
         QTest.mouseClick(
             dialog.tabs.tabBar(), Qt.MouseButton.LeftButton, pos=dialog.tabs.tabBar().tabRect(0).center()

@@ -66,7 +66,7 @@ def test_beside_the_nodes_nothing_can_be_dropped(toy, project, area):
 
 
 def test_something_else_than_clips_is_refused_with_what_can_be_dropped(project):
-    assert "only clips" in drop_at(project, "arms", None, None, GraphHit("card"), Load()).words
+    assert "clips, folders" in drop_at(project, "arms", None, None, GraphHit("card"), Load()).words
 
 
 @pytest.mark.parametrize("kind", ["gesture", "fidget", "transition"])
@@ -100,7 +100,7 @@ def test_a_clip_of_another_skeleton_is_refused_by_name(toy, project):
         mixed, "arms", toy.id(mixed, "rest"), None, NODE["gesture"], Load(clips=(toy.id(mixed, "alien"),))
     )
     assert not drop.possible
-    assert "'alien' has another skeleton" in drop.words
+    assert "'alien' has a different skeleton" in drop.words
 
 
 def test_files_can_be_dropped_before_there_is_any_clip():

@@ -159,7 +159,7 @@ def test_the_worst_hole_is_named_first(toy):
     project = edits.place_clips(project, [clip], "arms", "fidget", one)
     assert describe_hole(project, "arms", one) == ""
     project = edits.add_stance(project, "arms", "two", [clip])
-    assert describe_hole(project, "arms", one) == "no way out"
+    assert describe_hole(project, "arms", one) == "no transition out"
 
 
 @pytest.mark.parametrize("wide", [232, 300, 460])

@@ -71,9 +71,9 @@ def test_what_a_drop_in_its_own_node_would_do_is_said(many):
         return drop_at(project, "arms", stance, None, hit, Load(actions=actions))
 
     assert at(GraphHit("row", g2, "gesture"), g0).words.endswith("before *g2*")
-    assert at(GraphHit("row", g2, "gesture", True), g0).words == "list this action last"
-    assert at(GraphHit("node", None, "gesture"), g0, g1).words == "list 2 actions last"
-    assert at(GraphHit("row", many.ids[first], "gesture"), g1).words == "list this action first"
+    assert at(GraphHit("row", g2, "gesture", True), g0).words == "move this action to the end"
+    assert at(GraphHit("node", None, "gesture"), g0, g1).words == "move 2 actions to the end"
+    assert at(GraphHit("row", many.ids[first], "gesture"), g1).words == "move this action to the start"
     for hit in (
         GraphHit("row", g1, "gesture"),
         GraphHit("row", g0, "gesture"),

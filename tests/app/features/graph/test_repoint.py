@@ -31,7 +31,7 @@ def test_what_letting_go_does_is_said(toy):
     assert not repoint_at(project, two, GraphHit("chip", far)).possible, "one of them starts there"
     assert repoint_at(
         project, [toy.id(project, "up to far"), toy.id(project, "up to rest")], GraphHit("chip", rest)
-    ).words.startswith("let go and 2 transitions end")
+    ).words.startswith("release to end 2 transitions")
 
 
 def test_only_transitions_have_an_arrow_to_drag(toy):

@@ -84,7 +84,7 @@ def test_a_mode_has_factors_of_its_own_and_goes_back_to_the_usual(panel):
     assert life(panel).modes["listening"].aversion_rate == 2.0
     assert life(panel).aversion_rate == Life().aversion_rate, "the amount itself stays"
     next(b for b in panel.tabs.parent().findChildren(QToolButton)
-         if b.isVisibleTo(panel) and b.text() == "Back to the usual").click()  # fmt: skip
+         if b.isVisibleTo(panel) and b.text() == "Reset to defaults").click()  # fmt: skip
     assert life(panel).modes == {} and rows["aversion_rate"].number.value() == pytest.approx(
         MANNERS["listening"].aversion_rate
     )
@@ -95,7 +95,7 @@ def test_a_named_mood_sets_its_dials_and_a_dial_moved_makes_it_its_own(panel):
     panel.moods.activated.emit(panel.moods.currentIndex())
     assert (life(panel).valence, life(panel).arousal) == (-0.71, -0.37)
     panel.rows["arousal"].number.setValue(0.25)
-    assert life(panel).arousal == 0.25 and panel.moods.currentText() == "Its own"
+    assert life(panel).arousal == 0.25 and panel.moods.currentText() == "Custom"
     panel.document.undo()
     assert panel.moods.currentText() == "Sad"
     panel.document.undo()

@@ -119,7 +119,7 @@ def test_links_are_selected_by_their_ends_changed_together_and_pasted_for_other_
     hand.key(Qt.Key.Key_C, CONTROL)
     select(hand, "up beat")
     hand.key(Qt.Key.Key_V, CONTROL)
-    assert "drawn already" in hand.told[-1]
+    assert "already exist" in hand.told[-1]
     select(hand, "rest wave rt")
     hand.drive.document.edit(
         "x",
@@ -173,7 +173,7 @@ def test_the_menu_of_an_alias_takes_in_what_was_selected(hand: Hand) -> None:
     manual_commands.fill_canvas_menu(menu, hand.canvas, hand.canvas.scene().hit(box.center(), 1.0))
     hand.drive.pick(menu, "Add 2 selected states")
     assert len(hand.machine.aliases[ident].states) == 3 and chosen(hand) == (ident,)
-    assert "stands for rest loop" in manual_commands.describe_canvas_hit(
+    assert "contains rest loop" in manual_commands.describe_canvas_hit(
         hand.canvas, hand.canvas.scene().hit(box.center(), 1.0)
     )
     hand.key(Qt.Key.Key_Delete)

@@ -110,7 +110,7 @@ def test_nothing_that_is_read_is_said_and_cannot_be_imported(open_dialog):
     assert not dialog.go.isEnabled()
     assert "tiers" in dialog.doubts.text()
     assert not any(box.isEnabled() for box in dialog.learn.values()) and not dialog.as_shares.isEnabled()
-    assert dialog.labels.topLevelItem(0).text(0).startswith("Say what the tiers stand for")
+    assert dialog.labels.topLevelItem(0).text(0).startswith("Choose what the tiers mean")
     dialog.tiers.chosen.emit(0, "left arm")
     assert dialog.go.isEnabled(), "to be kept"
     assert dialog.learn["arms"].text() == "Arms (1 action)" and not dialog.learn["arms"].isChecked(), (
@@ -181,4 +181,4 @@ def test_of_several_people_it_is_told_who_is_read(open_dialog):
     dialog = open_dialog(
         Annotation((tier("LH", "beat", participant="A"), tier("LH 2", "beat", "beat", participant="B")))
     )
-    assert "2 people, B " in dialog.facts.text()
+    assert "2 people; these are read: B." in dialog.facts.text()

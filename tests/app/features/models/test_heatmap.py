@@ -193,7 +193,7 @@ def test_the_pointer_says_what_it_points_at(heat):
     assert "left fidget" in heat.said[-1] and "1 to 3 s" in heat.said[-1]
     heat.show_model(DEFAULTS["head"], "head", "light", frozenset({1}))
     QTest.mouseMove(heat, QPoint(21, round(heat.grid().cell(1, 0).center().y())))
-    assert "1 to 3 s" in heat.said[-1] and "passed over" in heat.said[-1]
+    assert "1 to 3 s" in heat.said[-1] and "skipped" in heat.said[-1]
 
 
 def test_another_model_of_fewer_states_leaves_no_cell_outside_of_it(heat):

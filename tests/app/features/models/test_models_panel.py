@@ -68,7 +68,7 @@ def test_the_default_is_shown_and_an_empty_comparison_teaches(panel):
     assert not panel.back.isEnabled() and not panel.chooser.isVisible()
     assert panel.teach.isVisible() and "arms" in panel.teach.text()
     panel.session.place.set_layer("head")
-    assert panel.heat.model is DEFAULTS["head"] and panel.title.text() == "Head: what follows what"
+    assert panel.heat.model is DEFAULTS["head"] and panel.title.text() == "Head: which action follows which"
 
 
 def test_links_and_button_ask_for_an_annotation(panel):
@@ -127,9 +127,9 @@ def test_states_are_added_and_removed_from_the_menu(panel):
     panel.session.place.set_layer("head")
     pick(panel.state_menu(1), "Remove fidget")
     assert [kind for _, kind in panel.heat.model.states] == ["gesture", "transition"]
-    pick(panel.state_menu(-1), "Add a state", "◆ fidget")
+    pick(panel.state_menu(-1), "Add state", "◆ fidget")
     assert [kind for _, kind in panel.heat.model.states] == ["gesture", "fidget", "transition"]
-    assert not any(a.text() == "Add a state" and a.isEnabled() for a in panel.state_menu(0).actions()), (
+    assert not any(a.text() == "Add state" and a.isEnabled() for a in panel.state_menu(0).actions()), (
         "all are there"
     )
     panel.session.place.set_layer("arms")
@@ -163,7 +163,7 @@ def test_what_was_learned_is_compared_with_what_was_seen(panel, reading, qtbot):
     assert panel.chooser.currentText() == "talk" and not panel.teach.isVisible()
     qtbot.waitUntil(lambda: panel.plot.found is not None and panel.plot.found.observed is not None)
     assert panel.plot.found.observed.count == 52
-    assert panel.plot.words.text().startswith("Each comes as often as was seen")
+    assert panel.plot.words.text().startswith("The model makes each action about as often")
     panel.session.place.set_layer("head")
     assert panel.heat.model.tags == ("positive", "negative", "")
     assert panel.share_words.isVisible() and not panel.shares["positive"].isVisible()
@@ -173,7 +173,7 @@ def test_what_was_learned_is_compared_with_what_was_seen(panel, reading, qtbot):
     )
     qtbot.waitUntil(
         lambda: (
-            "Not as seen: gesture, positive came in 72 % of actions, the model makes 10 %."
+            "Differs from what was seen: gesture, positive was 72 % of the actions, but the model makes 10 %."
             in panel.plot.words.text()
         )
     )
@@ -249,7 +249,7 @@ def test_a_model_that_never_makes_what_was_seen_is_found_out(reading, qtbot):
     acts = reading.observed["head"]
     never = Markov("head", (("both", "gesture"), ("both", "transition")), ((1.0, 0.0), (1.0, 0.0)))
     found = compare_model(never, [acts])
-    assert describe_model_fit(found).startswith("Not as seen: ")
+    assert describe_model_fit(found).startswith("Differs from what was seen: ")
     plot = ComparePlot(StageSession(Document()))
     qtbot.addWidget(plot)
     plot.show_comparison(found)

@@ -225,7 +225,7 @@ def test_movements_cannot_be_counted_where_nobody_knows_what_was_heard(shown):
     )
     dialog.picked.list.item(row, 0).setCheckState(Qt.CheckState.Unchecked)
     press(dialog.picked.rates_button)
-    assert "what was heard during it" in dialog.said.text()
+    assert "which speaker was heard during it" in dialog.said.text()
 
 
 def test_who_was_heard_during_a_take_can_be_told_and_undone(shown):
@@ -242,7 +242,7 @@ def test_who_was_heard_during_a_take_can_be_told_and_undone(shown):
     )
     drive.wait(menu.isVisible)
     assert [a.text() for a in menu.actions()] == [
-        "nothing known",
+        "not known",
         "talk: Ada",
         "talk: Ben",
     ] and menu.actions()[0].isChecked()

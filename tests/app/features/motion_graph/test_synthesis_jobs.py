@@ -122,7 +122,7 @@ def test_new_motion_goes_with_speech_where_the_takes_know_theirs(sample: Project
         and "cost" in found.words()
     )
     other = synthesise(graph, takes, Wish(2.0, (Segment("response", 0.5, 1.5),), tolerance=0.0), "new")
-    assert "Given up: responses" in other.words() and "shown again within 3 s" in other.words()
+    assert "Given up: responses" in other.words() and "repeats within 3 s" in other.words()
 
 
 @pytest.mark.parametrize(("exact", "search"), [(True, "best"), (False, "greedy")])
@@ -206,5 +206,5 @@ def test_words_and_sounds_of_the_sides_are_compared(tmp_path: Path) -> None:
     assert "words from where a take says them" in found.words()
     plain = synthesise(graph, takes, replace(wish, soft=SoftWish()), "new", folder=tmp_path / "nowhere")
     assert plain.beside == ""
-    with pytest.raises(FileError, match="there is no such sound file"):
+    with pytest.raises(FileError, match="the sound file does not exist"):
         synthesise(graph, takes, wish, "new", folder=tmp_path / "nowhere")

@@ -77,7 +77,7 @@ def test_the_planners_numbers_are_edits(form):
     for _, function in done:
         after = function(after)
     assert (after.settings.memory, after.settings.never_twice) == (60.0, True)
-    assert done[0][0] == "Change remembered for"
+    assert done[0][0] == "Change memory"
 
 
 # --- the handles of the plot

@@ -137,7 +137,7 @@ def test_a_whole_sitting(drive, takes_part, tiny, tmp_path):
     QTest.keyClicks(p.page.questions[0].words, "Nothing.")
     p.go()
     p.titled("Thank you")
-    assert "That was all." in p.page.text.text()
+    assert "That was the last part." in p.page.text.text()
     p.go()
     d.wait(lambda: not p.guide.bar.isVisible())
     assert d.actions["open"].isEnabled() and not d.files.closed and d.session.onstage.mode == "meta"
@@ -236,7 +236,7 @@ def test_who_declines_leaves_a_word_and_may_still_agree(drive, takes_part, tiny)
     drive.wait(lambda: bool(events(tiny, "frozen")))
     (frozen,) = events(tiny, "frozen")
     assert "consent" in frozen["digests"] and any(n.endswith("nod_single_01.glb") for n in frozen["digests"])
-    p.press("I do not take part")
+    p.press("I do not want to take part")
     assert [e["type"] for e in events(tiny, "declined", "phase")] == ["phase", "declined"]
     study = read_study(tiny)
     assert describe_standing(study, "P01") == "declined"
@@ -279,7 +279,7 @@ def test_clips_that_cannot_be_read_are_told_and_can_be_tried_again(drive, takes_
     consent(p)
     p.titled("Practice: Meta-graph")
     p.go()
-    p.titled("This cannot go on")
+    p.titled("The study cannot continue")
     assert "'missing.glb'" in p.page.text.text()
 
 

@@ -80,7 +80,7 @@ def test_a_sitting_is_seen_again(drive, sat, tiny):
     again.seek(
         next(t for e, t in zip(again.part.events, again.part.times, strict=True) if e["type"] == "pause")
     )
-    assert again.bar.told.text() in ("Paused", "Goes on", "Preview: pause")
+    assert again.bar.told.text() in ("Paused", "Resumes", "Preview: pause")
     again.leave()
     assert not d.document.project.clips and d.actions["open"].isEnabled() and not d.document.dirty
 

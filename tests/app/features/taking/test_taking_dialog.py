@@ -85,7 +85,7 @@ def test_actions_copied_are_pasted_once_and_then_are_here_already(drive, toy):
     drive.do("paste_over")
     drive.wait(lambda: any(d.summary.text().startswith("Nothing new") for d in shown(drive)))
     (dialog,) = shown(drive)
-    assert not dialog.take.isEnabled() and "1 action is here already" in dialog.summary.text()
+    assert not dialog.take.isEnabled() and "1 action is already here" in dialog.summary.text()
     dialog.reject()
 
 

@@ -73,11 +73,11 @@ def test_the_title_s_menu_and_tip_say_what_a_click_does(stage):
         "Compact",
         "Normal",
         "Tall",
-        "All lanes as usual",
-        "Let all be seen",
+        "Reset the height of all lanes",
+        "Unmute all layers",
     ]
     menu.actions()[1].trigger()
     assert stage.performance.muted == {"body", "head"}
-    assert "rests" in view.tip(title(view, "body")) and "is seen" in view.tip(title(view, "arms"))
+    assert "is muted" in view.tip(title(view, "body")) and "is visible" in view.tip(title(view, "arms"))
     view.titles.menu("arms").actions()[-1].trigger()
     assert stage.performance.muted == set()

@@ -103,7 +103,7 @@ def test_the_range_can_be_written_alone(stage, monkeypatch):
 
     stage.performance.timeline.set_range(2.0, 5.0)
     dialog = render_dialog.RenderDialog(stage.performance, stage.session, stage.jobs, stage.window)
-    assert dialog.part.currentText() == "The range, 2.00 to 5.00 s" and dialog.seconds.isHidden()
+    assert dialog.part.currentText() == "Loop range, 2.00 to 5.00 s" and dialog.seconds.isHidden()
     orders = []
     monkeypatch.setattr(
         render_dialog, "write_rendering", lambda project, folder, order, job: orders.append(order)
@@ -138,7 +138,7 @@ def test_markers_are_added_named_moved_gone_to_and_removed(stage, monkeypatch):
     assert transport.seconds == 0.5 and timeline.selected.at == 0.5
     stage.do("delete")
     assert [m.name for m in timeline.now.markers] == ["Punch line"]
-    assert "double-click renames" in view.tip(QPointF(x(view, 5.5)))
+    assert "double-click to rename" in view.tip(QPointF(x(view, 5.5)))
 
 
 def test_a_clip_alone_has_no_markers_and_no_range_and_says_so(stage):

@@ -319,7 +319,7 @@ def test_a_hand_is_kept_during_the_looped_part_and_let_go_again(editor):
     clip = editor.document.project.action(editor.ident).clip
     editor.session.transport.set_part((clip, 0.5, 0.9))
     editor.panel.menu.aboutToShow.emit()
-    editor.pick(editor.panel.menu, "Keep the right hand where it is")
+    editor.pick(editor.panel.menu, "Pin the right hand here")
     (contact,) = editor.document.project.clips[clip].retime.contacts
     assert (contact.first, contact.last) == pytest.approx((0.5, 0.9), abs=0.01)
     (kept,) = facts(editor).kept
@@ -327,7 +327,7 @@ def test_a_hand_is_kept_during_the_looped_part_and_let_go_again(editor):
     assert kept.hand == "right hand" and kept.to
     editor.view.grab()
     editor.panel.menu.aboutToShow.emit()
-    editor.pick(editor.panel.menu, "Let go of the hands")
+    editor.pick(editor.panel.menu, "Release the hands")
     assert editor.document.project.clips[clip].retime.plain
     editor.session.transport.set_part(None)
 
@@ -350,7 +350,7 @@ def test_a_drag_of_the_real_pointer_moves_the_end(editor):
 def kept(editor):
     """A hand that is kept from 0.5 to 0.9 s."""
     clip = editor.document.project.action(editor.ident).clip
-    editor.document.edit("Keep hand", lambda p: keep_hand(p, clip, "right", 0.5, 0.9))
+    editor.document.edit("Pin hand", lambda p: keep_hand(p, clip, "right", 0.5, 0.9))
     editor.view.grab()
     editor.contacts = lambda: editor.document.project.clips[clip].retime.contacts
     return editor

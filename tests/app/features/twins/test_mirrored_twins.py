@@ -125,7 +125,7 @@ def test_what_has_no_side_is_told_and_nothing_is_written(saved, toy):
     drive.document.edit("Still", lambda p: replace(project, clips={**project.clips, ident: changed}))
     drive.session.selection.select_clips((ident,))
     drive.actions["twins"].trigger()
-    drive.wait(lambda: "has no side" in drive.window.statusBar().currentMessage())
+    drive.wait(lambda: "does not need a mirrored twin" in drive.window.statusBar().currentMessage())
     assert not (drive.place / FOLDER).exists()
 
 
