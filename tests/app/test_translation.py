@@ -151,11 +151,11 @@ def test_an_import_is_told_in_the_language_whatever_files_are_left_out(english: 
     )
     lines = [tr_phrase(line) for line in import_words.count_alike(result.failures)]
     assert lines[0] == (
-        "bad.bvh, ihre ersten Bytes: sie ist etwas anderes, nicht eine BVH-Datei. "
-        f"Clips werden gelesen aus {', '.join(clip_suffixes())}."
+        "bad.bvh, ihre ersten Bytes: sie ist eine Datei anderer Art, nicht eine BVH-Datei. "
+        f"Clips werden aus {', '.join(clip_suffixes())} gelesen."
     )
     assert lines[1].startswith("worse.glb, ihre ersten Bytes: sie ist ")
-    assert import_words.describe_import(result) == "Imported 0 clips. Left out: 2 files that cannot be used"
+    assert import_words.describe_import(result) == "Imported 0 clips. Skipped: 2 unusable files"
 
 
 def test_what_targets_write_and_lose_is_said_in_the_language(english: None) -> None:

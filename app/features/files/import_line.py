@@ -19,7 +19,7 @@ from metagraph.formats.import_words import Remedy, count_alike, describe_import,
 from metagraph.formats.imports import Imported
 from metagraph.graph.model import Project
 
-NEXT = tr_noop("Next, choose Label clips, or drag them onto the nodes of the graph.")
+NEXT = tr_noop("Next: choose Label clips, or drag them onto the nodes of the graph.")
 
 
 class ImportLine(QToolBar):

@@ -33,8 +33,8 @@ from metagraph.suggest.jumps.compatibility import Matrix
 
 def test_half_a_mark_says_how_far_off_it_is():
     assert [grade_jump(c) for c in (0, 1, 1.01, 2.0, 2.01, 1e9, inf)] == [0, 0, 1, 1, 2, 2, 3]
-    assert describe_half_cell(0.6, 1.24, "leaves").startswith("leaves at 1.24 s: 0.6 ")
-    assert describe_half_cell(1.8, 0.0, "enters").startswith("enters at 0.00 s: 1.8 times ")
+    assert describe_half_cell(0.6, 1.24, "leaves").startswith("leaves at 1.24 s: no jump, 0.6 ")
+    assert describe_half_cell(1.8, 0.0, "enters").startswith("enters at 0.00 s: jumps, 1.8 times ")
     assert (
         "does not hide it" in describe_half_cell(4.0, 0.0, "enters")
         and describe_half_cell(inf, 0.0, "enters") == "enters: nothing to compare"

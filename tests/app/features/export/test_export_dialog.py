@@ -184,13 +184,13 @@ def test_each_target_has_a_folder_of_its_own_and_its_own_result(toys, tmp_path, 
     drive.wait(lambda: dialog.open_button.isEnabled(), 60)
     page = (tmp_path / "toy-export" / "web" / "index.html").read_bytes()
     pick(drive, dialog, "unity")
-    assert not dialog.open_button.isEnabled() and "Written" not in dialog.words.text(), (
+    assert not dialog.open_button.isEnabled() and "Wrote" not in dialog.words.text(), (
         "what was written is the page"
     )
     QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
     drive.wait(lambda: dialog.open_button.isEnabled(), 60)
     pick(drive, dialog, "web")
-    assert "Written" in dialog.words.text() and "index.html" not in dialog.folder.text()
+    assert "Wrote" in dialog.words.text() and "index.html" not in dialog.folder.text()
     assert (tmp_path / "toy-export" / "web" / "index.html").read_bytes() == page
     dialog.reject()
 
@@ -225,7 +225,7 @@ def test_every_target_is_written_by_a_click(toys, tmp_path):
         drive.wait(lambda n=name: n in dialog.results or bool(dialog.trouble.text()), 60)
         if name in dialog.results:
             assert any(path.is_file() for path in (tmp_path / name).rglob("*")), name
-            assert dialog.open_button.isEnabled() and dialog.words.text().startswith("Written: "), name
+            assert dialog.open_button.isEnabled() and dialog.words.text().startswith("Wrote "), name
         else:
             refused[name] = dialog.trouble.text()
     dialog.reject()

@@ -125,7 +125,7 @@ def test_the_details_say_each_thing_once_and_the_line_can_be_closed(drive, line,
         (folder / f"bad{n}.bvh").write_text("HIERARCHY\nROOT Hips\n{\n")
     drive.importing.import_paths([str(folder / "rest.glb"), *(str(folder / f"bad{n}.bvh") for n in range(3))])
     drive.wait(line.isVisible)
-    assert "1 clip." in line.words.text() and "3 files" in line.words.text()
+    assert "1 clip." in line.words.text() and "3 unusable files" in line.words.text()
     press(line.why)
     box = next(b for b in drive.window.findChildren(QMessageBox) if b.isVisible())
     assert box.text() == "Imported 1 clip"

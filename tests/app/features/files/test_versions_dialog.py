@@ -108,7 +108,7 @@ def test_a_save_whose_version_cannot_be_kept_is_whole_and_tells_so(drive, path: 
     assert drive.files.saver.wait() and not drive.document.dirty
     assert read_project(path).name == "third"
     ((title, (line,)),) = told
-    assert title == f"Saved {path.name}, but" and "is a folder" in line
+    assert title == f"Saved {path.name}, with a warning" and "is a folder" in line
 
 
 def test_the_command_waits_for_a_file(drive) -> None:

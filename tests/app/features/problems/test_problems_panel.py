@@ -186,13 +186,13 @@ def test_all_timings_are_mended_in_one_step(toys, toy, wide):
     drive.wait(lambda: len(panel.fixable()) == 2)
     drive.show("problems")
     drive.pause(100)
-    assert panel.all.text() == "Mend 2 problems"
+    assert panel.all.text() == "Fix 2 problems"
     drive.click((panel.all, panel.all.rect().center()))
     assert drive.document.undo_stack.count() == 1
     drive.wait(lambda: not panel.fixable())
     item = panel.tree.topLevelItem(0)
     if item is not None:
-        assert "Go there" in [a.text() for a in panel.menu(item).actions()]
+        assert "Go to the place" in [a.text() for a in panel.menu(item).actions()]
 
 
 @pytest.fixture(scope="module")
@@ -259,7 +259,7 @@ def test_a_stance_that_cannot_be_reached_is_bridged_with_a_press_in_one_step(toy
     assert not drive.canvas.misfits  # a long slow blend is nothing to warn of
     drive.document.undo()
     drive.wait(lambda: len(panel.fixable()) == 5)
-    assert panel.all.text() == "Mend 5 problems"
+    assert panel.all.text() == "Fix 5 problems"
     drive.click((panel.all, panel.all.rect().center()))
     assert stack.count() == 1 and stack.text(0) == "Fix 5 problems"
     drive.wait(lambda: not panel.fixable())

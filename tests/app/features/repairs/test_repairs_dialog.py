@@ -68,10 +68,10 @@ def apply(drive, dialog):
 def test_an_import_tells_each_repair_and_one_is_left_out_in_one_step(drive, folder, dialog):
     assert dialog.headline.text() == "Imported 3 clips"
     groups = [dialog.tree.topLevelItem(n).text(0) for n in range(dialog.tree.topLevelItemCount())]
-    assert [words.split("bind poses")[0] + words[-3:] for words in groups] == ["Drop (2)", "Skip (1)"]
+    assert [words.split()[0] + words[-4:] for words in groups] == ["Remove (2)", "Skip (1)"]
     assert not dialog.go.isEnabled()
     before = drive.document.project.clips["c1"].frames
-    tick(dialog, "Drop", 0)
+    tick(dialog, "Remove", 0)
     assert dialog.go.text() == "Apply 1 change"
     apply(drive, dialog)
     project = drive.document.project
@@ -86,7 +86,7 @@ def test_an_import_tells_each_repair_and_one_is_left_out_in_one_step(drive, fold
 @pytest.mark.parametrize("way", ["reject", "close"])
 def test_what_was_applied_is_done_though_the_dialog_is_closed_at_once(drive, dialog, way):
     before = drive.document.project.clips["c1"].frames
-    tick(dialog, "Drop", 0)
+    tick(dialog, "Remove", 0)
     dialog.go.click()
     getattr(dialog, way)()
     drive.wait(lambda: drive.document.project.clips["c1"].frames == before + 1)
@@ -128,7 +128,7 @@ def test_the_dialog_opens_again_for_what_is_selected(drive, dialog):
 
 def test_a_file_that_went_away_is_told_in_the_dialog(drive, folder, dialog):
     (folder / "a.glb").unlink()
-    tick(dialog, "Drop", 0)
+    tick(dialog, "Remove", 0)
     project = drive.document.project
     QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
     drive.wait(lambda: dialog.trouble.isVisible())

@@ -98,7 +98,7 @@ def test_they_may_be_left_out_and_the_others_of_the_same_drop_come_in(own, folde
     press(dialog.leave)
     drive.wait(
         lambda: any(
-            "Left out: 1 clip of another skeleton. To do: retarget 1 clip" in words for words in drive.said
+            "Skipped: 1 clip with another skeleton. To do: retarget 1 clip" in words for words in drive.said
         )
     )
     assert [e.name for e in drive.document.project.clips.values()] == ["rest", "wave", "nod"]
@@ -146,7 +146,7 @@ def test_a_map_of_the_user_is_offered_in_another_project(own, folder):
     drive.importing.import_paths([str(folder / "rest.glb"), str(folder / "wave.glb")])
     drive.wait(lambda: len(drive.document.project.clips) == 2)
     again = bring(drive, folder, "other0")
-    assert again.map == mine and "before" in again.details.text()
+    assert again.map == mine and "last time" in again.details.text()
     press(again.leave)
 
 

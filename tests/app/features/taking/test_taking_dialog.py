@@ -58,7 +58,7 @@ def test_a_project_is_looked_at_taken_and_taken_back(drive, toy, other, monkeypa
     QTest.mouseClick(dialog.take, Qt.MouseButton.LeftButton)
     drive.wait(lambda: not shown(drive))
     assert names(drive) == before | {"their pose", "their wave"}
-    assert drive.document.undo_stack.undoText() == "Take from theirs"
+    assert drive.document.undo_stack.undoText() == "Import from theirs"
     drive.document.undo()
     assert names(drive) == before
 

@@ -105,7 +105,7 @@ def test_a_clip_of_the_library_is_mirrored_alone(saved):
     drive.wait(lambda: len(drive.document.project.clips) == 4)
     (new,) = drive.session.selection.clips
     assert drive.document.project.clips[new].name == "beat rt" and new not in drive.document.project.uses
-    assert drive.window.statusBar().currentMessage().startswith("1 clip mirrored: beat rt.")
+    assert drive.window.statusBar().currentMessage().startswith("Mirrored 1 clip: beat rt.")
 
 
 def test_what_has_no_side_is_told_and_nothing_is_written(saved, toy):
@@ -144,4 +144,4 @@ def test_it_stands_in_the_menus_of_actions_and_clips(saved):
     assert drive.actions["twins"] in drive.canvas.row_actions
     entry = next(iter(drive.document.project.clips.values()))
     texts = [a.text().replace("&", "") for a in drive.library.acts.menu(entry).actions()]
-    assert "Make mirrored twin" in texts and "Repairs…" in texts
+    assert "Make mirrored twins" in texts and "Repairs…" in texts
