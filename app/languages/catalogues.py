@@ -118,11 +118,10 @@ def write_catalogue(catalogue: Catalog, path: Path) -> None:
 
 
 def update(path: Path, texts: Catalog) -> None:
-    """Bring a catalogue up to date. A text that resembles one that is gone takes its translation, marked as
-    fuzzy: it is shown in English until a translator has looked at it.
-    """
+    """Bring a catalogue up to date. Texts that are gone stay in it as comments, for who translates a similar
+    one."""
     catalogue = read_catalogue(path)
-    catalogue.update(texts, update_creation_date=False)
+    catalogue.update(texts, no_fuzzy_matching=True, update_creation_date=False)
     catalogue.creation_date = catalogue.revision_date = BEGUN
     write_catalogue(catalogue, path)
     missing = sum(not message.string or message.fuzzy for message in catalogue if message.id)

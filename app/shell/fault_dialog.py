@@ -96,8 +96,8 @@ def _sentence(safe: bool) -> str:
         )
         if safe
         else tr(
-            "Something in the window failed, and no file has your last edits. Save the project now, "
-            "in another place if necessary."
+            "Something in the window failed, and your last edits are not in any file. Save the "
+            "project now, in another place if necessary."
         )
     )
     then = tr(

@@ -199,7 +199,7 @@ class Workspaces(QObject):
         if not self.tab.own:
             raise ValueError(
                 tr(
-                    "The workspace {title} is built in and cannot be renamed.",
+                    "The workspace {title} is built in: it cannot be renamed or deleted.",
                     title=self.tab.title,
                 )
             )

@@ -245,7 +245,7 @@ def test_edits_that_are_in_no_file_are_said_to_be(qtbot, teller):
         teller.document.edit("Change", lambda p: edits.set_settings(p, seed=7))
         raised(zero)
         dialog = dialog_of(qtbot, teller)
-    assert "in no file" in dialog.sentence.text()
+    assert "not in any file" in dialog.sentence.text()
 
 
 def test_what_can_be_mended_by_the_user_is_said_in_the_status_bar(qtbot, teller):

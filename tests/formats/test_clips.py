@@ -58,7 +58,7 @@ def test_a_file_of_nothing_but_poses_keeps_them(tmp_path: Path) -> None:
         ("a.bvh", b"", ("empty",)),
         ("a.glb", b"version https://git-lfs.github.com/spec/v1\n", ("LFS",)),
         ("a.glb", b"<!DOCTYPE html>", ("web page",)),
-        ("a.bvh", b"\xff\xfb\x90\x44", ("something else",)),
+        ("a.bvh", b"\xff\xfb\x90\x44", ("another kind of file",)),
         ("a.txt", b"hello", ("extension", ".bvh")),
         ("a", b"hello", ("extension",)),
     ],

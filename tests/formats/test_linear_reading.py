@@ -78,7 +78,7 @@ def test_a_bvh_file_whose_joints_hang_too_deep_is_refused_with_the_line(tmp_path
     (tmp_path / "fits.bvh").write_text(_bvh(JOINTS_DEEP - 1))
     assert len(read_bvh(tmp_path / "fits.bvh").skeleton) == JOINTS_DEEP - 1
     (tmp_path / "deep.bvh").write_text(_bvh(JOINTS_DEEP + 1))
-    with pytest.raises(FileError, match=rf"line \d+: .*{JOINTS_DEEP} deep"):
+    with pytest.raises(FileError, match=rf"line \d+: .*{JOINTS_DEEP} levels deep"):
         read_bvh(tmp_path / "deep.bvh")
 
 

@@ -108,7 +108,7 @@ def test_a_deleted_projects_edits_are_offered_and_saving_writes_it_again(desk, s
     desk.save()
     qtbot.waitUntil(lambda: desk.idle() and not desk.document.dirty)
     assert read_project(saved).settings.seed == 8
-    assert "has written it again" in desk.words[-1]
+    assert "was written again" in desk.words[-1]
 
 
 @pytest.mark.parametrize("content", [b"", b"\x00" * 5000, b"a: [", b"metagraph: 1\nsettings: 3\n"])

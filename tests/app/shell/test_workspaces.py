@@ -146,7 +146,7 @@ def test_a_workspace_of_ones_own_is_saved_renamed_reset_and_deleted(drive, qtbot
         assert other.workspaces.current == "talk" and [t.id for t in other.workspaces.tabs] == IDS
         assert not other.actions["delete_workspace"].isEnabled()
         assert not other.actions["workspace_6"].isVisible()
-        with pytest.raises(ValueError, match="comes with the program"):
+        with pytest.raises(ValueError, match="is built in"):
             other.workspaces.delete()
         with pytest.raises(LookupError, match="no workspace 'own-1'"):
             other.workspaces.choose("own-1")

@@ -55,4 +55,4 @@ def test_limbs_that_differ_press_none(qtbot):
         assert pressed(row) == [LIMBS.index(limb)]
     row.show_limb(Mixed)
     assert pressed(row) == []
-    assert "right arm; the other keeps to the stance" in " ".join(b.toolTip() for b in row.group.buttons())
+    assert "right arm; the other arm follows the stance" in " ".join(b.toolTip() for b in row.group.buttons())

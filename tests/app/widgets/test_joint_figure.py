@@ -155,7 +155,7 @@ def test_by_keys_alone_chosen_joints_are_ticked_and_move_farther_or_less_far(toy
     assert dialog.weights.now[arm] == 1
     dialog.strength.setValue(0.5)
     QTest.keyClick(
-        next(b for b in dialog.findChildren(QPushButton) if "chosen" in b.text()), Qt.Key.Key_Space
+        next(b for b in dialog.findChildren(QPushButton) if "selected" in b.text()), Qt.Key.Key_Space
     )
     assert dialog.weights.now[arm] == 0.5
 

@@ -55,7 +55,7 @@ def test_each_may_speak_another_language() -> None:
 def test_too_few_words_are_undecided_and_read_as_the_others_are() -> None:
     codes, notes = read(side("fr"), told("ok mh"))
     assert codes == ["fr", "fr"]
-    assert "Ben: 2 words" in notes[1] and "undecided" in notes[1] and "like the other" in notes[1]
+    assert "only 2 words" in notes[1] and "undecided" in notes[1] and "like the other" in notes[1]
     assert read(side("fr"), TranscribedSide())[0] == ["fr", "fr"]  # the lists are one
 
 
@@ -71,7 +71,7 @@ def test_what_nobody_knows_is_told_and_left_to_sound() -> None:
     codes, notes = read(side("Swedish"), side("en", 1))
     assert codes == [None, "en"] and "for en, de" in notes[0]
     codes, notes = read(side("Korean"), told("네"))
-    assert codes == [None, None] and "not known" in notes[1]
+    assert codes == [None, None] and "unknown" in notes[1]
 
 
 def test_a_choice_is_kept_and_doubted_aloud() -> None:

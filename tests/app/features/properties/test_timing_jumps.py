@@ -75,7 +75,7 @@ def test_words_name_cost_and_blend(toy, wide):
     words = words_at(wide, action, seen, 1.5)
     assert (
         words.startswith("At 1.50 s it leaves to 'rest': ")
-        and "times what shows" in words
+        and "times the visible threshold" in words
         and "0.05 s" in words
     )
     assert "no jump, " in words_at(wide, action, seen, 2.4)
@@ -124,7 +124,9 @@ def test_what_the_problems_call_far_is_never_said_to_be_without_a_jump(toy, wide
     words = describe_ends({"Begins": 0.1, "ends": 0.2}, far)
     assert "cm from stance 'rest'" in words and words[0].isupper()
     far = "Begins 20 cm from stance 'x'"
-    assert describe_ends({"Begins": 0.1, "ends": 3.0}, {"Begins": far}).startswith(f"{far}, ends 3.0 times ")
+    assert describe_ends({"Begins": 0.1, "ends": 3.0}, {"Begins": far}).startswith(
+        f"{far}, ends with a jump, 3.0 times "
+    )
 
 
 @pytest.fixture
