@@ -101,7 +101,7 @@ def in_english(text: str) -> str:
     """Return a text that `tr` and its kin returned in English, for logs that others read; other text as it
     is.
     """
-    return text.english if isinstance(text, Shown) else text
+    return text.english if isinstance(text, Shown) else str(text)
 
 
 def group_thousands(count: int) -> str:

@@ -133,7 +133,7 @@ def _read_speech(options: Namespace, paths: list[Path]) -> tuple[TakeSpeech, str
 
     for path in paths:
         if not path.is_file():
-            raise FileError(path, "there is no such sound", remedy="Check where the speech is.")
+            raise FileError(path, "the sound file does not exist", remedy="Check the path of the speech.")
         if path.suffix.lower() not in SOUNDS:
             raise FileError(path, "is no sound", remedy=f"Sounds are {', '.join(SOUNDS)} files.")
     words = _words_beside(paths[0]) if options.words is None else options.words
@@ -180,7 +180,7 @@ def _activity(options: Namespace, speech: TakeSpeech, samples: Any, frames: int)
 
     if speech.conversation is None:
         if len(samples) == 1:
-            print("note: one voice only: it is its own, and the partner never speaks", file=sys.stderr)
+            print("note: only one voice: the speaker's own. The partner never speaks", file=sys.stderr)
         return hear_activity(samples)
     if not speech.conversation.sides[options.side - 1].segments:
         print(f"note: side {options.side} says nothing: it listens", file=sys.stderr)

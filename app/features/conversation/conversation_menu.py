@@ -64,7 +64,7 @@ class ConversationFeature(Feature):
         conversation_commands.ask_for_conversation(self.shell, paths)
 
     def edit_sounds(self) -> None:
-        self.do("side_sounds")
+        self.do("edit_side_sounds")
 
     def fill_partners(self, menu: QMenu) -> None:
         """Fill the menu of who is drawn, moved and heard how."""
@@ -102,7 +102,7 @@ COMMANDS = (
         MENU,
         "settings",
         tr_noop("Re&name conversation…"),
-        partial(ConversationFeature.do, name="rename"),
+        partial(ConversationFeature.do, name="rename_conversation"),
         enabled=is_conversation_staged,
         menus=(SHORT,),
     ),
@@ -111,7 +111,7 @@ COMMANDS = (
         MENU,
         "settings",
         tr_noop("&Rates…"),
-        partial(ConversationFeature.do, name="rates"),
+        partial(ConversationFeature.do, name="edit_rates"),
         enabled=is_conversation_staged,
         tip=tr_noop("How often each speaker gestures and nods"),
         menus=(SHORT,),
@@ -121,7 +121,7 @@ COMMANDS = (
         MENU,
         "settings",
         tr_noop("&Word lists…"),
-        partial(ConversationFeature.do, name="word_lists"),
+        partial(ConversationFeature.do, name="edit_word_lists"),
         enabled=is_conversation_staged,
         tip=tr_noop("Choose which words count as responses and which as hesitations"),
         menus=(SHORT,),
@@ -159,7 +159,7 @@ COMMANDS = (
         MENU,
         "stage",
         tr_noop("Use the &graph's motion"),
-        partial(ConversationFeature.do, name="graph_again"),
+        partial(ConversationFeature.do, name="use_graph_again"),
         enabled=ConversationFeature.moves_without_graph,
         tip=tr_noop("Stop using the new motion that was assembled for this conversation"),
     ),
@@ -189,7 +189,7 @@ COMMANDS = (
         MENU,
         "remove",
         tr_noop("Remove conversation"),
-        partial(ConversationFeature.do, name="remove"),
+        partial(ConversationFeature.do, name="remove_shown_conversation"),
         enabled=is_conversation_staged,
         menus=(SHORT,),
     ),

@@ -75,7 +75,13 @@ class ManualFeature(Feature):
         """Do one of `manual_commands`."""
         from app.features.manual import manual_commands
 
-        getattr(manual_commands, verb)(self.editor.canvas)
+        do = {
+            "remove": manual_commands.remove_selected,
+            "copy": manual_commands.copy,
+            "paste": manual_commands.paste_here,
+            "select_all": manual_commands.select_all,
+        }
+        do[verb](self.editor.canvas)
 
     def offer_verbs(self) -> None:
         for verb, applies in VERBS.items():

@@ -18,7 +18,7 @@ from metagraph.research.study.scores.machines import Score
 STEPS = (5, 10, 20, 35, 50, 75, 100, 152, 250, 400, 700, 1000, 2000, 5000)
 
 
-def growth(material: ExhibitMaterial) -> MadeExhibit:
+def exhibit_growth(material: ExhibitMaterial) -> MadeExhibit:
     """Figures 1 and 2: what is dropped, and what would have to be drawn."""
     project = material.project
     whole = [a.id for a in project.actions()]
@@ -67,7 +67,7 @@ def growth(material: ExhibitMaterial) -> MadeExhibit:
     )
 
 
-def hours(material: ExhibitMaterial) -> MadeExhibit:
+def exhibit_hours(material: ExhibitMaterial) -> MadeExhibit:
     """Section 7.1: 8 hours against 63, which were timed, and ours, which are counted."""
     from metagraph.research.study.machines.by_hand import Way
     from metagraph.research.study.machines.counted_drops import label_by_drops

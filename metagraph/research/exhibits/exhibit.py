@@ -47,8 +47,8 @@ class MadeExhibit:
 @dataclass(frozen=True)
 class Exhibit:
     """name: as it is asked for. paper: key of `published.PAPERS`. place: where in the paper. module: that
-    makes it, `make(material)`. seconds: it takes about, by default and with all. needs: NUMBERS, "project",
-    "takes" or "model".
+    makes it, by its `exhibit_NAME(material)`. seconds: it takes about, by default and with all. needs:
+    NUMBERS, "project", "takes" or "model".
     """
 
     name: str
@@ -61,9 +61,8 @@ class Exhibit:
 
     def make(self, material: ExhibitMaterial) -> MadeExhibit:
         """Return the exhibit. Raises what reading its material raises."""
-        found: MadeExhibit = getattr(import_module(f"metagraph.research.exhibits.{self.module}"), self.name)(
-            material
-        )
+        module = import_module(f"metagraph.research.exhibits.{self.module}")
+        found: MadeExhibit = getattr(module, f"exhibit_{self.name}")(material)
         return found
 
 

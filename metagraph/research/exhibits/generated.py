@@ -38,7 +38,7 @@ QUICK = 100.0  # seconds that are judged, where not all is
 KINDS: tuple[Kind, ...] = ("flow-vae", "moglow", "cvae")
 
 
-def exhibit_distances(material: ExhibitMaterial) -> MadeExhibit:
+def exhibit_distance(material: ExhibitMaterial) -> MadeExhibit:
     """Figure 6: how far landmarks are from the mean pose."""
     found = _judged(material)
     if isinstance(found, str):
@@ -116,7 +116,7 @@ def exhibit_roles(material: ExhibitMaterial) -> MadeExhibit:
     )
 
 
-def sizes(material: ExhibitMaterial) -> MadeExhibit:
+def exhibit_sizes(material: ExhibitMaterial) -> MadeExhibit:
     """Section 7: trainable parameters."""
     rows: list[tuple[str, ...]] = []
     numbers: dict[str, list[float]] = {}

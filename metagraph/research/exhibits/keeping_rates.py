@@ -28,7 +28,7 @@ NEAR = 2.0  # standard errors within which 95 of a hundred shares lie
 EXPECTED = 1.0  # moves below which a share's error is not normal: those are not looked at
 
 
-def delivery(material: ExhibitMaterial) -> MadeExhibit:
+def exhibit_delivery(material: ExhibitMaterial) -> MadeExhibit:
     """What an hour of improvising and of conversation has, beside what was asked for."""
     project = material.project
     improvised = [_improvised(project, layer) for layer in LAYERS if project.graphs[layer].index]

@@ -30,7 +30,7 @@ COUNTS = range(1, 31)  # denominators that could give a row of figure 11
 Case = tuple[str, Sequence[MetaAction], Sequence[MetaAction], str]
 
 
-def replanning(material: ExhibitMaterial) -> MadeExhibit:
+def exhibit_replanning(material: ExhibitMaterial) -> MadeExhibit:
     """Figure 6: meta actions that may clash, and the plan that does not."""
     cases: list[Case] = []
 
@@ -88,7 +88,7 @@ def _kept(project: Project) -> str:
     )
 
 
-def sampling(material: ExhibitMaterial) -> MadeExhibit:
+def exhibit_sampling(material: ExhibitMaterial) -> MadeExhibit:
     """Figure 7's three cases, and the formula under it."""
     project = material.project
     layer = _layer(project)
@@ -203,7 +203,7 @@ def _formula(
     )
 
 
-def variation(material: ExhibitMaterial) -> MadeExhibit:
+def exhibit_variation(material: ExhibitMaterial) -> MadeExhibit:
     """Figures 9 and 12: the same abstract sequence, and none at all, performed again and again."""
     project = material.project
     layer = _layer(project)

@@ -8,7 +8,7 @@ from metagraph.research.exhibits.material import ExhibitMaterial
 from metagraph.research.exhibits.preferences import preferences
 
 
-def ratings(material: ExhibitMaterial) -> MadeExhibit:
+def exhibit_ratings(material: ExhibitMaterial) -> MadeExhibit:
     """Figure 6: what people preferred, by the published test and by an exact one."""
     rows, bars = [], []
     found = preferences()

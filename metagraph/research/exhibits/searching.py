@@ -45,7 +45,7 @@ TRIED = (20, 200)  # seeds of the greedy search
 JOINED = 0.7  # seconds: gaps between a side's clauses that are closed where clauses adjoin
 
 
-def search(material: ExhibitMaterial) -> MadeExhibit:
+def exhibit_search(material: ExhibitMaterial) -> MadeExhibit:
     """Figure 5: what the stochastic search finds with one seed and another, beside the best there is."""
     actor = material.actors[0]
     if len(actor.clips) < 2:
@@ -120,7 +120,7 @@ def search(material: ExhibitMaterial) -> MadeExhibit:
     )
 
 
-def success(material: ExhibitMaterial) -> MadeExhibit:
+def exhibit_success(material: ExhibitMaterial) -> MadeExhibit:
     """Section 8.1: each take held out, its speech asked of all others."""
     rows: list[tuple[str, ...]] = [
         _published("there: all constraints", FOUND),
@@ -222,7 +222,7 @@ SCARCE: tuple[Scarcity, ...] = (
 )
 
 
-def competing(material: ExhibitMaterial) -> MadeExhibit:
+def exhibit_competing(material: ExhibitMaterial) -> MadeExhibit:
     """Where success is below 100 %: fewer and shorter takes, adjoining clauses, rarer kinds."""
     rows: list[tuple[str, ...]] = []
     bars, numbers, odd = [], {}, []

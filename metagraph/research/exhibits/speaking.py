@@ -114,7 +114,7 @@ def _short(hypothesis: str) -> str:
     )
 
 
-def window(material: ExhibitMaterial) -> MadeExhibit:
+def exhibit_window(material: ExhibitMaterial) -> MadeExhibit:
     """Figure 3: a segment, the window twice as long, and what is left of it between neighbours."""
     found = next(_clauses(material), None)
     if found is None:

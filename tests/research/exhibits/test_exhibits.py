@@ -19,7 +19,7 @@ from metagraph.graph.expand import count_machine_size, list_connections
 from metagraph.graph.model import Project
 from metagraph.research.exhibits import generated, searching
 from metagraph.research.exhibits import material as materials
-from metagraph.research.exhibits.authoring import figure_1, hours, keep_first_uses, smaller
+from metagraph.research.exhibits.authoring import exhibit_hours, figure_1, keep_first_uses, smaller
 from metagraph.research.exhibits.exhibit import (
     EXHIBITS,
     NUMBERS,
@@ -33,7 +33,7 @@ from metagraph.research.exhibits.material import ExhibitMaterial, actors_rates, 
 from metagraph.research.exhibits.page import exhibit_as_text, exhibits_as_data, format_exhibits
 from metagraph.research.exhibits.planning import fewest
 from metagraph.research.exhibits.published import FIGURE_6, FIGURE_11, TABLE_1, TABLE_2
-from metagraph.research.exhibits.searching import Scarcity, competing, scarce
+from metagraph.research.exhibits.searching import Scarcity, exhibit_competing, scarce
 
 
 @pytest.fixture(scope="module")
@@ -83,7 +83,7 @@ def test_clips_that_are_used_twice_are_wired_once_and_that_is_told(few: Path) ->
     clip = graph.of(stance, "gesture")[0].clip
     twice = place_clips(project, [clip], "arms", "fidget", stance, None)
     assert len(list(keep_first_uses(twice).actions())) == len(list(project.actions()))
-    shown = hours(ExhibitMaterial(twice))
+    shown = exhibit_hours(ExhibitMaterial(twice))
     assert "1 further uses" in shown.material and shown.says
 
 
@@ -132,8 +132,8 @@ def test_a_side_nobody_recorded_and_one_take_alone_spoil_nothing(
     with pytest.raises(ValueError, match="motion"):
         _ = none.actors
     alone = ExhibitMaterial(sample, talks[:1])
-    assert "be held out" in searching.success(alone).missing
-    assert "cannot be held out" in searching.search(alone).missing
+    assert "be held out" in searching.exhibit_success(alone).missing
+    assert "cannot be held out" in searching.exhibit_search(alone).missing
 
 
 @pytest.mark.skipif(not SHIPPED.is_file(), reason="no learned generator is installed")
@@ -147,11 +147,11 @@ def test_takes_of_another_figure_are_retargeted_before_a_model_is_judged_on_them
     assert other.skeleton != clip.skeleton
     talk = replace(talks[0], clips=(other, None))
     material = ExhibitMaterial(sample, (talk,), "one talk", SHIPPED)
-    shown = generated.exhibit_distances(material)
+    shown = generated.exhibit_distance(material)
     assert not shown.missing and shown.numbers["wrists"]["recorded"] > 0
     (note,) = material.notes
     assert note.startswith("1 takes ") and "retargeted" in note
-    plain = generated.exhibit_distances(
+    plain = generated.exhibit_distance(
         ExhibitMaterial(sample, (replace(talk, clips=(clip, None)),), "one talk", SHIPPED)
     )
     assert shown.numbers["wrists"]["recorded"] == pytest.approx(plain.numbers["wrists"]["recorded"], rel=0.05)
@@ -198,7 +198,7 @@ def test_the_numbers_of_competing_say_who_found_what(
     sample: Project, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(searching, "SCARCE", (Scarcity("few", 3, 20.0),))
-    shown = competing(ExhibitMaterial(sample))
+    shown = exhibit_competing(ExhibitMaterial(sample))
     (few,) = shown.numbers.values()
     best, by_chance = few["all constraints, exact"], few["all constraints, greedy"]
     assert by_chance[0] <= best[0] <= best[1]

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from metagraph.graph.model import Action, Kind, Limb, Project
-from metagraph.research.exhibits.keeping_rates import delivery
+from metagraph.research.exhibits.keeping_rates import exhibit_delivery
 from metagraph.research.exhibits.material import ExhibitMaterial
 
 LIMBS: tuple[Limb, ...] = ("left", "right", "both")
@@ -42,7 +42,9 @@ def whole(sample: Project) -> Project:
 def test_with_every_limb_in_every_stance_an_hour_keeps_to_the_matrix_as_it_is_performed(
     whole: Project,
 ) -> None:
-    arms = next(r for r in delivery(ExhibitMaterial(whole)).numbers["improvised"] if r["layer"] == "arms")
+    arms = next(
+        r for r in exhibit_delivery(ExhibitMaterial(whole)).numbers["improvised"] if r["layer"] == "arms"
+    )
     near, of = arms["performed near"]
     assert arms["limb"] == arms["performed"] == arms["written"]
     assert near >= 0.85 * of and arms["near"] == arms["performed near"]
@@ -50,7 +52,7 @@ def test_with_every_limb_in_every_stance_an_hour_keeps_to_the_matrix_as_it_is_pe
 
 @pytest.mark.nightly
 def test_the_samples_rates_are_performed_within_sampling_error(sample: Project) -> None:
-    shown = delivery(ExhibitMaterial(sample))
+    shown = exhibit_delivery(ExhibitMaterial(sample))
     arms = next(r for r in shown.numbers["improvised"] if r["layer"] == "arms")
     assert 0.99 * arms["written"] <= arms["performed"] <= arms["written"], "but what longer clips cover"
     assert arms["limb"] < arms["performed"], "not every stance has every limb, and that is told"

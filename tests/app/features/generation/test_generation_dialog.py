@@ -193,7 +193,7 @@ def test_takes_are_listed_with_what_is_wrong_with_them_in_words(shown, tmp_path)
     assert any("no sound beside it" in r[3] for r in bad) and any("silent" in r[3] for r in bad)
     good = [r for r in rows if r not in bad]
     assert [r[0] for r in good] == ["talk1", "talk2"] and good[0][1:3] == ["9 s", "by loudness"]
-    assert "3 clips left out" in dialog.said.text() and "Takes · 2" in learn.title.text()
+    assert "3 clips skipped" in dialog.said.text() and "Takes · 2" in learn.title.text()
     cell = learn.table.visualItemRect(learn.table.item(0, 0))
     QTest.mouseClick(learn.table.viewport(), Qt.MouseButton.LeftButton, pos=cell.center())
     assert learn.note.text() == rows[0][3]

@@ -137,7 +137,7 @@ def test_a_whole_sitting(drive, takes_part, tiny, tmp_path):
     QTest.keyClicks(p.page.questions[0].words, "Nothing.")
     p.go()
     p.titled("Thank you")
-    assert "That was the last part." in p.page.text.text()
+    assert "That was all." in p.page.text.text()
     p.go()
     d.wait(lambda: not p.guide.bar.isVisible())
     assert d.actions["open"].isEnabled() and not d.files.closed and d.session.onstage.mode == "meta"
