@@ -329,7 +329,7 @@ def test_clips_of_one_frame_and_long_ones_come_back_as_themselves(tmp_path: Path
         (lambda p: Project(), "nothing to export"),
         (lambda p: edits.remove_actions(p, ["a5", "a6"]), "has no loop"),
         (lambda p: edits.remove_stance(p, "s4"), "nothing to export"),
-        (lambda p: edits.update_actions(p, ["a6"], timing={"end": 99.0}), "'wave' plays 0.00-99.00 s"),
+        (lambda p: edits.update_actions(p, ["a6"], timing={"end": 99.0}), "'wave' plays 0.00 to 99.00 s"),
         (lambda p: edits.update_actions(p, ["a6"], likelihood=0.0), "never plays"),
         (
             lambda p: replace(p, clips={**p.clips, "c2": replace(p.clips["c2"], motion=None)}),
@@ -345,7 +345,7 @@ def test_errors_stop_an_export_with_the_words_of_the_problem(tmp_path: Path, spo
 
 def test_blends_that_are_only_warned_of_are_exported_as_they_play(tmp_path: Path) -> None:
     made = export_project(edits.update_actions(small(), ["a6"], timing={"blend_in": -1.0}), tmp_path)
-    assert any("blends" in w for w in made.warnings)
+    assert any("blend in" in w for w in made.warnings)
     document = json.loads(made.json.read_bytes())
     valid(document)
     assert document["layers"]["arms"]["actions"][1]["blend_in"] == 0

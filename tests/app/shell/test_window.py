@@ -337,7 +337,7 @@ def test_a_refused_drop_says_why_and_changes_nothing(drive, folder, monkeypatch)
     # The same by key, in the status bar.
     drive.session.selection.select_clips((next(iter(before.clips)),))
     drive.key(KEY.Key_4)
-    assert drive.told[-1].startswith("choose the stance")
+    assert drive.told[-1].startswith("first choose the stance")
     assert drive.window.statusBar().currentMessage() == drive.told[-1]
 
 
