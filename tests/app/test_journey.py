@@ -191,8 +191,8 @@ import sys
 sys.path.insert(0, {str(ROOT)!r})
 from pathlib import Path
 from PySide6.QtCore import QTimer
-from app.main import prepare
-app = prepare()
+from app.main import prepare_application
+app = prepare_application()
 from app.main import make_window
 from metagraph.graph import edits
 window = make_window()

@@ -15,7 +15,7 @@ HEAVY = ("numba", "scipy", "trimesh", "torch", "pyqtgraph", "av", "PIL", "ufbx",
 START = f"""
 import sys
 from app import main
-from app.main import open_window, prepare
+from app.main import open_window, prepare_application
 main.UNSEEN = 30_000  # however busy the machine is
 heavy = {HEAVY!r}
 
@@ -25,7 +25,7 @@ def first(window):
 
 once_painted = main._once_painted
 main._once_painted = lambda window, begin: once_painted(window, lambda: (first(window), begin()))
-app = prepare()
+app = prepare_application()
 window = open_window(None, sample=True)
 
 def watch():

@@ -244,8 +244,8 @@ def test_numba_takes_no_settings_from_the_working_folder(tmp_path: Path) -> None
     pytest.importorskip("numba")
     (tmp_path / ".numba_config.yaml").write_text(f"cache_dir: {tmp_path / 'hostile'}\n")
     code = (
-        "from metagraph.common.compiling import compiler\nfrom numba.core import config\n"
-        "compiler()\nconfig.reload_config()\nprint(repr(config.CACHE_DIR))"
+        "from metagraph.common.compiling import find_compiler\nfrom numba.core import config\n"
+        "find_compiler()\nconfig.reload_config()\nprint(repr(config.CACHE_DIR))"
     )
     environ = {**os.environ, "PYTHONPATH": str(ROOT)}
     said = subprocess.run(

@@ -205,7 +205,7 @@ def test_the_window_runs_nothing_of_it(hostile: tuple[Path, Path, dict[str, str]
     code = (
         f"import sys; sys.path.insert(0, {str(ROOT)!r})\n"
         "from pathlib import Path\n"
-        "from app.main import prepare\napp = prepare()\n"
+        "from app.main import prepare_application\napp = prepare_application()\n"
         "from app.project.reveal import open_folder, reveal\n"
         "reveal(Path.cwd() / 'gone' / 'x.bvh')\nopen_folder(Path.cwd())\n"
         "open_folder(Path.cwd() / 'node')\nprint('shown')\n"

@@ -47,8 +47,8 @@ def test_what_is_no_number_makes_none_and_other_kinds_are_left_to_numpy():
 def test_hearing_a_line_imports_no_masked_arrays():
     code = (
         "import sys\n"
-        "from metagraph.speech.lines import read_voice\n"
-        "read_voice('sample_clips/lines/hello.flac')\n"
+        "from metagraph.speech.lines import read_line_voice\n"
+        "read_line_voice('sample_clips/lines/hello.flac')\n"
         "print('numpy.ma' in sys.modules)"
     )
     done = subprocess.run(

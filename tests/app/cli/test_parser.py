@@ -177,7 +177,7 @@ def test_import_with_a_bad_file_is_exit_code_3_and_the_rest_comes_in(
     path = clips.parent / f"p{SUFFIX}"
     assert main(["import", str(path), str(clips)]) == 3
     out, err = capsys.readouterr()
-    assert "3 clips" in out and "1 file" in out
+    assert "3 clips" in out and "1 unusable file" in out
     assert "left out: bad.bvh, " in err
     assert len(read_project(path).clips) == 3
 
@@ -294,7 +294,7 @@ def test_export_of_a_project_with_errors_says_what_to_mend(
 ) -> None:
     save_project(edits.update_actions(read_project(small), ["a6"], likelihood=0.0), small)
     assert main(["export", str(small), "-o", str(small.parent / "game")]) == 1
-    assert "above 0" in capsys.readouterr().err
+    assert "more than 0" in capsys.readouterr().err
 
 
 # --- as a process

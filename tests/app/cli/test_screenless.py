@@ -13,8 +13,8 @@ DRAWING = (
 )
 PAPER = f"""
 import os
-from app.cli.study_papers import papers_maker
-paper = papers_maker()({DRAWING!r})
+from app.cli.study_papers import find_pdf_maker
+paper = find_pdf_maker()({DRAWING!r})
 print(paper[:5], os.environ.get("QT_QPA_PLATFORM"))
 """
 

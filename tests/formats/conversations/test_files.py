@@ -247,7 +247,7 @@ def test_what_is_no_sound_says_so(tmp_path: Path, content: bytes) -> None:
     with pytest.raises(FileError) as caught:
         read_conversation([tmp_path / "a.wav"])
     assert caught.value.remedy
-    with pytest.raises(FileError, match="no such"):
+    with pytest.raises(FileError, match="does not exist"):
         read_conversation([tmp_path / "gone.wav"])
 
 

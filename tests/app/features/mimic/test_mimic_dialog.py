@@ -80,7 +80,7 @@ def test_a_recording_becomes_a_performance_that_plays_and_can_be_undone(
     drive.wait(lambda: drive.performance.shown.length == kept.length and bool(drive.performance.answers()))
     arms = drive.performance.shown.plan.layers["arms"]
     assert drive.document.project.stance(arms.stance_at(14.0)).name == "on hips"
-    assert "stances: the requests are in the performance below" in told(drive)
+    assert "The requests are in the performance below" in told(drive)
     drive.document.undo()
     assert drive.document.project.performances == before
 
