@@ -458,7 +458,8 @@ def main() -> None:
             [
                 sys.executable,
                 "-c",
-                "from app.main import *; app = prepare_application(); w = make_window(); w.make_late_panels(); w.close()",
+                "from app.main import *; app = prepare_application(); w = make_window(); "
+                "w.make_late_panels(); w.close()",
             ],
             check=True,
             cwd=ROOT,
