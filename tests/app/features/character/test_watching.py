@@ -142,7 +142,7 @@ def test_the_next_slide_is_found_and_none_is_said(shown):
     shown.session.transport.show_clip(other)
     shown.wait(lambda: shown.performance.shown.clip == other)
     shown.do("next_slide")
-    shown.wait(lambda: "No foot" in shown.window.statusBar().currentMessage())
+    shown.wait(lambda: "No planted foot" in shown.window.statusBar().currentMessage())
 
 
 def test_the_stance_stands_as_a_ghost_where_the_character_has_left_it(shown):
