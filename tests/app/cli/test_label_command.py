@@ -74,7 +74,7 @@ def test_what_is_not_sure_enough_is_left_with_its_reason(
     shown = capsys.readouterr()
     data = json.loads(shown.out)
     assert data["left"] and 0 < data["labelled"] < len(list(folder.glob("*.glb")))
-    assert "sure" in shown.err
+    assert "certain" in shown.err
     assert "<img" not in Path(data["report"]).read_text()
 
 
