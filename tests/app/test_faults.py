@@ -140,7 +140,7 @@ def test_a_job_that_fails_unforeseen_or_unheard_is_told(qtbot, told):
         jobs.start("quick", lambda _, work=work: work(), quick=True)
     qtbot.waitUntil(lambda: len(heard) == 2 and len(told) >= 2)
     qtbot.wait(50)
-    assert sorted(type(x).__name__ for x in told) == ["Fault", "FileError"], (
+    assert sorted(type(x).__name__ for x in told) == ["FileError", "UncaughtError"], (
         "what was heard and foreseen is not"
     )
     assert "Anna" not in faults.format_fault_report()

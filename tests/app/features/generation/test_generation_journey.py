@@ -104,7 +104,7 @@ def test_from_training_to_an_export_that_says_what_was_generated(drive, tmp_path
     use.minutes.setValue(0.3)
     press(use.cut_button)
     drive.wait(lambda: not use.busy, 120)
-    assert "pieces, not kept yet" in dialog.said.text(), dialog.said.text()
+    assert "pieces, not saved yet" in dialog.said.text(), dialog.said.text()
     pieces = list(use.table.pieces)
     assert len(pieces) >= 3 and len({p.clip.name for p in pieces}) == len(pieces)
 

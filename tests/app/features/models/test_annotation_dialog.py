@@ -108,7 +108,7 @@ def test_cancelling_changes_and_remembers_nothing(open_dialog, document):
 def test_nothing_that_is_read_is_said_and_cannot_be_imported(open_dialog):
     dialog = open_dialog(Annotation((tier("speech", "hello"),)))
     assert not dialog.go.isEnabled()
-    assert "tiers" in dialog.doubts.text()
+    assert "tier" in dialog.doubts.text()
     assert not any(box.isEnabled() for box in dialog.learn.values()) and not dialog.as_shares.isEnabled()
     assert dialog.labels.topLevelItem(0).text(0).startswith("Choose what the tiers mean")
     dialog.tiers.chosen.emit(0, "left arm")
