@@ -55,11 +55,10 @@ TALL = 430  # pixels the panel likes to have, its title included
 IMPORTED = "imported"  # what was read last, whether or not it was kept
 MERGE = "matrix"
 TEACH = tr_noop(
-    "<b>No annotation has been imported yet:</b> this is the {origin}. Annotate a video in "
-    "ELAN, with a tier for each arm, the head and the body and labels such as <i>gesture, "
-    "fidget, stance-transition, nodding</i>. <a href='learn'>Import the .eaf file</a> or "
-    "drop it on the window: Metagraph counts which action follows which and makes the "
-    "model from that. <a href='sample'>Try the sample annotation.</a>"
+    "<b>No annotation yet:</b> this is the {origin}. Annotate a video in ELAN, with a tier for each arm, the "
+    "head and the body and labels such as <i>gesture, fidget, stance-transition, nodding</i>. "
+    "<a href='learn'>Import the .eaf file</a> or drop it on the window to learn the model from it. "
+    "<a href='sample'>Try the sample annotation.</a>"
 )
 
 
