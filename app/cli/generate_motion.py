@@ -170,7 +170,7 @@ def _check(speech: TakeSpeech, samples: Any, place: str) -> None:
         raise FileError(place, "is silent", remedy="Check the microphone, or what was exported.")
     if max(speech.clipped, default=0.0) > 1e-4:
         share = 100 * max(speech.clipped)
-        print(f"note: {share:.2g} % of the sound is cut off at full scale: record it softer", file=sys.stderr)
+        print(f"note: {share:.2g} % of the sound is clipped. Record it at a lower level", file=sys.stderr)
 
 
 def _activity(options: Namespace, speech: TakeSpeech, samples: Any, frames: int) -> Any:

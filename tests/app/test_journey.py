@@ -175,7 +175,7 @@ def test_the_alien_is_imported_dropped_timed_saved_killed_reopened_and_exported(
     recovering.answers(monkeypatch, person)
     drive.files.open(path)
     drive.wait(lambda: drive.document.project.action(gesture.id).likelihood == 2.5, 30)
-    assert "1 edit" in person.asked[0]
+    assert "1 unsaved edit" in person.asked[0]
     assert drive.document.dirty, "recovered edits are not saved yet"
     assert drive.document.project.graphs["head"] == saved.graphs["head"]
 
