@@ -109,6 +109,11 @@ def group_thousands(count: int) -> str:
     return f"{_show(count):,}"
 
 
+def format_number(value: float, form: str) -> str:
+    """Return a number in a format of `format`, as the chosen language writes it: "2.25"."""
+    return _localize(format(value, form))
+
+
 class _Int(int):
     """A whole number that is formatted as the chosen language writes it."""
 

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QToolTip, QWidget
 
 from app.look.theme import KIND_MARKS, WindowTheme, theme
 from app.stage.session import StageSession
-from app.translation import tr
+from app.translation import format_number, tr
 from app.widgets.vocabulary import vocabulary_title
 from metagraph.graph.model import KINDS, Layer
 from metagraph.playback.learning.learn import Act, describe_state, state_of
@@ -33,7 +33,7 @@ def place_act(lane: QRectF, act: Act, layer: Layer) -> tuple[float, float]:
 def format_clock(seconds: float) -> str:
     """Return "12 s", "1:05", "1:00:05"."""
     if seconds < 60:
-        return f"{seconds:g} s"
+        return f"{format_number(seconds, 'g')} s"
     hours, rest = divmod(round(seconds), 3600)
     minutes, left = divmod(rest, 60)
     return f"{hours}:{minutes:02d}:{left:02d}" if hours else f"{minutes}:{left:02d}"

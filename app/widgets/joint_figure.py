@@ -13,7 +13,7 @@ from PySide6.QtGui import QColor, QFont, QHelpEvent, QMouseEvent, QPainter, QPai
 from PySide6.QtWidgets import QToolTip, QWidget
 
 from app.look.theme import theme
-from app.translation import tr
+from app.translation import format_number, tr
 from metagraph.motion.skeleton import Skeleton
 from preview.joints import is_control
 
@@ -178,7 +178,7 @@ class JointFigure(QWidget):
 
 def format_weight(weight: float) -> str:
     """Return a weight as it is shown, such as 0.25, and 1."""
-    return f"{weight:.2f}".rstrip("0").rstrip(".")
+    return format_number(round(weight, 2), "g")
 
 
 def _between(low: QColor, high: QColor, share: float) -> QColor:

@@ -15,6 +15,7 @@ from app.look.names import node_names, plain_action_name
 from app.look.shortening import shorten_to_font, shorten_to_lines_in_font
 from app.look.theme import KIND_MARKS, WindowTheme
 from app.stage.playback_source import ShownPlayback
+from app.translation import format_number
 from app.widgets.lane_geometry import (
     EVEN,
     LEFT,
@@ -134,7 +135,7 @@ def _ruler(painter: QPainter, t: WindowTheme, scene: LaneScene) -> None:
     painter.setPen(QColor(t.dim))
     while scale.x(mark) < scene.width:
         x = scale.x(mark)
-        words = f"{mark:g} s" if step < 60 else f"{mark / 60:g} min"
+        words = f"{format_number(mark, 'g')} s" if step < 60 else f"{format_number(mark / 60, 'g')} min"
         if x >= LEFT - 1 and x + painter.fontMetrics().horizontalAdvance(words) / 2 + 1 <= scene.width:
             painter.drawText(QRectF(x - 40, 0, 80, NUMBERS), Qt.AlignmentFlag.AlignCenter, words)
         mark = round(mark + step, 3)

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QInputDialog, QMenu, QWidget
 from app.look.theme import KIND_MARKS
 from app.project.document import Document
 from app.stage.performance import StagePerformance
-from app.translation import lazy_texts, tr, tr_noop
+from app.translation import format_number, lazy_texts, tr, tr_noop
 from app.widgets.vocabulary import vocabulary_title, vocabulary_word
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, MODES, Layer, Project
@@ -89,8 +89,9 @@ def describe_mood(mood: a.MoodPoint, intensity: float | None) -> str:
     if isinstance(mood, str):
         named = vocabulary_word(mood)
     elif mood:
-        named = f"{named} {', '.join(f'{x:g}' for x in mood)}"
-    return named if intensity is None else f"{named} × {intensity:g}"
+        values = ", ".join(format_number(x, "g") for x in mood)
+        named = f"{named} {values}"
+    return named if intensity is None else f"{named} × {format_number(intensity, 'g')}"
 
 
 Ask = Callable[[a.AnyRequest, str], object]

@@ -22,7 +22,7 @@ from app import translation
 from app.features.labelling import review_words
 from app.languages.catalogues import Marked, collect_texts, find_marked, read_catalogue, write_catalogue
 from app.look.domain_words import KIND_TITLES
-from app.translation import FOLDER, tr, tr_context, tr_error, tr_phrase, tr_plural
+from app.translation import FOLDER, format_number, tr, tr_context, tr_error, tr_phrase, tr_plural
 from metagraph.common.wording import Phrase, phrase, plural_phrase
 from metagraph.engines.targets import registry
 from metagraph.errors import FileError
@@ -266,6 +266,7 @@ def test_numbers_are_written_as_the_language_writes_them(english: None) -> None:
     assert tr("{shown} clips", shown=1200) == "1200 clips"  # as it is asked for
     assert tr("{seconds:.1f} s", seconds=np.float64(2.25)) == "2,2 s" and tr("{n}", n=0.5) == "0,5"
     assert tr("{flag}", flag=True) == "True"
+    assert format_number(2.25, "+.2f") == "+2,25" and format_number(4.0, "g") == "4"
 
 
 @pytest.mark.parametrize(

@@ -8,13 +8,18 @@ import pickle
 
 import pytest
 
-from metagraph.common.wording import Phrase, change_quoted, phrase, translate_phrase
+from metagraph.common.wording import Phrase, change_quoted, phrase, plural_phrase, translate_phrase
 from metagraph.errors import FileError
 
-GERMAN = {"{who} has {count:d} legs": "{who} hat {count:d} Beine", "a cow": "eine Kuh"}
+GERMAN = {
+    "{who} has {count:d} legs": "{who} hat {count:d} Beine",
+    "a cow": "eine Kuh",
+    "{count} cows": "{count} Kühe",
+}
 
 
-def german(template: str) -> str:
+def german(words: Phrase) -> str:
+    template = words.plural if words.plural and words.values["count"] != 1 else words.template
     return GERMAN.get(template, template)
 
 
@@ -23,6 +28,13 @@ def test_words_are_english_text_wherever_they_go() -> None:
     assert words == "Ann has 2 legs" and {words: 1}["Ann has 2 legs"] == 1
     assert f"{words}." == "Ann has 2 legs." and json.dumps([words]) == '["Ann has 2 legs"]'
     assert type(str(words)) is str
+
+
+def test_a_count_chooses_between_one_and_many() -> None:
+    one, two = (plural_phrase("one cow", "{count} cows", count) for count in (1, 2))
+    assert (one, two) == ("one cow", "2 cows")
+    assert translate_phrase(two, german) == translate_phrase(copy.copy(two), german) == "2 Kühe"
+    assert translate_phrase(pickle.loads(pickle.dumps(one)), german) == "one cow"
 
 
 def test_words_are_said_again_in_another_language_and_so_are_those_within() -> None:

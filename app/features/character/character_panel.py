@@ -25,7 +25,7 @@ from app.stage.playback_source import ASIDE
 from app.stage.playhead import Playhead
 from app.stage.session import StageSession
 from app.stage.stools import stools
-from app.translation import tr, tr_noop
+from app.translation import format_number, tr, tr_noop
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
 from app.widgets.one_stop import OneStop
@@ -171,7 +171,7 @@ class PreviewPanel(QWidget):
         self.loop_button.setChecked(self.session.transport.loop)
         self.speed_box = ComboBox(self, toolTip=tr("Speed"))
         self.speed_box.setAccessibleName(tr("Speed"))
-        self.speed_box.addItems([f"{s:g}×" for s in SPEEDS])
+        self.speed_box.addItems([f"{format_number(s, 'g')}×" for s in SPEEDS])
         self.speed_box.setCurrentIndex(SPEEDS.index(1.0))
         self.speed_box.activated.connect(lambda i: setattr(self.session.transport, "speed", SPEEDS[i]))
         row.addWidget(self.speed_box)
@@ -282,7 +282,7 @@ class PreviewPanel(QWidget):
     def _painted(self, _: float) -> None:
         self.frames += 1
         seconds = self.session.transport.seconds
-        self.time.setText(f"{int(seconds // 60)}:{seconds % 60:04.1f}")
+        self.time.setText(f"{int(seconds // 60)}:{format_number(seconds % 60, '04.1f')}")
         length = max(1e-6, self.performance.shown.length)
         if not self.scrub.isSliderDown():
             self.scrub.setValue(round(10000 * min(1.0, seconds / length)))

@@ -16,6 +16,7 @@ from app.features.character.overlay_host import OverlayHost
 from app.features.character.plates import draw_plate
 from app.look.theme import theme
 from app.stage.playback_source import ShownPlayback
+from app.translation import format_number
 from app.widgets.vocabulary import vocabulary_word
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Pose
@@ -87,7 +88,7 @@ class Ghosts(QWidget):
             pose = Pose(poses.rotations[n], poses.translations[n])
             actor = self._ghost(figure, shown, pose, NEAREST + (FARTHEST - NEAREST) * far, self._color(k))
             out.append(actor)
-            self._label(f"{'−' if k < 0 else '+'}{abs(at - seconds):.2g} s", actor)
+            self._label(f"{'−' if k < 0 else '+'}{format_number(abs(at - seconds), '.2g')} s", actor)
         return out
 
     def _color(self, step: int) -> tuple[float, float, float]:

@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QHBoxLayout, QHeaderView, QTableWidget, QTableWidg
 from app.features.generation.generation_jobs import GeneratedPiece
 from app.features.generation.sample_preview import FigurePreview
 from app.project.document import Document
-from app.translation import lazy_texts, tr, tr_noop
+from app.translation import format_number, lazy_texts, tr, tr_noop
 from app.widgets.quiet_fields import ComboBox
 from metagraph.generation.landmarks import landmarks_of
 from metagraph.generation.networks import FPS
@@ -80,8 +80,12 @@ class PiecesTable(QTableWidget):
             )
             name.setCheckState(Qt.CheckState.Checked)
             self.setItem(n, 0, name)
-            self.setItem(n, 1, QTableWidgetItem(f"{piece.clip.duration:.1f} s"))
-            self.setItem(n, SURE, QTableWidgetItem(f"{100 * piece.sure:.0f} %" if piece.sure > 0 else ""))
+            self.setItem(n, 1, QTableWidgetItem(f"{format_number(piece.clip.duration, '.1f')} s"))
+            self.setItem(
+                n,
+                SURE,
+                QTableWidgetItem(f"{100 * piece.sure:.0f} %" if piece.sure > 0 else ""),
+            )
             self._offer(n, KIND, KINDS, piece.kind, tr("Label of {name}", name=piece.clip.name))
             self._offer(n, LIMB, LIMBS, piece.limb, tr("Arm of {name}", name=piece.clip.name))
         self.blockSignals(False)

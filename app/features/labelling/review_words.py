@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from html import escape
 
 from app.look.theme import KIND_MARKS, KIND_TITLES, WindowTheme
-from app.translation import lazy_texts, tr, tr_noop, tr_phrase, tr_plural
+from app.translation import format_number, lazy_texts, tr, tr_noop, tr_phrase, tr_plural
 from app.widgets.vocabulary import vocabulary_title
 from metagraph.graph.model import Project
 from metagraph.suggest.proposal import Proposal
@@ -109,7 +109,7 @@ def timing(p: Proposal, duration: float) -> str:
     for name, belief in ((name, p.details.get(name)) for name in ("stroke", "mask", "likelihood")):
         if belief is not None and (name != "mask" or belief.value):
             value = (
-                f"{belief.value:g}"
+                format_number(belief.value, "g")
                 if name == "likelihood"
                 else tr("{seconds:.2f} s", seconds=belief.value)
                 if name == "stroke"

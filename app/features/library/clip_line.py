@@ -12,6 +12,7 @@ from app.features.library.clip_header import PLACES, ClipHeader
 from app.features.library.clip_sizes import picture_of
 from app.look.shortening import shorten_to_font
 from app.look.theme import KIND_MARKS, WindowTheme
+from app.translation import format_number
 from metagraph.graph.model import ClipEntry
 
 MIDDLE = Qt.AlignmentFlag.AlignVCenter
@@ -38,7 +39,7 @@ def draw_line(painter: QPainter, rect: QRect, entry: ClipEntry, row: int, ink: C
     front, rest = names.of(entry)
     right = draw_kinds(painter, line, list_clip_kinds(facts, entry), look)
     words = HEART * mark.favourite + PENCIL * bool(mark.note) + (f"★{mark.rating}" if mark.rating else "")
-    for text, color in ((f"{entry.duration:.1f} s", look.dim), (words, look.text)):
+    for text, color in ((f"{format_number(entry.duration, '.1f')} s", look.dim), (words, look.text)):
         if text and right - wide(text) - 6 - line.left() > NAME:  # the name goes before them
             right -= wide(text) + 6
             painter.setPen(QColor(color))

@@ -35,7 +35,7 @@ from app.project.document import Document, Edit
 from app.project.jobs import Jobs
 from app.stage.performance import StagePerformance
 from app.stage.session import StageSession
-from app.translation import lazy_texts, tr, tr_error, tr_noop, tr_phrase, tr_plural
+from app.translation import format_number, lazy_texts, tr, tr_error, tr_noop, tr_phrase, tr_plural
 from app.widgets.flow import FlowLayout
 from app.widgets.making import make_widget
 from metagraph.graph.edit_error import EditError
@@ -220,7 +220,13 @@ class LinesPanel(QWidget):
         lost = bool(line.audio) and ident not in project.voices
         seconds = find_spoken_seconds(project, ident, line.text)
         asks = tr_plural("{count:,} request", "{count:,} requests", len(line.asks)) if line.asks else ""
-        texts = (ident, line.text, Path(line.audio).name if line.audio else "", f"{seconds:.1f} s", asks)
+        texts = (
+            ident,
+            line.text,
+            Path(line.audio).name if line.audio else "",
+            f"{format_number(seconds, '.1f')} s",
+            asks,
+        )
         for column, text in enumerate(texts):
             item = self.table.item(n, column)
             if item is None:

@@ -15,7 +15,7 @@ from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPainterPath, 
 
 from app.features.manual.manual_scene import LOOP, ManualScene, ManualView
 from app.look.theme import WindowTheme
-from app.translation import tr, tr_plural
+from app.translation import format_number, tr, tr_plural
 from metagraph.graph.manual.machine import ANY, Alias, Link, State
 from metagraph.graph.model import Project
 
@@ -181,7 +181,7 @@ def paint_arrow(painter: QPainter, a: QPointF, b: QPointF, color: QColor, width:
 
 def describe_link(link: Link) -> str:
     """Say in a few words when a link is taken."""
-    at = f"{link.exit_time:g} s" if link.exit_time is not None else ""
+    at = f"{format_number(link.exit_time, 'g')} s" if link.exit_time is not None else ""
     if not at and link.exit_part is not None and (link.exit_part < 1 or link.condition.when == "request"):
         at = tr("at the end") if link.exit_part >= 1 else tr("at {part:g} %", part=link.exit_part * 100)
     return f"{link.condition.trigger}  {at}".strip() if link.condition.when == "request" else at
@@ -367,7 +367,7 @@ def facts(project: Project, state: State) -> str:
     entry = project.clips.get(state.clip)
     length = entry.duration if entry is not None else 0.0
     end = length if state.end is None else min(state.end, length)
-    words = [f"{max(0.0, end - state.start):.2f} s"]
+    words = [f"{format_number(max(0.0, end - state.start), '.2f')} s"]
     if state.loop:
         words.insert(0, "↻")
     if state.limb != "both":

@@ -25,7 +25,7 @@ from app.features.motion_graph.synthesis_jobs import (
     list_usable_clips,
 )
 from app.project.document import Document
-from app.translation import tr, tr_noop
+from app.translation import format_number, tr, tr_noop
 from metagraph.graph.conversation.edits import change_side
 from metagraph.graph.conversation.model import Conversation
 from metagraph.graph.model import Project
@@ -113,7 +113,7 @@ class TakesList(QWidget):
                 Qt.ItemFlag.ItemIsEnabled | Qt.ItemFlag.ItemIsSelectable | Qt.ItemFlag.ItemIsUserCheckable
             )
             item.setCheckState(Qt.CheckState.Checked if ident in chosen else Qt.CheckState.Unchecked)
-            length = QTableWidgetItem(f"{entry.duration:.1f} s")
+            length = QTableWidgetItem(f"{format_number(entry.duration, '.1f')} s")
             length.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
             self.list.setItem(row, 0, item)
             self.list.setItem(row, 1, length)

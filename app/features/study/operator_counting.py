@@ -12,7 +12,7 @@ from PySide6.QtCore import QObject, QTimer
 from PySide6.QtWidgets import QLabel
 
 from app.features.study.operator_events import Hands
-from app.translation import tr
+from app.translation import format_number, tr
 
 if TYPE_CHECKING:
     from app.shell.context import Shell
@@ -46,7 +46,7 @@ class Counting(QObject):
 
         seconds = predict_seconds({k: self.total[k] for k in "KPBH"})
         counts = "   ".join(f"{k} {self.total[k]}" for k in "KPBDH")
-        self.label.setText(f"{counts}   {seconds:.1f} s")
+        self.label.setText(f"{counts}   {format_number(seconds, '.1f')} s")
 
     def stop(self) -> None:
         self._timer.stop()

@@ -12,7 +12,7 @@ from app.features.study.reserved_window import ReservedWindow
 from app.features.study.study_screen import format_minutes
 from app.project.files import Files
 from app.project.opening import with_motion_of
-from app.translation import tr, tr_error
+from app.translation import format_number, tr, tr_error
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, Slider
 from metagraph.errors import FileError
@@ -45,7 +45,7 @@ class ReplayBar(QToolBar):
         self.speed = ComboBox(inner)
         self.speed.setAccessibleName(tr("Speed"))
         for value in SPEEDS:
-            self.speed.addItem(f"{value:g} ×", value)
+            self.speed.addItem(f"{format_number(value, 'g')} ×", value)
         self.slider = Slider(Qt.Orientation.Horizontal, inner)
         self.slider.setAccessibleName(tr("Moment"))
         self.slider.setMinimumWidth(160)
@@ -65,7 +65,7 @@ class ReplayBar(QToolBar):
     def set_speed(self, speed: float) -> None:
         """Choose a speed, times as fast as it was; one of another size is added."""
         if self.speed.findData(speed) < 0:
-            self.speed.addItem(f"{speed:g} ×", speed)
+            self.speed.addItem(f"{format_number(speed, 'g')} ×", speed)
         self.speed.setCurrentIndex(self.speed.findData(speed))
 
 

@@ -11,7 +11,7 @@ from PySide6.QtCore import QSettings
 
 from app.look.names import plain_action_name
 from app.stage.performance import StagePerformance
-from app.translation import lazy_texts, tr
+from app.translation import format_number, lazy_texts, tr
 from app.widgets.lane_geometry import LaneScale, RequestMark
 from metagraph.playback.timing.phases import phases
 
@@ -78,7 +78,10 @@ def snap_lines(
         out.append(SnapLine(shown.length, tr("end")))
     step = scale.step() / (5 if scale.step() * scale.each > 200 else 1)
     first = int(max(0.0, begin) // step)
-    out += [SnapLine(round(n * step, 3), f"{n * step:g} s", True) for n in range(first, int(end / step) + 2)]
+    out += [
+        SnapLine(round(n * step, 3), f"{format_number(n * step, 'g')} s", True)
+        for n in range(first, int(end / step) + 2)
+    ]
     return [line for line in out if begin - 1 <= line.at <= end + 1]
 
 

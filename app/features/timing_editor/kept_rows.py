@@ -15,7 +15,7 @@ from app.features.timing_editor.hits import Hit
 from app.features.timing_editor.paint import MIDDLE, TimingLook
 from app.features.timing_editor.rows import TrackRows
 from app.features.timing_editor.track import Facts, KeptHand
-from app.translation import tr
+from app.translation import format_number, tr
 from metagraph.graph.clip_source import course_of
 from metagraph.graph.editing.retiming import set_kept
 
@@ -71,7 +71,7 @@ def paint_kept(
         for left in (box.left(), max(box.left(), box.right() - GRIP)):
             painter.drawRoundedRect(QRectF(left, box.top(), GRIP, box.height()), 2, 2)
         inner = box.adjusted(GRIP + 4, 0, -GRIP - 4, 0)
-        numbers = [f"{kept.first:.2f} s", f"{kept.last:.2f} s"]
+        numbers = [f"{format_number(kept.first, '.2f')} s", f"{format_number(kept.last, '.2f')} s"]
         wide = [look.wide(words) for words in numbers]
         within = sum(wide) + 12 <= inner.width()
         lefts = [inner.left(), inner.right() - wide[1]]

@@ -13,7 +13,7 @@ from app.features.timing_editor.hits import Hit
 from app.features.timing_editor.paint import TimingLook, lay_out_ruler
 from app.features.timing_editor.rows import RULER, TrackRows
 from app.features.timing_editor.track import Facts, KeptHand
-from app.translation import lazy_texts, tr, tr_phrase
+from app.translation import format_number, lazy_texts, tr, tr_phrase
 from app.widgets.vocabulary import vocabulary_word
 from metagraph.playback.timing.handles import WORDS
 from metagraph.suggest.jumps.snapping import Snap
@@ -50,9 +50,9 @@ def paint_timing_playhead(
     paint_upright(painter, tracks, x, RULER - 2)
     painter.setFont(look.small)
     shown = facts[tracks[0].ident]
-    words = f"{seconds:.2f} s"
+    words = f"{format_number(seconds, '.2f')} s"
     if len(shown.speeds) and seconds <= shown.entry.duration:
-        words += f"  {shown.speed_at(seconds):.1f} m/s"
+        words += f"  {format_number(shown.speed_at(seconds), '.1f')} m/s"
     box = paint_chip(painter, look, axis, words, x)
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(color)
@@ -164,7 +164,7 @@ def describe_timing_hit(facts: Facts, hit: Hit, seconds: float) -> str:
     if hit.what == "handle":
         found = facts.handle(hit.name)
         own = "" if found is None or found.own else tr(", detected from the motion")
-        number = f" {found.number:.3f} s" if found is not None else ""
+        number = f" {format_number(found.number, '.3f')} s" if found is not None else ""
         return tr(
             "{handle}{number}{own}: {hint}.\nDrag to move it, with Alt to avoid snapping. "
             "Double-click its number to type it.",
@@ -189,4 +189,6 @@ def describe_timing_hit(facts: Facts, hit: Hit, seconds: float) -> str:
     if not 0 <= seconds <= facts.entry.duration:
         return ""
     far = facts.distance.words(seconds)
-    return f"{seconds:.2f} s: {facts.speed_at(seconds):.2f} m/s" + (f", {far}" if far else "")
+    return f"{format_number(seconds, '.2f')} s: {format_number(facts.speed_at(seconds), '.2f')} m/s" + (
+        f", {far}" if far else ""
+    )

@@ -15,7 +15,7 @@ from app.features.timing_editor.numbers import place_numbers
 from app.features.timing_editor.rows import GUTTER, RIGHT, RULER, TITLES, TrackRows
 from app.features.timing_editor.track import Facts, describe_handle
 from app.look.theme import KIND_MARKS, WindowTheme
-from app.translation import tr
+from app.translation import format_number, tr
 from app.widgets.vocabulary import vocabulary_word
 from app.widgets.waveforms import join_columns, paint_columns
 
@@ -51,7 +51,7 @@ def lay_out_ruler(look: TimingLook, axis: Axis) -> list[tuple[float, str, QRectF
     out = []
     for seconds in axis.marks():
         x = axis.x(seconds)
-        words = f"{seconds:g}" + (" s" if seconds == 0 or axis.each < 800 else "")
+        words = format_number(seconds, "g") + (" s" if seconds == 0 or axis.each < 800 else "")
         half = look.wide(words) / 2
         left = min(max(x - half, GUTTER), axis.left + axis.width + RIGHT - 2 * half - 2)
         out.append((x, words, QRectF(left, 0, 2 * half + 2, RULER - 4)))
@@ -87,7 +87,7 @@ def paint_row_names(painter: QPainter, look: TimingLook, rows: TrackRows, facts:
         painter.drawText(QRectF(10, rect.top(), GUTTER - 14, rect.height()), MIDDLE, words)
     speed = rows.rows["speed"]
     y = speed.top() + 2
-    painter.drawText(QRectF(10, y, GUTTER - 14, line), MIDDLE, f"{facts.top:.1f} m/s")
+    painter.drawText(QRectF(10, y, GUTTER - 14, line), MIDDLE, f"{format_number(facts.top, '.1f')} m/s")
     y += line + 2
     for n, curve in enumerate(facts.curves):
         if y + line > speed.bottom():
@@ -200,7 +200,7 @@ def paint_phase_blocks(
         painter.drawRoundedRect(box, 3, 3)
         inner = QRectF(max(left, axis.left) + 6, rect.top(), 0, rect.height())
         inner.setRight(min(right, axis.left + axis.width) - 4)
-        full = f"{vocabulary_word(name)} {last - first:.2f} s"
+        full = f"{vocabulary_word(name)} {format_number(last - first, '.2f')} s"
         words = next((w for w in (full, vocabulary_word(name)) if look.wide(w) <= inner.width()), "")
         painter.setPen(QColor(INK))
         painter.drawText(inner, MIDDLE, words)
@@ -311,7 +311,7 @@ def _numbers(
 
 
 def _words(words: str, name: str, facts: Facts, at: float) -> str:
-    return f"{words} · {facts.speed_at(at):.1f} m/s" if name == "stroke" else f"{words} s"
+    return f"{words} · {format_number(facts.speed_at(at), '.1f')} m/s" if name == "stroke" else f"{words} s"
 
 
 def _in_sight(axis: Axis, seconds: float) -> bool:

@@ -11,7 +11,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from app.look.names import plain_action_name
-from app.translation import tr, tr_phrase
+from app.translation import format_number, tr, tr_phrase
 from app.widgets.memo import Once
 from app.widgets.vocabulary import vocabulary_word
 from metagraph.graph import anatomy
@@ -188,7 +188,7 @@ def list_stays(entry: ClipEntry) -> tuple[Stay, ...]:
 
 def describe_handle(handle: Handle) -> str:
     """Return a handle's name and number: "blend in 0.20"."""
-    return f"{vocabulary_word(WORDS[handle.name])} {handle.number:.2f}"
+    return f"{vocabulary_word(WORDS[handle.name])} {format_number(handle.number, '.2f')}"
 
 
 def _verdict(project: Project, action: Action, seen: SeenJumps | None) -> tuple[str, bool]:

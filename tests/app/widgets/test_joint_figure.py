@@ -96,7 +96,7 @@ def test_the_strength_is_what_a_click_gives_and_a_second_click_takes_it(toys, di
     dialog.accept()
     (action,) = toys.session.selection.selected_actions()
     assert action.joints == () and {*action.joint_weights} == {(n, 0.25) for n in below(skeleton, arm)}
-    assert "in part" in toys.properties.action.joints.text()
+    assert "partly" in toys.properties.action.joints.text()
 
 
 def turn(figure, point: QPoint, notches: int) -> None:

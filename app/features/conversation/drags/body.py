@@ -6,7 +6,7 @@ from PySide6.QtCore import QPointF, Qt
 
 from app.features.conversation.drags.segment import SegmentDrag
 from app.project.document import Edit
-from app.translation import tr_noop
+from app.translation import format_number, tr_noop
 from metagraph.graph.conversation import edits as conversation_edits
 
 
@@ -28,5 +28,8 @@ class BodyDrag(SegmentDrag):
             if (to := self.snapped(edge + by, free)) != edge + by
         ]
         by = min(caught, key=lambda c: abs(c - by), default=by)
-        self.words, self.seconds = f"{max(0.0, segment.start + by):.2f} s  ({by:+.2f})", segment.start + by
+        self.words, self.seconds = (
+            f"{format_number(max(0.0, segment.start + by), '.2f')} s  ({format_number(by, '+.2f')})",
+            segment.start + by,
+        )
         return lambda p: conversation_edits.move_segment(p, ident, hit.side, hit.at, by)

@@ -6,7 +6,7 @@ from PySide6.QtCore import QPointF
 
 from app.features.conversation.drags.segment import SegmentDrag
 from app.project.document import Edit
-from app.translation import tr_noop
+from app.translation import format_number, tr_noop
 from metagraph.graph.conversation import edits as conversation_edits
 
 
@@ -22,5 +22,8 @@ class EdgeDrag(SegmentDrag):
             return None
         before = segment.start if hit.part == "start" else segment.end
         to = self.snapped(before + (at.x() - self.origin.x()) / view.each, free)
-        self.words, self.seconds = f"{max(0.0, to):.2f} s  ({to - before:+.2f})", to
+        self.words, self.seconds = (
+            f"{format_number(max(0.0, to), '.2f')} s  ({format_number(to - before, '+.2f')})",
+            to,
+        )
         return lambda p: conversation_edits.resize_segment(p, ident, hit.side, hit.at, **{hit.part: to})
