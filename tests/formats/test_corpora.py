@@ -122,7 +122,7 @@ def test_talking_with_hands_tells_persons_by_their_marks(tmp_path: Path) -> None
     assert found.layout == "talking-with-hands"
     (one,) = found.recorded
     assert one.name == "session3 take7" and all(c is not None for c in one.clips)
-    assert any("detected from loudness" in note for note in one.notes)
+    assert any("loudness tells clauses" in note for note in one.notes)
     assert kinds(one.conversation, 0) and kinds(one.conversation, 1)
 
 

@@ -103,7 +103,7 @@ def test_a_grid_without_tiers_is_empty(tmp_path: Path) -> None:
     [
         ("", "line 1"),
         ("hello", "ends before its file type"),
-        (SHORT.replace("TextGrid", "Pitch 1"), "no TextGrid but 'ooTextFile', 'Pitch 1'"),
+        (SHORT.replace("TextGrid", "Pitch 1"), "not a TextGrid but 'ooTextFile', 'Pitch 1'"),
         (SHORT[: SHORT.index("0.5")], "ends before its interval's end"),
         (SHORT.replace("IntervalTier", "SoundTier"), "no tier of class 'SoundTier'"),
         (SHORT.replace('0.5\n""', '-2\n""'), "ends at -2 s, before it starts at 0 s"),
