@@ -3,7 +3,7 @@ the project holds.
 
 `install` takes them from slots, guarded methods, threads, what the interpreter cannot raise, and processes
 started from this one; what ends the program with a fault of the system's is written into a file, which the
-next start finds (`left_behind`).
+next start finds (`read_crash_reports`).
 """
 
 from __future__ import annotations

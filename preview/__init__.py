@@ -3,14 +3,14 @@
     figure = SkinnedFigure(character, skeleton)          # or StickFigure(skeleton)
     rotations, positions = skeleton.globals(clip.pose_at(seconds))
     scene = Scene((Actor(figure, rotations, positions),))
-    camera = whole_figure(scene.bounds(), width / height)
+    camera = frame_whole_figure(scene.bounds(), width / height)
 
     with Offscreen(width, height) as offscreen:           # without a display
         picture = offscreen.render(scene, camera)         # uint8 [H, W, 4]
     Renderer(ctx).draw(scene, camera, size, fbo, DARK)    # in a window
 
-Modules: `camera` (Camera, whole_figure, upper_body, close_up), `figure` (SkinnedFigure, StickFigure), `scene`
-(Actor, Scene, Theme, DARK, LIGHT), `renderer` (Renderer), `offscreen` (Offscreen, OpenGLError), `video`
-(write_video), `sheet` (contact_sheet, write_png), `thumbnail` (thumbnail, telling_frame). Import from them;
-this package loads nothing itself.
+Modules: `camera` (Camera, frame_whole_figure, frame_upper_body, close_up), `figure` (SkinnedFigure,
+StickFigure), `scene` (Actor, Scene, SceneTheme, DARK, LIGHT), `renderer` (Renderer), `offscreen` (Offscreen,
+OpenGLError), `video` (write_video), `sheet` (contact_sheet, write_png), `thumbnail` (thumbnail,
+telling_frame). Import from them; this package loads nothing itself.
 """

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from preview import shaders
-from preview.camera import OrbitCamera
+from preview.camera import Camera
 from preview.drawing import SceneDrawing, set_uniforms
 from preview.frame import Frame
 from preview.scene import SceneTheme
@@ -24,9 +24,7 @@ class ViewBackdrop:
     def __init__(self, drawing: SceneDrawing) -> None:
         self._drawing = drawing
         self._held: list[Any] = []
-        self._seen: tuple[OrbitCamera, tuple[int, int], SceneTheme, bool] | None = (
-            None  # how they were drawn last
-        )
+        self._seen: tuple[Camera, tuple[int, int], SceneTheme, bool] | None = None  # how they were drawn last
         self._kept, self._sky_from = False, 0  # whether they are kept, and the row the sky begins at
 
     def release(self) -> None:

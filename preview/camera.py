@@ -23,7 +23,7 @@ FLAT = math.radians(1.0)  # a field of view so narrow that near and far are of o
 
 
 @dataclass(frozen=True)
-class OrbitCamera:
+class Camera:
     """An eye that orbits a target. The default shows a person of 1.7 m from three quarters in front.
 
     fov: the vertical field of view. A long lens (28 degrees) keeps faces and hands from looking swollen.
@@ -98,25 +98,25 @@ class OrbitCamera:
         out = p[:, :2] / (depth[:, None] * (twice * aspect, -twice)) + 0.5
         return np.asarray(out.reshape(*points.shape[:-1], 2))
 
-    def orbit(self, dx: float, dy: float) -> OrbitCamera:
+    def orbit(self, dx: float, dy: float) -> Camera:
         """Turn round the target by a drag of `dx, dy` picture heights to the right and down; one height is
         half a turn.
         """
         yaw = math.remainder(self.yaw - dx * math.pi, 2 * math.pi)
         return replace(self, yaw=yaw, pitch=min(PITCH_LIMIT, max(-PITCH_LIMIT, self.pitch + dy * math.pi)))
 
-    def pan(self, dx: float, dy: float) -> OrbitCamera:
+    def pan(self, dx: float, dy: float) -> Camera:
         """Move sideways so that what is at the target's depth follows a drag of `dx, dy` picture heights."""
         right, up, _ = self.axes
         size = 2 * math.tan(self.fov / 2) * self.distance
         x, y, z = np.asarray(self.target) + (up * dy - right * dx) * size
         return replace(self, target=(float(x), float(y), float(z)))
 
-    def zoom(self, steps: float) -> OrbitCamera:
+    def zoom(self, steps: float) -> Camera:
         """Go nearer by `steps` notches of a wheel (negative: farther), 12 % each."""
         return replace(self, distance=min(FARTHEST, max(NEAREST, self.distance * 1.12**-steps)))
 
-    def frame(self, bounds: tuple[ArrayLike, ArrayLike], aspect: float, margin: float = 1.08) -> OrbitCamera:
+    def frame(self, bounds: tuple[ArrayLike, ArrayLike], aspect: float, margin: float = 1.08) -> Camera:
         """Keep the direction; aim at the box `bounds` (lowest and highest corner) and step back until it just
         fits.
         """
@@ -142,19 +142,19 @@ class OrbitCamera:
         """Whether it is as good as orthographic."""
         return self.fov <= FLAT
 
-    def flattened(self) -> OrbitCamera:
+    def flattened(self) -> Camera:
         """Return a camera as good as orthographic, for which what is at the target is as large as before."""
         return self._through(FLAT)
 
-    def deepened(self) -> OrbitCamera:
+    def deepened(self) -> Camera:
         """Return one with the usual lens, likewise."""
-        return self._through(OrbitCamera().fov) if self.flat else self
+        return self._through(Camera().fov) if self.flat else self
 
-    def _through(self, fov: float) -> OrbitCamera:
+    def _through(self, fov: float) -> Camera:
         distance = self.distance * math.tan(self.fov / 2) / math.tan(fov / 2)
         return replace(self, fov=fov, distance=min(FARTHEST, max(NEAREST, distance)))
 
-    def facing(self, yaw: float, pitch: float) -> OrbitCamera:
+    def facing(self, yaw: float, pitch: float) -> Camera:
         """Look from another side."""
         return replace(
             self, yaw=math.remainder(yaw, 2 * math.pi), pitch=min(PITCH_LIMIT, max(-PITCH_LIMIT, pitch))
@@ -162,36 +162,34 @@ class OrbitCamera:
 
 
 @lru_cache(maxsize=16)
-def _matrix(camera: OrbitCamera, aspect: float) -> Array:
+def _matrix(camera: Camera, aspect: float) -> Array:
     out = np.asarray(camera.projection(aspect) @ camera.view())
     out.flags.writeable = False
     return out
 
 
-def frame_whole_figure(
-    bounds: tuple[ArrayLike, ArrayLike], aspect: float, heading: float = 0.0
-) -> OrbitCamera:
+def frame_whole_figure(bounds: tuple[ArrayLike, ArrayLike], aspect: float, heading: float = 0.0) -> Camera:
     """Three quarters in front, all of the box in the picture. `heading`: where the character faces, radians
     about +Y.
     """
-    camera = OrbitCamera()
+    camera = Camera()
     return camera.facing(camera.yaw + heading, camera.pitch).frame(bounds, aspect)
 
 
-def close_up(head: ArrayLike, height: float, aspect: float, heading: float = 0.0) -> OrbitCamera:
+def close_up(head: ArrayLike, height: float, aspect: float, heading: float = 0.0) -> Camera:
     """Head and shoulders: `head` is the middle of the head `[3]`, `height` the figure's height in metres."""
     x, y, z = np.asarray(head, float)
     h = 0.115 * height
-    camera = OrbitCamera(fov=math.radians(22.0)).facing(math.radians(18.0) + heading, math.radians(3.0))
+    camera = Camera(fov=math.radians(22.0)).facing(math.radians(18.0) + heading, math.radians(3.0))
     return camera.frame(((x - h, y - 1.35 * h, z - h * 0.3), (x + h, y + h, z + h * 0.3)), aspect)
 
 
-def frame_upper_body(head: ArrayLike, height: float, aspect: float, heading: float = 0.0) -> OrbitCamera:
+def frame_upper_body(head: ArrayLike, height: float, aspect: float, heading: float = 0.0) -> Camera:
     """From the hips up, room for gesturing arms: `head` is the middle of the head `[3]`, `height` the
     figure's in metres.
     """
     x, y, z = np.asarray(head, float)
-    camera = OrbitCamera().facing(math.radians(20.0) + heading, math.radians(5.0))
+    camera = Camera().facing(math.radians(20.0) + heading, math.radians(5.0))
     return camera.frame(
         (
             (x - 0.24 * height, y - 0.5 * height, z - 0.08 * height),

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from preview.gpu import Store
 from preview.mesh import SkinnedMesh
-from preview.scene import SceneActor
+from preview.scene import Actor
 
 Array = NDArray[Any]
 
@@ -62,7 +62,7 @@ class SceneDrawing:
         target.use()
         self.ctx.enable_only(flags)
 
-    def triangles(self, mesh: SkinnedMesh, actor: SceneActor, program: moderngl.Program, kind: str) -> None:
+    def triangles(self, mesh: SkinnedMesh, actor: Actor, program: moderngl.Program, kind: str) -> None:
         """Draw the actor's batches that `program` is for: all (kind depth), the plain ones or the textured
         ones.
         """

@@ -20,13 +20,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.child_channel import Child
-from preview.camera import OrbitCamera
+from preview.camera import Camera
 from preview.figure import MeshFigure
 from preview.offscreen import Offscreen
 from preview.scene import Scene, SceneTheme
 
 Array = NDArray[Any]
-Seen = tuple[Scene, OrbitCamera]
+Seen = tuple[Scene, Camera]
 
 MOST = 4  # processes; more would wait for whoever encodes
 # Pictures from which on starting processes costs less than it saves: each takes a second of a core, so that

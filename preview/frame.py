@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from preview.camera import OrbitCamera
+from preview.camera import Camera
 from preview.mesh import SkinnedMesh
-from preview.scene import Scene, SceneActor, SceneTheme
+from preview.scene import Actor, Scene, SceneTheme
 
 Array = NDArray[Any]
 
@@ -33,9 +33,9 @@ class Frame:
     """
 
     scene: Scene
-    actors: list[SceneActor]
+    actors: list[Actor]
     rows: list[int]
-    camera: OrbitCamera
+    camera: Camera
     size: tuple[int, int]
     theme: SceneTheme
     matrix: Array
@@ -69,7 +69,7 @@ class Frame:
         return [i for i, actor in enumerate(self.actors) if (actor.opacity >= 1) == solid]
 
 
-def is_drawable(actor: SceneActor) -> bool:
+def is_drawable(actor: Actor) -> bool:
     """Whether there is something to draw, and all its numbers are some."""
     return bool(
         actor.count
@@ -79,7 +79,7 @@ def is_drawable(actor: SceneActor) -> bool:
     )
 
 
-def tall(actor: SceneActor, camera: OrbitCamera, height: int) -> float:
+def tall(actor: Actor, camera: Camera, height: int) -> float:
     """How many pixels tall the nearest instance is, about."""
     away = np.linalg.norm(np.asarray(actor.positions)[..., 0, :].reshape(-1, 3) - camera.eye, axis=1).min()
     return float(actor.figure.height / (2 * np.tan(camera.fov / 2) * max(float(away), 1e-3)) * height)
@@ -121,7 +121,7 @@ def find_covered(frame: Frame) -> Array:
     return np.asarray(np.minimum(runs, (width, height, width, height)))
 
 
-def piece_boxes(actors: Sequence[SceneActor], palettes: Sequence[Array]) -> Array:
+def piece_boxes(actors: Sequence[Actor], palettes: Sequence[Array]) -> Array:
     """Return the corners of the boxes round all actors' pieces `[N, 8, 3]`. palettes: each actor's
     `[instances, M, 3, 4]`.
     """
@@ -130,7 +130,7 @@ def piece_boxes(actors: Sequence[SceneActor], palettes: Sequence[Array]) -> Arra
     )
 
 
-def _corners(actor: SceneActor, palette: Array) -> Array:
+def _corners(actor: Actor, palette: Array) -> Array:
     """Return the corners of the boxes round an actor's pieces, in all its instances `[N, 8, 3]`."""
     matrix, corners = actor.figure.boxes
     moved = palette[:, matrix].astype(float)

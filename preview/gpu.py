@@ -17,7 +17,7 @@ from metagraph.common.pictures import picture_size
 from preview.mesh import VERTEX, SkinnedMesh, TriangleBatch, arrange_vertices
 from preview.occlusion import Rods
 from preview.paint import without_invisible_texture
-from preview.scene import SceneActor
+from preview.scene import Actor
 
 Array = NDArray[Any]
 
@@ -88,7 +88,7 @@ class Store:
         self._images: dict[bytes, moderngl.Texture] = {}  # which a mesh and its levels of detail share
         self.palette = ctx.texture((3, 1), 4, dtype="f4")
         self.marks = ctx.texture((1, 1), 4)
-        self._written: list[SceneActor] = []  # whose palettes and marks these are
+        self._written: list[Actor] = []  # whose palettes and marks these are
         self.palettes: list[Array] = []  # of each of them `[instances, M, 3, 4]`
 
     def __getitem__(self, mesh: SkinnedMesh) -> LoadedMesh:
@@ -105,7 +105,7 @@ class Store:
         self.palette.release()
         self.marks.release()
 
-    def prepare(self, actors: Sequence[SceneActor], meshes: Sequence[SkinnedMesh]) -> list[int]:
+    def prepare(self, actors: Sequence[Actor], meshes: Sequence[SkinnedMesh]) -> list[int]:
         """Load meshes, palettes (all in one texture) and marks; return each actor's first row in the palette
         texture.
 
@@ -136,7 +136,7 @@ class Store:
             self._write_marks(actors)
         return rows
 
-    def _write_palettes(self, actors: Sequence[SceneActor], rows: Sequence[int], height: int) -> None:
+    def _write_palettes(self, actors: Sequence[Actor], rows: Sequence[int], height: int) -> None:
         width = max(a.figure.mesh.matrices for a in actors)
         self.palettes = [
             a.figure.palette(a.rotations, a.positions).reshape(a.count, -1, 3, 4) for a in actors
@@ -152,7 +152,7 @@ class Store:
             self.palette.filter = moderngl.NEAREST, moderngl.NEAREST
         self.palette.write(np.ascontiguousarray(data, "<f4"), viewport=(0, 0, 3 * width, height))
 
-    def _write_marks(self, actors: Sequence[SceneActor]) -> None:
+    def _write_marks(self, actors: Sequence[Actor]) -> None:
         width = max(a.figure.mesh.matrices for a in actors)
         marks = np.zeros((len(actors), width, 4), np.uint8)
         for row, actor in zip(marks, actors, strict=True):

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.wording import phrase
-from preview.camera import OrbitCamera
+from preview.camera import Camera
 from preview.renderer import Renderer
 from preview.scene import DARK, Scene, SceneTheme
 
@@ -78,7 +78,7 @@ class Offscreen:
     def render(
         self,
         scene: Scene,
-        camera: OrbitCamera,
+        camera: Camera,
         theme: SceneTheme = DARK,
         size: tuple[int, int] | None = None,
         into: NDArray[np.uint8] | None = None,
@@ -98,7 +98,7 @@ class Offscreen:
         into[...] = picture
         return into
 
-    def draw(self, scene: Scene, camera: OrbitCamera, theme: SceneTheme = DARK) -> None:
+    def draw(self, scene: Scene, camera: Camera, theme: SceneTheme = DARK) -> None:
         """Draw to the end without reading the picture: what a window's frame costs."""
         with self._ctx:
             self.renderer.draw(scene, camera, self.size, self._fbo, theme)

@@ -12,11 +12,11 @@ import numpy as np
 
 from preview import shaders
 from preview.backdrop import ViewBackdrop
-from preview.camera import OrbitCamera
+from preview.camera import Camera
 from preview.drawing import SceneDrawing, set_uniforms
 from preview.frame import MARGIN, Array, Frame, find_covered, is_drawable, piece_boxes, tall
 from preview.mesh import SkinnedMesh
-from preview.scene import DARK, Scene, SceneActor, SceneTheme
+from preview.scene import DARK, Actor, Scene, SceneTheme
 from preview.shadows import SHADOW_LIMIT, Shadows, draw_depths, shadow_casters
 
 GHOST_BACK = (2.0, 1500.0)  # by slope, and in steps of the depth; about a centimetre where a figure stands
@@ -73,7 +73,7 @@ class Renderer:
     def draw(
         self,
         scene: Scene,
-        camera: OrbitCamera,
+        camera: Camera,
         size: tuple[int, int],
         target: moderngl.Framebuffer,
         theme: SceneTheme = DARK,
@@ -91,7 +91,7 @@ class Renderer:
         cast = scene.shadow and 0 < sum(a.count for a in solid) <= SHADOW_LIMIT
         crowd = sum(a.count for a in actors) > SHADOW_LIMIT
 
-        def mesh(a: SceneActor) -> SkinnedMesh:
+        def mesh(a: Actor) -> SkinnedMesh:
             second = self.software and (self._beside is not None or a.opacity < 1)
             off = max(OFF_CROWD if crowd else OFF[self.software], OFF_BESIDE if second else 0.0)
             return a.figure.finest(off * a.figure.height / max(1.0, tall(a, camera, height)))

@@ -18,7 +18,7 @@ Color = tuple[float, float, float]
 
 
 @dataclass(frozen=True, eq=False)
-class SceneActor:
+class Actor:
     """A figure in one pose, or in many at once (a crowd is one draw).
 
     rotations `[..., J, 4]` xyzw and positions `[..., J, 3]`: global, on the figure's skeleton. morphs:
@@ -47,7 +47,7 @@ class Scene:
     no ground, either.
     """
 
-    actors: tuple[SceneActor, ...] = ()
+    actors: tuple[Actor, ...] = ()
     ground: bool = True
     shadow: bool = True
     background: tuple[float, float, float, float] | None = None
@@ -72,7 +72,7 @@ class Scene:
         return np.min([b[0] for b in boxes], axis=0), np.max([b[1] for b in boxes], axis=0)
 
 
-def _same(a: SceneActor, b: SceneActor) -> bool:
+def _same(a: Actor, b: Actor) -> bool:
     return a is b or (
         a.figure is b.figure
         and (a.bones, a.opacity, a.marks) == (b.bones, b.opacity, b.marks)

@@ -14,7 +14,7 @@ from preview import shaders
 from preview.drawing import SceneDrawing, set_uniforms
 from preview.frame import Frame
 from preview.mesh import SkinnedMesh
-from preview.scene import SceneActor
+from preview.scene import Actor
 
 Array = NDArray[Any]
 
@@ -45,7 +45,7 @@ class _Map:
 
     def __init__(self, ctx: moderngl.Context, size: int) -> None:
         self.size = size
-        self.seen: tuple[list[SceneActor], tuple[float, ...], Array] | None = None  # actors, lamp, matrix
+        self.seen: tuple[list[Actor], tuple[float, ...], Array] | None = None  # actors, lamp, matrix
         self.depth = ctx.depth_texture((size, size))
         self.depth.compare_func = "<="
         self.depth.repeat_x = self.depth.repeat_y = False
@@ -68,9 +68,7 @@ class Shadows:
         self._soft = ctx.texture(SOFT_SIZE, 1)
         self._soft_fbo = ctx.framebuffer([self._soft])
         self._soft.repeat_x = self._soft.repeat_y = False
-        self._softened: tuple[list[SceneActor], tuple[float, ...]] | None = (
-            None  # whose shadow lies on the ground
-        )
+        self._softened: tuple[list[Actor], tuple[float, ...]] | None = None  # whose shadow lies on the ground
 
     def release(self) -> None:
         """Give everything back."""
@@ -128,7 +126,7 @@ class Shadows:
         draw_depths(self._drawing, frame, frame.which(solid=True), matrix, frame.casters)
         return np.asarray(_HALF @ matrix)
 
-    def on_ground(self, frame: Frame, target: Any, ground_to: int, solid: Sequence[SceneActor]) -> None:
+    def on_ground(self, frame: Frame, target: Any, ground_to: int, solid: Sequence[Actor]) -> None:
         """What darkens the ground multiplies what is there. ground_to: the row, from below, it ends at."""
         strip = _strip(frame) if frame.light is not None else None
         if strip is not None:
@@ -199,7 +197,7 @@ def _strip(frame: Frame) -> Strip | None:
     return patch, (x, z), ((fade_x[0] + fade_x[1]) / 2, (fade_z[0] + fade_z[1]) / 2, wide)
 
 
-def shadow_casters(actors: Sequence[SceneActor]) -> list[SkinnedMesh]:
+def shadow_casters(actors: Sequence[Actor]) -> list[SkinnedMesh]:
     """Return what throws each actor's shadow."""
     return [a.figure.finest(CAST_OFF * a.figure.height) for a in actors]
 
@@ -258,12 +256,12 @@ def find_seen_window(frame: Frame, axes: Array) -> tuple[float, Array, Array]:
     return tall / near, middle - half, middle + half
 
 
-def _alike(before: Sequence[SceneActor], now: Sequence[SceneActor]) -> bool:
+def _alike(before: Sequence[Actor], now: Sequence[Actor]) -> bool:
     """Whether they are the very same actors."""
     return len(before) == len(now) and all(a is b for a, b in zip(before, now, strict=True))
 
 
-def _spots(actor: SceneActor) -> Array:
+def _spots(actor: Actor) -> Array:
     """Where a body darkens the ground `[S, 4]`: x, z, radius, strength; wider and weaker with height."""
     ends, starts = actor.figure.shadow
     p = np.asarray(actor.positions, float).reshape(-1, len(actor.figure.skeleton), 3)

@@ -15,7 +15,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from preview.camera import OrbitCamera
+from preview.camera import Camera
 
 Array = NDArray[Any]
 Shot = Literal["over", "two", "close"]
@@ -29,12 +29,12 @@ LOOKING = 0.03  # of the height, by which there is more room before a face than 
 TWO_TURN = math.radians(22.0)  # by which that of all stands beside the middle
 
 
-def camera_from(eye: ArrayLike, target: ArrayLike, fov: float) -> OrbitCamera:
+def camera_from(eye: ArrayLike, target: ArrayLike, fov: float) -> Camera:
     """Return a camera at `eye [3]` that looks at `target [3]`."""
     away = np.asarray(eye, float) - np.asarray(target, float)
     distance = max(0.05, float(np.linalg.norm(away)))
     x, y, z = np.asarray(target, float)
-    return OrbitCamera(
+    return Camera(
         (float(x), float(y), float(z)),
         math.atan2(away[0], away[2]),
         math.asin(max(-1.0, min(1.0, away[1] / distance))),
@@ -66,7 +66,7 @@ def partner(heads: Array, side: int) -> int:
 
 def shot_camera(
     shot: Shot, side: int, heads: Array, heights: Sequence[float], bounds: tuple[Array, Array], aspect: float
-) -> OrbitCamera:
+) -> Camera:
     """Return the camera of a shot. side: who is seen. heads: middles of the heads `[N, 3]`, metres. heights:
     of the figures. bounds: lowest and highest corner of all of them. aspect: width by height.
     """
@@ -102,10 +102,10 @@ def shot_camera(
     return camera_from(eye, target, OVER_FOV * max(1.0, min(1.6, 1.5 / aspect)))
 
 
-def _all(heads: Array, heights: Sequence[float], bounds: tuple[Array, Array], aspect: float) -> OrbitCamera:
+def _all(heads: Array, heights: Sequence[float], bounds: tuple[Array, Array], aspect: float) -> Camera:
     """Return the camera that sees all who talk from the knees up, from three quarters."""
     beside = camera_side(heads)
-    camera = OrbitCamera(fov=TWO_FOV).facing(math.atan2(beside[0], beside[2]) - TWO_TURN, math.radians(4.0))
+    camera = Camera(fov=TWO_FOV).facing(math.atan2(beside[0], beside[2]) - TWO_TURN, math.radians(4.0))
     low, high = np.array(bounds[0], float), np.array(bounds[1], float)
     low[1] = max(low[1], float(heads[:, 1].min()) - 0.62 * float(max(heights)))
     return camera.frame((low, high), aspect, 1.12)

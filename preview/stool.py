@@ -12,7 +12,7 @@ from metagraph.motion import rotation
 from metagraph.motion.skeleton import Skeleton
 from preview.figure import MeshFigure, join_parts
 from preview.mesh import capsule, lathe
-from preview.scene import SceneActor
+from preview.scene import Actor
 
 Array = NDArray[Any]
 
@@ -62,7 +62,7 @@ def _stool(height: float, radius: float) -> Stool:
     return Stool(height, radius)
 
 
-def stool(at: tuple[float, float, float], radius: float) -> SceneActor:
+def stool(at: tuple[float, float, float], radius: float) -> Actor:
     """Return a stool that stands on the ground. at: the middle of the top of its seat, metres."""
     figure = _stool(round(max(at[1], 0.05), 3), round(radius, 3))
-    return SceneActor(figure, np.array([[0.0, 0, 0, 1]], np.float32), np.array([at], np.float32))
+    return Actor(figure, np.array([[0.0, 0, 0, 1]], np.float32), np.array([at], np.float32))

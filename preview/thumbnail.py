@@ -13,11 +13,11 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Pose
 from preview import joints as rules
-from preview.camera import OrbitCamera
+from preview.camera import Camera
 from preview.figure import MeshFigure
 from preview.framing import Box, near_box, nearness
 from preview.offscreen import Offscreen
-from preview.scene import DARK, Scene, SceneActor, SceneTheme
+from preview.scene import DARK, Actor, Scene, SceneTheme
 
 Array = NDArray[Any]
 
@@ -83,7 +83,7 @@ def thumbnail(
     # The figure is turned to the lamp, not the camera round it: all thumbnails are in the same light.
     turn = rotation.from_axis_angle(np.array([0.0, 1, 0]), np.array(-_heading(figure, positions)))
     centred = rotation.rotate_vectors(turn, positions - positions[0] * [1, 0, 1])
-    actor = SceneActor(figure, rotation.multiply(turn, rotations), centred)
+    actor = Actor(figure, rotation.multiply(turn, rotations), centred)
     camera = _camera(_person(figure, figure.posed_bounds(actor.rotations, actor.positions)))
     scene = Scene((actor,), background=style.background)
     return offscreen.render(scene, camera, style.theme, (pixels, pixels))
@@ -120,7 +120,7 @@ def thumbnails(
     at = 1 + np.searchsorted(every[1:], frames)
     return [
         offscreen.render(
-            Scene((SceneActor(figure, turned[n], centred[n]),), background=background),
+            Scene((Actor(figure, turned[n], centred[n]),), background=background),
             camera, theme, (pixels, pixels),
         )
         for n in at
@@ -140,8 +140,8 @@ def _person(figure: MeshFigure, whole: Box) -> Box:
     return low, high
 
 
-def _camera(box: Box) -> OrbitCamera:
-    return OrbitCamera().facing(np.radians(22), np.radians(6)).frame(box, 1.0, margin=1.02)
+def _camera(box: Box) -> Camera:
+    return Camera().facing(np.radians(22), np.radians(6)).frame(box, 1.0, margin=1.02)
 
 
 def clip_thumbnail(

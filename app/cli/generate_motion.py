@@ -204,13 +204,13 @@ def as_role(activity: Any, role: str) -> Any:
 def make_motion(options: Namespace, model: Model, heard: HeardInput, seed: int) -> Clip:
     """Return a model's motion. Raises ValueError, FileError."""
     from metagraph.errors import FileError
-    from metagraph.formats.clips import read_clip_file
+    from metagraph.formats.clips import read_clips
     from metagraph.generation.chunks import GUIDANCE
     from metagraph.generation.sampler import first_pose, sample_whole
 
     first = None
     if options.first is not None:
-        stance = read_clip_file(options.first)[0]
+        stance = read_clips(options.first)[0]
         if stance.skeleton != model.rig.skeleton:
             raise FileError(
                 options.first, "has another skeleton than the model", remedy="Retarget it to the model's."

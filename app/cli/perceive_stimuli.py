@@ -225,11 +225,11 @@ class Stimuli:
         return play_clip_alone(with_clip(project, NEW.format(0), clip), NEW.format(0)), folder
 
     def _clip(self, name: str, path: Path, project: Project | None) -> Clip:
-        from metagraph.formats.clips import read_clip_file
+        from metagraph.formats.clips import read_clips
 
         named, _, take = str(path).partition("#")
         path = path if path.is_file() else Path(named)
-        found = read_clip_file(path)
+        found = read_clips(path)
         clips = [c for c in found if not take or c.name == take]
         if len(clips) != 1:
             kept = ", ".join(f"'{c.name}'" for c in found[:8])

@@ -165,13 +165,13 @@ def render_directed(
 
 def _actors(figure: Any, shown: ShownPlayback, times: np.ndarray) -> list[Any]:
     """Return a figure as it is shown at each of some times."""
-    from preview.scene import SceneActor
+    from preview.scene import Actor
 
     rotations, positions = _placed(shown, times)
     faces: list[Any] = [None] * len(times)
     if figure.morphs:
         faces = [figure.morph_weights(face) for face in shown.faces(times)]
-    return [SceneActor(figure, *at) for at in zip(rotations, positions, faces, strict=True)]
+    return [Actor(figure, *at) for at in zip(rotations, positions, faces, strict=True)]
 
 
 def _placed(shown: ShownPlayback, times: Any) -> tuple[np.ndarray, np.ndarray]:
@@ -184,12 +184,12 @@ def _placed(shown: ShownPlayback, times: Any) -> tuple[np.ndarray, np.ndarray]:
 
 def _actor(figure: Any, shown: ShownPlayback, times: Any) -> Any:
     """Return a figure as it is shown at one time, or at many."""
-    from preview.scene import SceneActor
+    from preview.scene import Actor
 
     morphs = (
         figure.morph_weights(shown.morphs(float(times))) if figure.morphs and np.ndim(times) == 0 else None
     )
-    return SceneActor(figure, *_placed(shown, times), morphs)
+    return Actor(figure, *_placed(shown, times), morphs)
 
 
 def run(options: Namespace) -> int:

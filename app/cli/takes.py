@@ -41,7 +41,7 @@ def read_take_files(paths: Sequence[Path]) -> list[tuple[str, Clip]]:
     """
     from app.cli.command_output import open_for_command
     from metagraph.errors import FileError
-    from metagraph.formats.clips import read_clip_file
+    from metagraph.formats.clips import read_clips
     from metagraph.formats.imports import gather
 
     out: list[tuple[str, Clip]] = []
@@ -61,7 +61,7 @@ def read_take_files(paths: Sequence[Path]) -> list[tuple[str, Clip]]:
             ]
             continue
         for file in gather([path]):
-            clips = read_clip_file(file)
+            clips = read_clips(file)
             out += [(file.stem if len(clips) == 1 else c.name, c) for c in clips]
     if not out:
         raise FileError(
@@ -124,9 +124,9 @@ def read_side(path: Path, side: str) -> tuple[Conversation, int]:
 def read_side_speech(
     path: Path, side: str, sound: Path | None = None, transcript: Path | None = None
 ) -> SpokenTake:
-    """Return what one of those in a file moves with, `heard_by`, with its words; and how it is said. sound:
-    of the recording, None where there is none; where it has a channel for each of them, of its own.
-    transcript: where its words are, None where they are in the file itself. Raises FileError.
+    """Return what one of those in a file moves with, `segments_heard_by`, with its words; and how it is
+    said. sound: of the recording, None where there is none; where it has a channel for each of them, of its
+    own. transcript: where its words are, None where they are in the file itself. Raises FileError.
     """
     from metagraph.graph.conversation.model import segments_heard_by
     from metagraph.speech.prosody import prosody

@@ -109,8 +109,8 @@ def break_at_words(
 def shorten_to_lines(
     text: str, width: float, lines: int, measure: Callable[[str], float], others: Iterable[str] = ()
 ) -> tuple[str, ...]:
-    """Return `whole_words`, else the beginning of a word that begins no word of the others; () where nothing
-    of a text tells it apart.
+    """Return `break_at_words`, else the beginning of a word that begins no word of the others; () where
+    nothing of a text tells it apart.
     """
     return break_at_words(text, width, lines, measure, others) or _beginning(
         text, width, measure, _rivals(text, others)

@@ -2,7 +2,7 @@
 
 A table is a tuple of `Command`s whose functions take the feature and whose texts are marked by `tr_noop`; of
 it `bound` makes the commands of one window. What enables a command is a named condition, and `all_of`,
-`any_of` and `not_` combine conditions.
+`any_met` and `not_met` combine conditions.
 """
 
 from __future__ import annotations

@@ -22,7 +22,7 @@ from metagraph.speech.captions import (
     describe_line,
     list_timed_words,
 )
-from preview.camera import OrbitCamera
+from preview.camera import Camera
 from preview.shots import shot_camera
 
 Seen = tuple[Any, ShownPlayback]  # a figure, and what it plays
@@ -39,12 +39,12 @@ class Cutting:
 
     def __init__(self) -> None:
         self._of: tuple[object, ...] = ()
-        self._kept: dict[tuple[Cut, float, float], OrbitCamera] = {}
+        self._kept: dict[tuple[Cut, float, float], Camera] = {}
         self._heads: list[tuple[float, float]] = []
 
     def camera(
         self, seen: Sequence[Seen], cuts: tuple[Cut, ...], seconds: float, aspect: float
-    ) -> OrbitCamera | None:
+    ) -> Camera | None:
         """Return the camera at a time; None where no cut says any. seen: who talk, the first side first."""
         found = cut_at(cuts, seconds)
         if found is None or len(seen) < 2:
@@ -74,7 +74,7 @@ def _head(figure: Any) -> tuple[float, float]:
 
 def _camera(
     seen: Sequence[Seen], sizes: Sequence[tuple[float, float]], cut: Cut, end: float, aspect: float
-) -> OrbitCamera:
+) -> Camera:
     times = np.linspace(cut.at, max(cut.at, end), SAMPLED)
     heads, heights, lows, highs = [], [], [], []
     for (figure, shown), (lift, height) in zip(seen, sizes, strict=True):

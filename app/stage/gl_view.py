@@ -29,7 +29,7 @@ from PySide6.QtOpenGLWidgets import QOpenGLWidget
 from PySide6.QtWidgets import QLabel, QLayout, QVBoxLayout, QWidget
 
 from app.translation import tr, tr_error, tr_noop
-from preview.camera import OrbitCamera
+from preview.camera import Camera
 from preview.renderer import Renderer
 from preview.scene import DARK, Scene, SceneTheme
 
@@ -44,11 +44,11 @@ MOUSE = tr_noop("Drag to orbit, right-drag to pan, wheel to zoom, double-click t
 class CameraMouse(_Base):
     """Mouse to camera, for any widget that has `frame_wanted`."""
 
-    camera: OrbitCamera
+    camera: Camera
     failed: Any
 
     def _init_camera(self) -> None:
-        self.camera = OrbitCamera()
+        self.camera = Camera()
         self.moved_by_hand = False
         self._last: QPointF | None = None
 

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 from app.stage.playback_source import ShownPlayback
 from metagraph.graph.seats import seat_of
-from preview.scene import SceneActor
+from preview.scene import Actor
 from preview.stool import stool
 
 
-def stools(shown: ShownPlayback) -> tuple[SceneActor, ...]:
+def stools(shown: ShownPlayback) -> tuple[Actor, ...]:
     """Return the stool of a character whose graph has a stance that sits; it stays there while one stands.
     None for a clip that plays alone.
     """

@@ -1,7 +1,8 @@
 """Tables as text, with commas or tabs: what a spreadsheet would take for a formula stays a text.
 
 A text that begins as a formula does (`=`, `+`, `-`, `@`, a tab, a line end) gets an apostrophe in front, and
-so does one that has apostrophes before such a beginning; numbers stay numbers. `restored` takes it off again.
+so does one that has apostrophes before such a beginning; numbers stay numbers. `restore_cell` takes it off
+again.
 """
 
 from __future__ import annotations

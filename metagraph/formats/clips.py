@@ -43,7 +43,7 @@ class ImportReport:
 
 
 @guard_reader
-def read_clip_file(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
+def read_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
     """Return all takes of a file, poses of one frame behind the others. A bind pose of one frame without a
     name of its own is skipped where other takes are longer, with a note on those.
 
@@ -182,7 +182,7 @@ def read_together(paths: Iterable[Path]) -> Iterator[Mapping[Path, Future[list[C
     with batch():
         pool = ThreadPoolExecutor(min(4, os.cpu_count() or 1))
         try:
-            yield {path: pool.submit(read_clip_file, path) for path in fbx}
+            yield {path: pool.submit(read_clips, path) for path in fbx}
         finally:
             pool.shutdown(cancel_futures=True)
 
@@ -205,7 +205,7 @@ def _import_clips(
         if progress is not None:
             progress(done, len(files), path)
         try:
-            takes = begun[path].result() if path in begun else read_clip_file(path)
+            takes = begun[path].result() if path in begun else read_clips(path)
         except Exception as error:  # no kind is trusted to be the only one
             failures.append(unforeseen_error(path, error))
             continue

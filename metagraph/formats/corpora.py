@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from metagraph.common.files import unforeseen_error
 from metagraph.errors import FileError
-from metagraph.formats.clips import find_clip_files, read_clip_file
+from metagraph.formats.clips import find_clip_files, read_clips
 from metagraph.formats.conversations.files import SOUNDS, read_conversation
 from metagraph.formats.transcripts.words import SUFFIXES as TRANSCRIPTS
 from metagraph.graph.conversation.model import Conversation
@@ -244,7 +244,7 @@ def _read(name: str, files: _Found) -> Recorded:
         if path is None:
             notes.append(f"nobody knows how side {side + 1} moved")
             continue
-        clips[side] = max(read_clip_file(path), key=lambda c: c.frames)
+        clips[side] = max(read_clips(path), key=lambda c: c.frames)
     if not told:
         notes.append("no words are beside it: loudness tells clauses, hesitations are not found")
     return Recorded(name, (clips[0], clips[1]), read.conversation, None, (*notes, *read.notes), files.files)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Literal
 from metagraph.common.files import unforeseen_error
 from metagraph.common.wording import phrase, plural_phrase
 from metagraph.errors import FileError, describe_error
-from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clip_file
+from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clips
 from metagraph.formats.store import path_for_project, relative
 from metagraph.graph.editing.retargeting import Bringing
 from metagraph.graph.edits import add_clips
@@ -295,7 +295,7 @@ def find_strangers(project: Project, folder: Path | None, clips: Iterable[str] =
     for entry in project.clips.values():
         if entry.brought_from in project.joint_maps and (not chosen - {""} or entry.brought_from in chosen):
             try:
-                takes = read_clip_file((folder or Path()) / entry.path, entry.as_is)
+                takes = read_clips((folder or Path()) / entry.path, entry.as_is)
             except FileError:
                 continue  # that it is missing or broken is told elsewhere
             if entry.take < len(takes) and fingerprint(takes[entry.take].skeleton) == entry.brought_from:
@@ -326,7 +326,7 @@ def _as_known(
         for take, as_is in kept.get(_name(path, folder), {}).items():
             try:
                 if as_is not in takes:
-                    takes[as_is] = read_clip_file(path, as_is)
+                    takes[as_is] = read_clips(path, as_is)
             except FileError:
                 break  # it is being written anew: what was read a moment ago stands
             if take < len(takes[as_is]):

@@ -250,7 +250,7 @@ def _number(word: str, column: str, least: float = 0.0) -> float:
 
 
 def machine_as_table(manual: Manual) -> str:
-    """Return a machine's links as a table with commas, which `rows_of` reads."""
+    """Return a machine's links as a table with commas, which `parse_manual_table` reads."""
     rows: list[Sequence[str]] = [COLUMNS]
     for x in manual.links.values():
         ends = ("any" if x.source == ANY else manual_name(manual, x.source), manual_name(manual, x.target))

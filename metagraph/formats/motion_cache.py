@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.common.disk_cache import DiskCache, cache_folder
-from metagraph.formats.clips import read_clip_file
+from metagraph.formats.clips import read_clips
 from metagraph.motion.clip import Clip, Repair
 from metagraph.motion.skeleton import Skeleton
 
@@ -81,7 +81,7 @@ def read_or_kept(path: Path, digest: str, as_is: Collection[str]) -> list[Clip]:
     if content is not None:
         with suppress(Exception):  # whatever is wrong with it, the file itself is there
             return _decoded(content)
-    clips = read_clip_file(path, as_is)
+    clips = read_clips(path, as_is)
     if kept.folder is not None and _self_contained(path):
         _writer().submit(_keep, kept, key, clips)
     return clips

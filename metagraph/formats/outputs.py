@@ -1,6 +1,6 @@
 """What a command may write over: nothing that somebody else made, that it reads, or that is open elsewhere.
 
-While a command runs (`writing`), each writer of files asks first (`being_written`). A file that is there may
+While a command runs (`writing`), each writer of files asks first (`claim_output`). A file that is there may
 be replaced where this user's Metagraph wrote it and nobody has changed it since, which a note in the user's
 data folder tells (path and SHA-256), or where `--overwrite` was said. What the command reads, and a project
 that a window has open, is never replaced. Elsewhere, as in the window, which asks by itself, nothing is
@@ -267,7 +267,7 @@ def refuse_inputs(paths: Iterable[Path]) -> None:
 
 
 def wrote(*paths: Path) -> None:
-    """Remember what was written by other means than `being_written`."""
+    """Remember what was written by other means than `claim_output`."""
     if _now is not None:
         for path in paths:
             _now.wrote(path, whatever=True)

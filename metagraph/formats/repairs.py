@@ -8,7 +8,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from metagraph.formats.clips import digest, read_clip_file
+from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.store import load_motions
 from metagraph.formats.takes import NAME, ONE_FRAME
 from metagraph.graph.clip_source import source_of, with_source
@@ -155,7 +155,7 @@ def _named(before: ClipEntry, after: ClipEntry, folder: Path | None) -> ClipEntr
     if (NAME in before.as_is) == (NAME in after.as_is) or after.motion is None:
         return after
     place = (folder or Path()) / after.path
-    old, new = (read_clip_file(place, e.as_is)[e.take].name for e in (before, after))
+    old, new = (read_clips(place, e.as_is)[e.take].name for e in (before, after))
     return replace(after, name=new, motion=after.motion.renamed(new)) if before.name == old else after
 
 
@@ -190,7 +190,7 @@ def _brought(
     for ident, take in takes:
         beside = project.clips[ident]
         place = (folder or Path()) / beside.path
-        clips = read_clip_file(place, (ONE_FRAME,))
+        clips = read_clips(place, (ONE_FRAME,))
         if take >= len(clips):
             failures.append(f"'{beside.path}' no longer has take {take + 1}")
             continue

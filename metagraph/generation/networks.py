@@ -30,7 +30,7 @@ says how frame t hears them:
 **Look-ahead** g, 0..ahead: of frames after t + g audio and activity are 0 (standardised), in both kinds; the
 encoder is told g / ahead (1 where ahead is 0) in its last input, the same for all frames of a window.
 Windows of neighbouring frames share their convolutions only where g = ahead: then a whole sequence can be
-encoded at once, else each window by itself (`encoder.Hearing`), which costs some 6 times as much.
+encoded at once, else each window by itself (`encoder.EncoderHearing`), which costs some 6 times as much.
 
 **flow-vae, moglow** (`FlowSizes`). x is a frame, or `span` frames in a row, flat. Its code h `[D]`:
 

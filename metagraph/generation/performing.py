@@ -207,7 +207,7 @@ def side_clip(
     cancelled: Callable[[], bool] | None = None,
 ) -> tuple[Clip, tuple[str, ...]]:
     """Return what moves one side of a project's conversation, and what there is to know of it, in words.
-    heard: `heard_side`. Raises PoseError, RetargetError, FeatureError and CancelledError.
+    heard: `hear_side`. Raises PoseError, RetargetError, FeatureError and CancelledError.
     """
     first = find_first_pose(model, project)
     clip = generate_motion(model, heard, chance, name, first, progress, cancelled)

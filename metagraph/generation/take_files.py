@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from metagraph.common.budgets import CONVERSATION_SECONDS as LONGEST
 from metagraph.common.files import unforeseen_error
 from metagraph.errors import FileError
-from metagraph.formats.clips import digest, find_clip_files, read_clip_file
+from metagraph.formats.clips import digest, find_clip_files, read_clips
 from metagraph.formats.conversations.files import SOUNDS, read_conversation
 from metagraph.formats.conversations.languages import Speaking
 from metagraph.formats.transcripts.words import SUFFIXES as TRANSCRIPTS
@@ -145,7 +145,7 @@ def read_take_batch(
         if cancelled is not None and cancelled():
             raise CancelledError
         try:
-            there = read_clip_file(each.clip)
+            there = read_clips(each.clip)
         except Exception as error:  # one bad file spoils no other
             failures.append(str(unforeseen_error(each.clip, error)))
             continue

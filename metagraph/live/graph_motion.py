@@ -2,7 +2,7 @@
 clients hear and with what they say is going to be said.
 
 It goes by in frames, 30 a second. What became known is noted with its frame, so that the same motion can be
-made again of it (`metagraph.synthesis.extending.path.replayed`).
+made again of it (`metagraph.synthesis.extending.path.replay_path`).
 """
 
 from __future__ import annotations

@@ -66,7 +66,7 @@ def segments(
 
     words: as transcribed, by start. pitch, heard: of the side's own channel. partner: of the other's, where
     that is another. responses, hesitations: instead of the language's own lists. language: None for English.
-    Without words, `by_sound` tells.
+    Without words, `segment_by_sound` tells.
     """
     words = order_words(words, heard.duration)
     if not words:

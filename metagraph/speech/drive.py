@@ -219,7 +219,7 @@ def drive(
     more: Sequence[AnyRequest] = (),
 ) -> tuple[Performance, Plan]:
     """Return what a side performs, and its plan: gestures whose stroke would miss its peak, since another
-    still plays, are taken back. Arguments as for `asks_of`; more: asked besides.
+    still plays, are taken back. Arguments as for `drive_side`; more: asked besides.
 
     The same asks performed again give the same plan.
     """

@@ -23,7 +23,7 @@ OWN: tuple[Sound, ...] = ("clause", "response")  # what a side says itself, of w
 class Prosody:
     """Of each segment `[n]`, NaN where it is not known and for what is not one's own speech. loudness: LUFS.
     rate: letters a second, or syllables heard; which of them does not matter once it is compared with the
-    speaker's own (`standardised`).
+    speaker's own (`standardise_prosody`).
     """
 
     loudness: Array

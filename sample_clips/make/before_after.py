@@ -25,11 +25,11 @@ from metagraph.motion.skeleton import Pose
 from metagraph.playback.evaluator import Evaluator
 from metagraph.playback.plan import Cue, LayerPlan, Plan, Rest
 from metagraph.suggest.find_contacts import find_contacts, with_measured_body
-from preview.camera import OrbitCamera
+from preview.camera import Camera
 from preview.character_file import figure_from_file
 from preview.figure import MeshFigure
 from preview.offscreen import Offscreen
-from preview.scene import LIGHT, Scene, SceneActor
+from preview.scene import LIGHT, Actor, Scene
 from preview.sheet import contact_sheet, write_png
 from sample_clips.make.clip_sheet import layer_of
 from sample_clips.make.mannequin_rig import SKELETON, Array, at
@@ -90,7 +90,7 @@ def moving(pose: Pose) -> list[int]:
     return [side for side in (0, 1) if ways[side] > 0.25 * max(ways)]
 
 
-def cameras(places: Array, which: Sequence[int], layer: str, yaw: float) -> tuple[OrbitCamera, OrbitCamera]:
+def cameras(places: Array, which: Sequence[int], layer: str, yaw: float) -> tuple[Camera, Camera]:
     """Return the cameras of one pose: of the figure, and of its hands or face."""
     aspect = CELL[0] / CELL[1]
     low, high = (
@@ -98,8 +98,8 @@ def cameras(places: Array, which: Sequence[int], layer: str, yaw: float) -> tupl
         if layer == "body"
         else ((-0.4, 0.72, -0.1), (0.4, 1.75, 0.3))
     )
-    far = OrbitCamera().facing(yaw, np.radians(4)).frame((low, high), aspect, 1.0)
-    near = OrbitCamera().facing(yaw - np.radians(62), np.radians(8))
+    far = Camera().facing(yaw, np.radians(4)).frame((low, high), aspect, 1.0)
+    near = Camera().facing(yaw - np.radians(62), np.radians(8))
     if layer == "body":
         return far, near.frame((low, high), aspect, 1.0)
     if layer == "head":
@@ -128,7 +128,7 @@ def rows(
     which = moving(played(project, clip, np.linspace(0, clip.duration, 60), below))
     far, near = [], []
     for i in range(columns):
-        scene = Scene((SceneActor(figure, rotations[i], places[i]),))
+        scene = Scene((Actor(figure, rotations[i], places[i]),))
         one, two = cameras(places[i], which, layer_of(clip.name), yaw)
         far.append(offscreen.render(scene, one, LIGHT)[..., :3])
         near.append(offscreen.render(scene, two, LIGHT)[..., :3])

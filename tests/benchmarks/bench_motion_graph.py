@@ -340,9 +340,9 @@ def main() -> None:
     graphs = {share: compared(f"synthetic, {share:.0%}", states, limit) for share, limit in limits.items()}
     data = ROOT.parent / "shared" / "data" / "bandai-namco-1"
     if data.is_dir():
-        from metagraph.formats.clips import read_clip_file
+        from metagraph.formats.clips import read_clips
 
-        takes = [clip for path in sorted(data.glob("*.bvh")) for clip in read_clip_file(path)]
+        takes = [clip for path in sorted(data.glob("*.bvh")) for clip in read_clips(path)]
         real = read_states([t for t in takes if t.skeleton == takes[0].skeleton])
         for k in (2, 3, 4):
             try:

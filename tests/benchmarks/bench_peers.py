@@ -195,17 +195,17 @@ def drawing() -> Iterator[Row]:
     import moderngl
 
     from preview import shaders
-    from preview.camera import OrbitCamera
+    from preview.camera import Camera
     from preview.drawing import set_uniforms
     from preview.figure import SkinnedFigure
     from preview.offscreen import Offscreen
-    from preview.scene import Scene, SceneActor
+    from preview.scene import Actor, Scene
 
     figure = SkinnedFigure(read_character(ROOT / "sample_clips" / "mannequin.glb"))
     offscreen = Offscreen(960, 540)
     for count in (1, 10):
-        actors = [SceneActor(figure, *standing(figure.skeleton, count, n / 30)) for n in range(30)]
-        camera = OrbitCamera().frame(Scene((actors[0],)).bounds(), 960 / 540)
+        actors = [Actor(figure, *standing(figure.skeleton, count, n / 30)) for n in range(30)]
+        camera = Camera().frame(Scene((actors[0],)).bounds(), 960 / 540)
 
         def ours(actors: Any = actors, camera: Any = camera) -> None:
             for actor in actors:

@@ -21,10 +21,10 @@ sys.path.insert(0, str(ROOT))
 from metagraph.formats.gltf.reader import read_character  # noqa: E402
 from metagraph.motion import rotation  # noqa: E402
 from metagraph.motion.skeleton import Pose, Skeleton  # noqa: E402
-from preview.camera import OrbitCamera  # noqa: E402
+from preview.camera import Camera  # noqa: E402
 from preview.figure import SkinnedFigure, StickFigure  # noqa: E402
 from preview.offscreen import Offscreen  # noqa: E402
-from preview.scene import Scene, SceneActor  # noqa: E402
+from preview.scene import Actor, Scene  # noqa: E402
 
 
 def crowd(skeleton: Skeleton, count: int, seconds: float) -> tuple[np.ndarray, np.ndarray]:
@@ -50,8 +50,8 @@ def views(figure: SkinnedFigure, rounds: int) -> None:
     apart = [Offscreen(*small) for _ in range(4)]
     took: list[list[float]] = [[], [], []]
     for i in range(rounds + 2):
-        scene = Scene((SceneActor(figure, *crowd(skeleton, 1, i / 30)),))
-        camera = OrbitCamera().frame(scene.bounds(), 16 / 9)
+        scene = Scene((Actor(figure, *crowd(skeleton, 1, i / 30)),))
+        camera = Camera().frame(scene.bounds(), 16 / 9)
         for k, some in enumerate(([one], together, apart)):
             start = time.perf_counter()
             for n, offscreen in enumerate(some):
@@ -80,12 +80,12 @@ def main() -> None:
             for name, figure in figures.items():
                 for count in (1, 10, 100):
                     rounds = max(5, frames // (1 if count == 1 else 2 if count == 10 else 5))
-                    camera = OrbitCamera().frame(
-                        Scene((SceneActor(figure, *crowd(skeleton, count, 0)),)).bounds(), size[0] / size[1]
+                    camera = Camera().frame(
+                        Scene((Actor(figure, *crowd(skeleton, count, 0)),)).bounds(), size[0] / size[1]
                     )
                     drawn, read, used = [], [], []
                     for i in range(rounds + 2):
-                        scene = Scene((SceneActor(figure, *crowd(skeleton, count, i / 30)),))
+                        scene = Scene((Actor(figure, *crowd(skeleton, count, i / 30)),))
                         start, busy = time.perf_counter(), time.process_time()
                         offscreen.draw(scene, camera)
                         middle = time.perf_counter()

@@ -26,7 +26,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from metagraph.formats.clips import read_clip_file  # noqa: E402
+from metagraph.formats.clips import read_clips  # noqa: E402
 from metagraph.motion import rotation  # noqa: E402
 from metagraph.motion.clip import Clip  # noqa: E402
 from metagraph.motion.joint_map import propose_joint_map  # noqa: E402
@@ -87,7 +87,7 @@ def sets() -> dict[str, list[Clip]]:
     files = {"sample": sorted((ROOT / "sample_clips" / "clips").glob("*.glb")), **files}
     out = {}
     for name, paths in files.items():
-        found = [clip for path in paths for clip in read_clip_file(path)]
+        found = [clip for path in paths for clip in read_clips(path)]
         kinds = [sum(c.skeleton == clip.skeleton for c in found) for clip in found]
         own = [c for c in found if c.skeleton == found[kinds.index(max(kinds))].skeleton]
         some = [own[int(i)] for i in np.unique(np.linspace(0, len(own) - 1, EACH).astype(int))] if own else []
@@ -149,7 +149,7 @@ def contacts(clips: dict[str, list[Clip]], poses: dict[str, Pose]) -> None:
 def main() -> None:
     source = mannequin_skeleton()
     file = ROOT.parent / "shared" / "data" / "sumerian-hosts/glTF/animations/adult_female/stand_idle.glb"
-    target = read_clip_file(file)[0].skeleton if file.exists() else Skeleton(
+    target = read_clips(file)[0].skeleton if file.exists() else Skeleton(
         source.names, source.parents, source.rest_rotations, source.rest_translations * 1.2
     )  # fmt: skip
     many = clips(source)

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.errors import FileError
-from metagraph.formats.clips import find_clip_files, read_clip_file
+from metagraph.formats.clips import find_clip_files, read_clips
 from metagraph.formats.stray_poses import stray_poses
 from metagraph.formats.takes import BIND_POSE, LONE_FRAME
 from metagraph.motion import rotation
@@ -42,7 +42,7 @@ def takes_of(folders: list[Path]) -> list[Clip]:
     for folder in folders:
         for path in find_clip_files(folder):
             try:
-                takes = read_clip_file(path, (BIND_POSE, LONE_FRAME))
+                takes = read_clips(path, (BIND_POSE, LONE_FRAME))
             except FileError:
                 continue
             for clip in takes:

@@ -22,7 +22,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
 from metagraph.errors import FileError  # noqa: E402
-from metagraph.formats.clips import find_clip_files, read_clip_file  # noqa: E402
+from metagraph.formats.clips import find_clip_files, read_clips  # noqa: E402
 from metagraph.formats.store import open_project  # noqa: E402
 from metagraph.graph import edits  # noqa: E402
 from metagraph.graph.model import LAYERS, Project  # noqa: E402
@@ -118,7 +118,7 @@ def others() -> Sequence[tuple[str, Truth, dict[str, Clip]]]:
         groups: dict[str, dict[str, Clip]] = {}
         for file in find_clip_files(folder):
             try:
-                for clip in read_clip_file(file):
+                for clip in read_clips(file):
                     groups.setdefault(clip.skeleton.fingerprint, {})[clip.name] = clip
             except FileError:
                 continue  # a character without clips

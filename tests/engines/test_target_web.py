@@ -65,18 +65,18 @@ def test_the_page_poses_the_character_as_the_preview_does_and_its_picture_matche
         assert np.linalg.norm(np.array(joints[joint]) - positions[place]) < 1e-4, joint
 
     from app.cli.render_command import load_figure
-    from preview.camera import OrbitCamera
+    from preview.camera import Camera
     from preview.offscreen import Offscreen
-    from preview.scene import Scene, SceneActor
+    from preview.scene import Actor, Scene
 
     width, height, data = picture
     shown = np.asarray(Image.open(io.BytesIO(base64.b64decode(data.split(",")[1]))).convert("RGB"), int)
     theirs = np.abs(shown - [255, 0, 255]).sum(-1) > 40
     with Offscreen(width, height) as stage:
-        actor = SceneActor(load_figure(sample, SAMPLES), rotations, positions)
+        actor = Actor(load_figure(sample, SAMPLES), rotations, positions)
         ours = (
             stage.render(
-                Scene((actor,), ground=False, shadow=False, background=(0.0, 0.0, 0.0, 0.0)), OrbitCamera()
+                Scene((actor,), ground=False, shadow=False, background=(0.0, 0.0, 0.0, 0.0)), Camera()
             )[..., 3]
             > 40
         )

@@ -11,7 +11,7 @@ import pytest
 from metagraph.errors import FileError
 from metagraph.formats import clip_readers
 from metagraph.formats.clip_readers import READERS, ClipReader, clip_suffixes
-from metagraph.formats.clips import find_clip_files, import_clips, read_clip_file
+from metagraph.formats.clips import find_clip_files, import_clips, read_clips
 from tests.recipes import code_of
 
 
@@ -35,7 +35,7 @@ def test_no_ending_is_read_by_two() -> None:
 def test_a_reader_that_is_added_reads_files_alone_and_in_folders(tmp_path: Path) -> None:
     path = tmp_path / "walk.points"
     path.write_text("points\n0 1 0\n0 1 0.5\n")
-    (clip,) = read_clip_file(path)
+    (clip,) = read_clips(path)
     np.testing.assert_array_equal(clip.translations[:, 0], [[0, 1, 0], [0, 1, 0.5]])
     assert find_clip_files(tmp_path) == [path]
     (tmp_path / "bad.points").write_text("points\n0 1\n")
@@ -49,8 +49,8 @@ def test_content_and_ending_must_agree_with_one_reader(tmp_path: Path) -> None:
     path = tmp_path / "walk.bvh"
     path.write_text("points\n0 1 0\n")
     with pytest.raises(FileError, match="a file of points"):
-        read_clip_file(path)
+        read_clips(path)
     path = tmp_path / "walk.points"
     path.write_text("HIERARCHY\n")
     with pytest.raises(FileError, match="a BVH file"):
-        read_clip_file(path)
+        read_clips(path)

@@ -11,7 +11,7 @@ import pytest
 from metagraph.errors import FileError
 from metagraph.formats.bvh.file import write_bvh
 from metagraph.formats.clip_readers import clip_suffixes
-from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clip_file
+from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clips
 from metagraph.formats.gltf.reader import write_glb
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
@@ -30,15 +30,15 @@ def clip(name: str = "wave", frames: int = 8) -> Clip:
 def test_every_format_reads_through_one_door(tmp_path: Path) -> None:
     write_glb(tmp_path / "a.GLB", [clip("one"), clip("two")])
     write_bvh(clip(), tmp_path / "b.bvh")
-    assert [c.name for c in read_clip_file(tmp_path / "a.GLB")] == ["one", "two"]
-    assert [c.name for c in read_clip_file(tmp_path / "b.bvh")] == ["b"]
+    assert [c.name for c in read_clips(tmp_path / "a.GLB")] == ["one", "two"]
+    assert [c.name for c in read_clips(tmp_path / "b.bvh")] == ["b"]
 
 
 def test_nameless_bind_poses_of_one_frame_are_skipped_with_a_note_and_others_kept_last(
     tmp_path: Path,
 ) -> None:
     write_glb(tmp_path / "a.glb", [clip("sit", 1), clip("walk"), clip("Take 001", 1)])
-    clips = read_clip_file(tmp_path / "a.glb")
+    clips = read_clips(tmp_path / "a.glb")
     assert [c.name for c in clips] == ["walk", "sit"]
     assert any("skipped 'a'" in note for note in clips[0].notes)
     assert any("'sit'" in note for note in clips[1].notes)
@@ -46,7 +46,7 @@ def test_nameless_bind_poses_of_one_frame_are_skipped_with_a_note_and_others_kep
 
 def test_a_file_of_nothing_but_poses_keeps_them(tmp_path: Path) -> None:
     write_glb(tmp_path / "a.glb", [clip("sit", 1), clip("stand", 1)])
-    assert len(read_clip_file(tmp_path / "a.glb")) == 2
+    assert len(read_clips(tmp_path / "a.glb")) == 2
 
 
 @pytest.mark.parametrize(
@@ -68,7 +68,7 @@ def test_a_file_that_is_not_what_its_ending_says_is_refused_with_a_remedy(
 ) -> None:
     (tmp_path / name).write_bytes(content)
     with pytest.raises(FileError) as caught:
-        read_clip_file(tmp_path / name)
+        read_clips(tmp_path / name)
     assert caught.value.remedy
     for word in words:
         assert word in str(caught.value)
@@ -78,7 +78,7 @@ def test_a_missing_file_and_a_folder_are_refused(tmp_path: Path) -> None:
     (tmp_path / "folder.bvh").mkdir()
     for name in ("none.bvh", "folder.bvh"):
         with pytest.raises(FileError, match="cannot be read"):
-            read_clip_file(tmp_path / name)
+            read_clips(tmp_path / name)
 
 
 def test_clip_files_are_found_below_a_folder_in_a_stable_order(tmp_path: Path) -> None:
@@ -138,7 +138,7 @@ def test_the_digest_is_the_sha_256_of_the_content(tmp_path: Path) -> None:
 def test_units_axes_rests_and_bind_poses_of_the_zoo_are_seen_through(
     zoo_files: dict[str, Path], name: str
 ) -> None:
-    animal, clips = zoo.ANIMALS[name], read_clip_file(zoo_files[name])
+    animal, clips = zoo.ANIMALS[name], read_clips(zoo_files[name])
     assert [c.name for c in clips] == (list(zoo.TAKES) if animal.kind == ".glb" else [name])
     for clip, take in zip(clips, zoo.TAKES, strict=False):
         assert clip.fps == pytest.approx(animal.fps) and clip.duration == pytest.approx(zoo.SECONDS)

@@ -53,7 +53,9 @@ def test_strangers_are_told_once_not_as_files_that_cannot_be_used_too(tmp_path: 
     (tmp_path / "bad.glb").write_bytes(b"noise")
     result = import_files(Project(), tmp_path, [tmp_path])
     words = describe_import(result, window=False)
-    assert all(piece in words for piece in ("2 clips.", "1 clip with another", "1 unusable file", "of 1 clip in"))
+    assert all(
+        piece in words for piece in ("2 clips.", "1 clip with another", "1 unusable file", "of 1 clip in")
+    )
     assert [r.do for r in remedies(result)] == ["map"]
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from metagraph.errors import FileError
-from metagraph.formats.clips import find_clip_files, read_clip_file
+from metagraph.formats.clips import find_clip_files, read_clips
 from metagraph.formats.gltf.reader import morph_targets
 from metagraph.formats.imports import import_files
 from metagraph.formats.live_link_face import TURNS, read_live_link
@@ -125,7 +125,7 @@ def test_other_tables_are_no_clips(tmp_path: Path) -> None:
     (tmp_path / "other.csv").write_text("a,b\n1,2\n")
     assert [p.name for p in find_clip_files(tmp_path)] == ["take.csv"]
     with pytest.raises(FileError, match=r"other\.csv"):
-        read_clip_file(tmp_path / "other.csv")
+        read_clips(tmp_path / "other.csv")
 
 
 @pytest.fixture(scope="module")

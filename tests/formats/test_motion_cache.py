@@ -13,7 +13,7 @@ import pytest
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats import motion_cache, store
-from metagraph.formats.clips import digest, read_clip_file
+from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.motion_cache import finish, read_or_kept
 from metagraph.motion.clip import Clip, Repair
 
@@ -63,27 +63,25 @@ def test_what_was_read_comes_back_to_the_bit_and_the_file_is_not_read_again(
     first = read(CLIP)
     finish()
     assert [p.suffix for p in files(folder)] == [".motion"]
-    monkeypatch.setattr(motion_cache, "read_clip_file", barred)
+    monkeypatch.setattr(motion_cache, "read_clips", barred)
     assert_same(first, read(CLIP))
-    assert_same(first, read_clip_file(CLIP))
+    assert_same(first, read_clips(CLIP))
 
 
 def test_clips_are_kept_whose_notes_know_their_template(monkeypatch: pytest.MonkeyPatch) -> None:
     repair = Repair("unit", phrase("{n} frames were joined", n=2))
-    noted = [
-        replace(read_clip_file(CLIP)[0], notes=(phrase("{n} gaps were filled", n=3),), repairs=(repair,))
-    ]
-    monkeypatch.setattr(motion_cache, "read_clip_file", lambda *_: noted)
+    noted = [replace(read_clips(CLIP)[0], notes=(phrase("{n} gaps were filled", n=3),), repairs=(repair,))]
+    monkeypatch.setattr(motion_cache, "read_clips", lambda *_: noted)
     read(CLIP)
     finish()
-    monkeypatch.setattr(motion_cache, "read_clip_file", barred)
+    monkeypatch.setattr(motion_cache, "read_clips", barred)
     assert_same(noted, read(CLIP))
 
 
 def test_clips_of_a_project_share_a_skeleton(monkeypatch: pytest.MonkeyPatch) -> None:
     store.open_project(SAMPLE / "practice.metagraph.yaml")
     finish()
-    monkeypatch.setattr(motion_cache, "read_clip_file", barred)
+    monkeypatch.setattr(motion_cache, "read_clips", barred)
     again = store.open_project(SAMPLE / "practice.metagraph.yaml")
     motions = [e.motion for e in again.project.clips.values()]
     assert len(motions) > 5 and all(m is not None for m in motions)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from metagraph.formats.bvh.file import read_bvh, write_bvh
-from metagraph.formats.clips import read_clip_file
+from metagraph.formats.clips import read_clips
 from metagraph.formats.gltf.reader import write_glb
 from metagraph.formats.imports import import_files
 from metagraph.formats.project.data import from_data, to_data
@@ -244,9 +244,9 @@ def test_a_file_that_is_gone_is_told_and_nothing_changes(bind: Path) -> None:
 
 
 def test_readers_tell_a_repair_they_were_told_to_leave(bind: Path) -> None:
-    (clip,) = read_clip_file(bind / "a.glb", (BIND_POSE,))
+    (clip,) = read_clips(bind / "a.glb", (BIND_POSE,))
     assert [(r.name, r.made) for r in clip.repairs] == [(BIND_POSE, False)]
-    assert clip.frames == read_clip_file(bind / "a.glb")[0].frames + 1
+    assert clip.frames == read_clips(bind / "a.glb")[0].frames + 1
 
 
 def test_a_retargeted_clip_stays_retargeted_without_a_repair(toy: Any, sample: Any, tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from metagraph.engines.export import write_project_files
-from metagraph.formats.clips import read_clip_file
+from metagraph.formats.clips import read_clips
 from metagraph.formats.project.data import DataError, from_data, to_data
 from metagraph.formats.store import open_project, save_project
 from metagraph.graph import edits
@@ -29,7 +29,7 @@ def saved(tmp_path):
     project = Project()
     for file in files:
         shutil.copy(file, tmp_path / file.name)
-        project = edits.add_clips(project, [(file.name, 0, "", read_clip_file(file)[0])])
+        project = edits.add_clips(project, [(file.name, 0, "", read_clips(file)[0])])
     first, second = project.clips
     project = edits.add_stance(project, "arms", "here", [first])
     stance = next(iter(project.graphs["arms"].stances))
@@ -52,7 +52,7 @@ def test_it_is_kept_and_read_again(saved):
 def test_the_export_has_the_clip_as_it_plays(saved, tmp_path):
     project, _, clip = saved
     write_project_files(project, tmp_path / "out")
-    found = {c.name: c for f in (tmp_path / "out").glob("*.glb") for c in read_clip_file(f)}
+    found = {c.name: c for f in (tmp_path / "out").glob("*.glb") for c in read_clips(f)}
     played = project.clips[clip]
     exported = next(c for name, c in found.items() if played.name in name)
     assert exported.duration == pytest.approx(played.motion.duration, abs=0.02)

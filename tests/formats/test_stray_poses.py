@@ -53,14 +53,14 @@ def test_sample_clips_that_start_fast_or_from_a_bind_pose_stay_whole(takes: list
 @pytest.mark.nightly
 def test_real_clips_lose_the_bind_poses_they_have_and_no_frame_more(shared_data: Path) -> None:
     from metagraph.errors import FileError
-    from metagraph.formats.clips import find_clip_files, read_clip_file
+    from metagraph.formats.clips import find_clip_files, read_clips
 
     dropped = {}
     for path in find_clip_files(shared_data):
         if path.suffix == ".fbx" or ("bandai" in str(path) and "_sad_" not in path.name):
             continue
         try:
-            for clip in read_clip_file(path):
+            for clip in read_clips(path):
                 for repair in clip.repairs:
                     if repair.name in (BIND_POSE, LONE_FRAME):
                         dropped[path.name, clip.name] = repair.words

@@ -207,7 +207,7 @@ def every_reader() -> dict[str, Fuzzed]:
     from app.project.pattern_files import read_patterns
     from metagraph.common.pictures import picture_size
     from metagraph.engines.reading import read_export
-    from metagraph.formats.clips import read_clip_file
+    from metagraph.formats.clips import read_clips
     from metagraph.formats.elan import read_elan
     from metagraph.formats.fbx.reader import read_fbx_clips
     from metagraph.formats.gltf.reader import has_skinned_mesh, morph_targets, read_character, vrm_roles
@@ -286,9 +286,9 @@ def every_reader() -> dict[str, Fuzzed]:
         "model": Fuzzed(model, model_file, (b"PK", b"NUMPY"), spoilt_archive),
         "bml": Fuzzed(bml, _fixed(a_xml=BML), XML, spoilt_words),
         "fbx": Fuzzed(read_fbx_clips, _fixed(a_fbx=ascii_fbx()), (b"{", b"}", b"*9", b"Model:", b'"'), spoilt_words),
-        "bvh": Fuzzed(read_clip_file, _clip_seeds(".bvh"), bvh, spoilt_words),
+        "bvh": Fuzzed(read_clips, _clip_seeds(".bvh"), bvh, spoilt_words),
         "live link": Fuzzed(read_live_link, _fixed(a_csv=_LIVE_LINK), (b",", b"\n", b"12:00:00:01", b";", b"nan", b"-"), spoilt_words),
-        "gltf": Fuzzed(read_clip_file, _clip_seeds(".glb"), JSON, spoilt_glb),
+        "gltf": Fuzzed(read_clips, _clip_seeds(".glb"), JSON, spoilt_glb),
         "character": Fuzzed(drawn, _clip_seeds(".glb"), JSON, spoilt_glb),
         "textgrid": Fuzzed(voice_from_phones, _only(".TextGrid"), (b'"', b"<exists>", b"IntervalTier"), spoilt_words),
         "elan": Fuzzed(read_elan, _only(".eaf"), XML, spoilt_words),

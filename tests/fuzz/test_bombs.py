@@ -18,7 +18,7 @@ import pytest
 from metagraph.common import budgets
 from metagraph.common.pictures import picture_size
 from metagraph.errors import FileError
-from metagraph.formats.clips import read_clip_file
+from metagraph.formats.clips import read_clips
 from metagraph.formats.elan import read_elan
 from metagraph.formats.gltf.reader import read_character, read_gltf_clips, vrm_roles
 from metagraph.formats.imports import import_files
@@ -112,19 +112,19 @@ END = "}\nMOTION\n"
 )
 def test_a_bvh_s_claims_are_not_believed(tmp_path: Path, frames: str, step: str) -> None:
     (tmp_path / "a.bvh").write_text(f"{HEAD}{END}Frames: {frames}\nFrame Time: {step}\n0\n1\n")
-    refused(read_clip_file, tmp_path / "a.bvh")
+    refused(read_clips, tmp_path / "a.bvh")
 
 
 def test_joints_that_cost_a_file_nothing_are_paid_for(tmp_path: Path) -> None:
     still = "".join(f"JOINT j{n}\n{{\nOFFSET 0 1 0\nCHANNELS 0\n}}\n" for n in range(4000))
     (tmp_path / "a.bvh").write_text(f"{HEAD}{still}{END}Frames: 50000\nFrame Time: 0.03\n" + "0\n" * 50000)
-    assert budgets.OUT_OF_PROPORTION in refused(read_clip_file, tmp_path / "a.bvh").cause
+    assert budgets.OUT_OF_PROPORTION in refused(read_clips, tmp_path / "a.bvh").cause
 
 
 def test_a_number_of_channels_of_five_thousand_digits_is_none(tmp_path: Path) -> None:
     text = HEAD.replace("CHANNELS 1", f"CHANNELS {'1' * 5000}")
     (tmp_path / "a.bvh").write_text(f"{text}{END}Frames: 1\nFrame Time: 0.03\n0\n")
-    refused(read_clip_file, tmp_path / "a.bvh")
+    refused(read_clips, tmp_path / "a.bvh")
 
 
 def glb(path: Path, document: dict[str, Any], body: bytes) -> Path:
@@ -201,7 +201,7 @@ def test_one_file_beside_another_is_read_once(tmp_path: Path) -> None:
         {**view, "buffer": 199 - n} for n, view in enumerate(document["bufferViews"])
     ] * 60
     (tmp_path / "a.gltf").write_text(json.dumps({"asset": {"version": "2.0"}, **document}))
-    frugal(read_clip_file, tmp_path / "a.gltf")
+    frugal(read_clips, tmp_path / "a.gltf")
 
 
 # --- pictures and text

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from metagraph.formats.clips import read_clip_file
+from metagraph.formats.clips import read_clips
 from metagraph.generation.features import FLOOR, MELS, RATE
 from metagraph.generation.initial import initial
 from metagraph.generation.networks import (
@@ -34,7 +34,7 @@ CLIPS = Path(__file__).resolve().parents[2] / "sample_clips" / "clips"
 
 
 def stance() -> Clip:
-    return read_clip_file(CLIPS / "hands_at_sides__stance.glb")[0]
+    return read_clips(CLIPS / "hands_at_sides__stance.glb")[0]
 
 
 def rig() -> PoseRig:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from metagraph.formats.clips import find_clip_files, read_clip_file
+from metagraph.formats.clips import find_clip_files, read_clips
 from metagraph.generation.landmarks import HEAD, NOSE, landmarks_of
 from metagraph.generation.poses import PoseError, decode_poses, encode_clip, find_rig, resample_rotations
 from metagraph.motion import rotation
@@ -29,7 +29,7 @@ pytestmark = pytest.mark.skipif(not DATA.is_dir(), reason=f"clips made by others
 )
 def test_a_talkers_upper_body_comes_back(folder, numbers):
     files = [f for f in find_clip_files(DATA / folder) if f.suffix in (".glb", ".bvh")]
-    clips = [c for f in files[:: max(1, len(files) // 4)] for c in read_clip_file(f)[:2]]
+    clips = [c for f in files[:: max(1, len(files) // 4)] for c in read_clips(f)[:2]]
     assert clips
     seen = set()
     for clip in clips:
@@ -51,4 +51,4 @@ def test_a_talkers_upper_body_comes_back(folder, numbers):
 @pytest.mark.parametrize("name", ["bird-animations.glb", "quad-creature-animations.glb"])
 def test_animals_are_refused_in_words(name):
     with pytest.raises(PoseError, match=r"has no .*arm.* that can be told by name or shape"):
-        find_rig(read_clip_file(DATA / "mesh2motion-cmu" / name)[0].skeleton)
+        find_rig(read_clips(DATA / "mesh2motion-cmu" / name)[0].skeleton)

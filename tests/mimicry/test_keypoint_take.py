@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from metagraph.formats.clips import read_clip_file
+from metagraph.formats.clips import read_clips
 from metagraph.graph.model import Project
 from metagraph.mimicry.keypoint_layouts import POINTS, KeypointTrack
 from metagraph.mimicry.keypoint_take import KeypointTakeError, clip_from_keypoints
@@ -136,7 +136,7 @@ def test_other_studios_takes_are_made_again_too(shared_data: Path) -> None:
     some = sorted((shared_data / "bandai-namco-1").rglob("*.bvh"))[:4]
     errors = []
     for path in some:
-        clip = read_clip_file(path)[0]
+        clip = read_clips(path)[0]
         errors.append(off(clip, clip_from_keypoints(seen(clip), clip.skeleton, clip.name)).reshape(-1, 7))
     assert np.median(np.concatenate(errors)) < 0.045
 

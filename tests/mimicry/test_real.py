@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from metagraph.formats.clips import read_clip_file
+from metagraph.formats.clips import read_clips
 from metagraph.graph import edits
 from metagraph.graph.model import Layer, Life, Project
 from metagraph.mimicry.keypoint_layouts import PLACE
@@ -23,7 +23,7 @@ ARMS = ("Idle", "Unarmed_Idle", "2H_Melee_Idle", "Blocking", "Sit_Chair_Idle")
 
 def project_of(path: Path, names: tuple[str, ...], layer: Layer) -> Project:
     """A project whose stances are clips of a file, the first its base pose and start."""
-    clips = {clip.name: clip for clip in read_clip_file(path)}
+    clips = {clip.name: clip for clip in read_clips(path)}
     project = edits.add_clips(
         Project("real", life=Life(on=False)), [(f"{n}.glb", 0, "", clips[n]) for n in names]
     )
@@ -35,7 +35,7 @@ def project_of(path: Path, names: tuple[str, ...], layer: Layer) -> Project:
 
 def poses_of(name: str, path: Path, frames: dict[str, int]) -> Project:
     """A project whose stances are single moments of a clip of the zoo, held."""
-    clip = read_clip_file(path)[0]
+    clip = read_clips(path)[0]
     project = Project(name, life=Life(on=False))
     moments = {n: round(at * clip.fps / 30) for n, at in frames.items()}
     held = [

@@ -78,11 +78,11 @@ def test_another_contact_of_the_same_hand_takes_the_place_of_the_one_it_meets(to
 
 @pytest.mark.parametrize("name", ["Idle01_YouLf01", "Idle01_NegativeBt01", "Idle02_MeRt01"])
 def test_hands_of_a_figure_nobody_here_made_stay_too(shared_data, name):
-    from metagraph.formats.clips import read_clip_file
+    from metagraph.formats.clips import read_clips
     from metagraph.graph.model import Project
 
     path = shared_data / "smartbody-brad" / f"ChrBrad@{name}.bvh"
-    project = edits.add_clips(Project(), [(path.as_posix(), 0, "", read_clip_file(path)[0])])
+    project = edits.add_clips(Project(), [(path.as_posix(), 0, "", read_clips(path)[0])])
     (clip,) = project.clips
     length = project.clips[clip].duration
     for side in ("left", "right"):

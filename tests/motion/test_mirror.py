@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.formats.clips import read_clip_file
+from metagraph.formats.clips import read_clips
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.mirror import mirror, pairs_of, swap_sides
@@ -234,7 +234,7 @@ def test_clips_of_the_zoo_come_back_when_mirrored_twice_and_put_hands_where_the_
 
 
 def mirrored_twice(file: Path) -> None:
-    for clip in read_clip_file(file)[:5]:
+    for clip in read_clips(file)[:5]:
         pairs = pairs_of(clip.skeleton)
         twin = mirror(clip, pairs)
         degrees, metres = apart(clip, mirror(twin, pairs))
@@ -251,7 +251,7 @@ def mirrored_twice(file: Path) -> None:
 
 
 def test_a_rest_pose_in_which_the_body_lies_across_the_middle_is_told(shared_data: Path) -> None:
-    clip = read_clip_file(next(iter(sorted((shared_data / "bandai-namco-1").glob("*.bvh")))))[0]
+    clip = read_clips(next(iter(sorted((shared_data / "bandai-namco-1").glob("*.bvh")))))[0]
     with pytest.raises(ValueError, match="beside the middle"):
         mirror(clip, pairs_of(clip.skeleton))
 

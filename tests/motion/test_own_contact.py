@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
-from metagraph.formats.clips import read_clip_file
+from metagraph.formats.clips import read_clips
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.joint_map import JointMap, propose_joint_map
@@ -25,7 +25,7 @@ CLIPS = Path(__file__).parents[2] / "sample_clips" / "clips"
 
 
 def ours(name: str) -> Clip:
-    return read_clip_file(CLIPS / f"{name}.glb")[0]
+    return read_clips(CLIPS / f"{name}.glb")[0]
 
 
 def both(clip: Clip, target: Any) -> list[Clip]:
@@ -137,7 +137,7 @@ def test_hands_of_a_real_talker_touch_on_another(shared_data: Path) -> None:
     target = variant(mannequin)
     gaps: list[list[np.ndarray]] = [[], []]
     for name in ("Idle01_ScratchChest01", "Idle01_Contemplate01", "Idle01_SqueezeHand01"):
-        clip = read_clip_file(next((shared_data / "smartbody-brad").rglob(f"*{name}.bvh")))[0]
+        clip = read_clips(next((shared_data / "smartbody-brad").rglob(f"*{name}.bvh")))[0]
         for carried in (False, True):
             gaps[carried].append(contact_errors(clip, target, standing_pose(clip), target.rest, carried)[0])
     off, on = (np.concatenate(some) for some in gaps)

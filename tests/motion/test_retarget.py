@@ -17,7 +17,7 @@ from hypothesis import example, given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
-from metagraph.formats.clips import read_clip_file
+from metagraph.formats.clips import read_clips
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint, propose_joint_map
@@ -416,11 +416,11 @@ if not (Path(__file__).parents[3] / "shared" / "data").is_dir():
 @cache
 def real(folder: Path, who: str) -> Clip:
     if who == "sample":
-        return read_clip_file(
+        return read_clips(
             Path(__file__).parents[2] / "sample_clips/clips/hands_at_sides__air_quotes_bt_01.glb"
         )[0]
     file, wanted = FILES[who]
-    return next(c for c in read_clip_file(folder / file) if wanted(c))
+    return next(c for c in read_clips(folder / file) if wanted(c))
 
 
 # Of the zoo, everyone with the sample, both ways, and with the next.
@@ -429,7 +429,7 @@ ZOO = [pair for name in ANIMALS for pair in (("sample", name), (name, "sample"))
 
 @cache
 def of_zoo(files: tuple[tuple[str, Path], ...], who: str) -> Clip:
-    return real(Path(), who) if who == "sample" else read_clip_file(dict(files)[who])[0]
+    return real(Path(), who) if who == "sample" else read_clips(dict(files)[who])[0]
 
 
 @pytest.fixture
@@ -513,7 +513,7 @@ def heights_and_feet(clip: Clip, other: Clip) -> None:
 
 def test_quadrupeds_and_birds_are_refused(shared_data: Path, sample: Any) -> None:
     for file in ("quad-creature-animations.glb", "bird-animations.glb"):
-        clip = read_clip_file(shared_data / "mesh2motion-cmu" / file)[0]
+        clip = read_clips(shared_data / "mesh2motion-cmu" / file)[0]
         with pytest.raises(RetargetError, match=re.escape(repr(clip.name))):
             retarget(clip, sample.skeleton, propose_joint_map(clip.skeleton, sample.skeleton))
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from metagraph.formats.clips import read_clip_file
+from metagraph.formats.clips import read_clips
 from metagraph.motion import rotation
 from metagraph.motion.roles import (
     PARTS,
@@ -320,7 +320,7 @@ def with_twists(skeleton: Skeleton) -> Skeleton:
 
 @pytest.mark.parametrize("name", ANIMALS)
 def test_the_zoo_is_known_by_its_shape_alone(zoo_files: dict[str, Path], name: str) -> None:
-    skeleton = read_clip_file(zoo_files[name])[0].skeleton
+    skeleton = read_clips(zoo_files[name])[0].skeleton
     named = find_roles(skeleton)
     assert find_roles(renamed(skeleton, [f"joint{n}" for n in range(len(skeleton))])) == named
     twisted = with_twists(skeleton)
@@ -344,7 +344,7 @@ def test_the_zoo_is_known_by_its_shape_alone(zoo_files: dict[str, Path], name: s
     ],
 )
 def test_real_people_are_known_by_their_shape_alone(shared_data: Path, file: str) -> None:
-    skeleton = read_clip_file(shared_data / file)[0].skeleton
+    skeleton = read_clips(shared_data / file)[0].skeleton
     named = find_roles(skeleton)
     found = find_roles(renamed(skeleton, [f"joint{n}" for n in range(len(skeleton))]))
     body = [role for role in named if not role.endswith(("jaw", "eye", "lid"))]
@@ -352,7 +352,7 @@ def test_real_people_are_known_by_their_shape_alone(shared_data: Path, file: str
 
 
 def test_a_skull_under_two_joints_of_the_neck_is_the_head(shared_data: Path) -> None:
-    skeleton = read_clip_file(shared_data / "smartbody-brad/ChrBrad@Idle03.bvh")[0].skeleton
+    skeleton = read_clips(shared_data / "smartbody-brad/ChrBrad@Idle03.bvh")[0].skeleton
     assert skeleton.names[find_roles(skeleton)["head"]] == "JtSkullA"
     other = renamed(skeleton, [n.replace("Skull", "Cabeza") for n in skeleton.names])
     assert other.names[find_roles(other)["head"]] == "JtCabezaA"
@@ -463,7 +463,7 @@ PEOPLE = {
 def test_real_people_have_the_roles_one_would_point_at(shared_data: Path, file: str) -> None:
     if file.endswith(".fbx"):
         pytest.importorskip("ufbx", reason="the extra metagraph-studio[fbx] is not installed")
-    skeleton = read_clip_file(shared_data / file)[0].skeleton
+    skeleton = read_clips(shared_data / file)[0].skeleton
     roles = find_roles(skeleton)
     assert is_humanoid(roles), missing_roles(roles)
     hips, hand, arm = PEOPLE[file]
@@ -479,7 +479,7 @@ def test_real_people_have_the_roles_one_would_point_at(shared_data: Path, file: 
 
 @pytest.mark.parametrize("name", ANIMALS)
 def test_joints_of_the_zoo_have_the_roles_they_are_named_for(zoo_files: dict[str, Path], name: str) -> None:
-    skeleton = read_clip_file(zoo_files[name])[0].skeleton
+    skeleton = read_clips(zoo_files[name])[0].skeleton
     roles = find_roles(skeleton)
     assert is_humanoid(roles), missing_roles(roles)
     named = {role: skeleton.names[joint] for role, joint in roles.items()}
@@ -491,4 +491,4 @@ def test_joints_of_the_zoo_have_the_roles_they_are_named_for(zoo_files: dict[str
 
 @pytest.mark.parametrize("file", ["bird-animations.glb", "quad-creature-animations.glb"])
 def test_real_animals_are_told_apart_from_people(shared_data: Path, file: str) -> None:
-    assert not is_humanoid(find_roles(read_clip_file(shared_data / "mesh2motion-cmu" / file)[0].skeleton))
+    assert not is_humanoid(find_roles(read_clips(shared_data / "mesh2motion-cmu" / file)[0].skeleton))

@@ -16,7 +16,7 @@ from preview.camera import frame_whole_figure
 from preview.drawing_apart import WORTH_LEVELS, draw_scenes
 from preview.figure import SkinnedFigure, StickFigure
 from preview.offscreen import Offscreen
-from preview.scene import DARK, Scene, SceneActor
+from preview.scene import DARK, Actor, Scene
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 from tests.preview.conftest import chain
 
@@ -32,7 +32,7 @@ def waving(figure, count=COUNT):
     for n in range(count):
         turns = skeleton.rest_rotations.copy()
         turns[1] = rotation.multiply(turns[1], rotation.from_axis_angle(np.array([0.0, 0, 1]), n / count))
-        actor = SceneActor(figure, *skeleton.globals(Pose(turns, skeleton.rest_translations)))
+        actor = Actor(figure, *skeleton.globals(Pose(turns, skeleton.rest_translations)))
         yield Scene((actor,)), frame_whole_figure(Scene((actor,)).bounds(), SIZE[0] / SIZE[1])
 
 

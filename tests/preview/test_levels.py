@@ -118,11 +118,11 @@ def test_levels_may_come_while_a_picture_is_drawn(offscreen, mannequin, monkeypa
     """They are made on another thread."""
     from preview.camera import frame_whole_figure
     from preview.figure import SkinnedFigure
-    from preview.scene import DARK, Scene, SceneActor
+    from preview.scene import DARK, Actor, Scene
     from preview.shadows import Shadows
 
     figure = SkinnedFigure(mannequin)
-    scene = Scene((SceneActor(figure, *figure.skeleton.globals(figure.skeleton.rest)),))
+    scene = Scene((Actor(figure, *figure.skeleton.globals(figure.skeleton.rest)),))
     cast = Shadows.cast
     monkeypatch.setattr(Shadows, "cast", lambda *told: figure.simplify() or cast(*told))
     camera = frame_whole_figure(scene.bounds(), 4 / 3)

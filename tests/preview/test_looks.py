@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from preview.camera import OrbitCamera
+from preview.camera import Camera
 from preview.figure import StickFigure
 from preview.looks import BACKDROPS, LIGHTS, STAGE, STUDIO, look_name, look_of
 from preview.offscreen import Offscreen
-from preview.scene import THEMES, Scene, SceneActor
+from preview.scene import THEMES, Actor, Scene
 
 
 @pytest.mark.parametrize("theme", THEMES)
@@ -32,9 +32,9 @@ def test_every_preset_has_a_name_of_its_own_a_lamp_above_and_a_ground_that_shado
 def test_lights_fall_from_other_sides_and_a_plain_background_is_one_colour_up_to_the_edges(toy):
     figure = StickFigure(toy.skeleton)
     rotations, positions = toy.skeleton.globals(toy.skeleton.rest)
-    scene = Scene((SceneActor(figure, rotations, positions),))
+    scene = Scene((Actor(figure, rotations, positions),))
     with Offscreen(160, 120) as offscreen:
-        camera = OrbitCamera().frame(scene.bounds(), 160 / 120)
+        camera = Camera().frame(scene.bounds(), 160 / 120)
         drawn = {name: offscreen.render(scene, camera, look_of("dark", name)) for name in LIGHTS}
         for name in LIGHTS:
             assert name == STUDIO or np.abs(drawn[name].astype(int) - drawn[STUDIO]).max() > 20
@@ -51,8 +51,8 @@ def test_a_picture_behind_is_seen_whole_and_upright():
     picture = np.zeros((10, 20, 3), np.uint8)
     picture[:5], picture[5:] = (255, 0, 0), (0, 0, 255)
     with Offscreen(100, 100) as offscreen:
-        drawn = offscreen.render(Scene(picture=picture), OrbitCamera())
-        other = offscreen.render(Scene(picture=picture[::-1].copy()), OrbitCamera())
+        drawn = offscreen.render(Scene(picture=picture), Camera())
+        other = offscreen.render(Scene(picture=picture[::-1].copy()), Camera())
     assert drawn[30, 50, 0] > 250 and drawn[70, 50, 2] > 250 and other[30, 50, 2] > 250
     assert max(drawn[10, 50, :3]) < 80, "what it does not cover is the theme's"
 
@@ -60,13 +60,13 @@ def test_a_picture_behind_is_seen_whole_and_upright():
 @pytest.mark.gl
 def test_two_pictures_side_by_side_share_what_they_draw_and_are_what_each_is_alone(toy):
     figure = StickFigure(toy.skeleton)
-    scene = Scene((SceneActor(figure, *toy.skeleton.globals(toy.skeleton.rest)),))
-    camera = OrbitCamera().frame(scene.bounds(), 1.0)
+    scene = Scene((Actor(figure, *toy.skeleton.globals(toy.skeleton.rest)),))
+    camera = Camera().frame(scene.bounds(), 1.0)
     with Offscreen(200, 200) as first:
         beside = Offscreen(120, 120, beside=first)
         a = first.render(scene, camera)
         b = beside.render(scene, camera.orbit(0.3, 0.0))
-        moved = Scene((SceneActor(figure, *toy.skeleton.globals(toy.skeleton.rest)),))
+        moved = Scene((Actor(figure, *toy.skeleton.globals(toy.skeleton.rest)),))
         assert (first.render(moved, camera) == a).all()
         assert (beside.render(moved, camera.orbit(0.3, 0.0)) == b).all()
         assert beside.renderer.store is first.renderer.store

@@ -8,11 +8,11 @@ import pytest
 from metagraph.formats.gltf.reader import read_character
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
-from preview.camera import OrbitCamera
+from preview.camera import Camera
 from preview.figure import SkinnedFigure, StickFigure
 from preview.occlusion import FROM_END, FROM_START, LIMBS, OWN, WHOLE, occlusion_ways
 from preview.offscreen import Offscreen
-from preview.scene import DARK, Scene, SceneActor
+from preview.scene import DARK, Actor, Scene
 from tests.preview.conftest import chain
 
 NAMES = [name for name, *_ in LIMBS]
@@ -73,13 +73,11 @@ def test_an_arm_at_the_side_darkens_the_flank_and_nothing_gets_brighter(open_air
         axis = np.array([0.0, 0, 1])
         turned[joint] = rotation.multiply(turned[joint], rotation.from_axis_angle(axis, -sign * 1.2))
     placed = skeleton.globals(Pose(turned, skeleton.rest_translations))
-    scene = Scene((SceneActor(figure, *placed),))
-    camera = OrbitCamera(yaw=0.0).frame(scene.bounds(), 0.8)
+    scene = Scene((Actor(figure, *placed),))
+    camera = Camera(yaw=0.0).frame(scene.bounds(), 0.8)
     with_rods = open_air.render(scene, camera, DARK, (240, 300))[..., :3].astype(int)
     figure.__dict__["rods"] = None
-    without = open_air.render(Scene((SceneActor(figure, *placed),)), camera, DARK, (240, 300))[
-        ..., :3
-    ].astype(int)
+    without = open_air.render(Scene((Actor(figure, *placed),)), camera, DARK, (240, 300))[..., :3].astype(int)
     change = (with_rods - without).sum(-1)
     assert change.max() <= 9, "smoothing moves an edge by a step or three"
     assert (change < -9).sum() > 200, (change < -9).sum()
@@ -94,14 +92,10 @@ def test_bodies_of_other_shapes_stay_bright_where_they_rest(open_air: Offscreen,
     """A child's body is as wide as high: its rods are as well, and must not shade all of it."""
     figure = SkinnedFigure(read_character(shared_data / name))
     placed = figure.skeleton.globals(figure.skeleton.rest)
-    camera = OrbitCamera(yaw=0.0).frame(Scene((SceneActor(figure, *placed),)).bounds(), 0.8)
-    lit = open_air.render(Scene((SceneActor(figure, *placed),)), camera, DARK, (240, 300))[..., :3].astype(
-        float
-    )
+    camera = Camera(yaw=0.0).frame(Scene((Actor(figure, *placed),)).bounds(), 0.8)
+    lit = open_air.render(Scene((Actor(figure, *placed),)), camera, DARK, (240, 300))[..., :3].astype(float)
     figure.__dict__["rods"] = None
-    plain = open_air.render(Scene((SceneActor(figure, *placed),)), camera, DARK, (240, 300))[..., :3].astype(
-        float
-    )
+    plain = open_air.render(Scene((Actor(figure, *placed),)), camera, DARK, (240, 300))[..., :3].astype(float)
     inside = np.abs(plain - plain[2, 2]).sum(-1) > 60
     assert 0.88 < lit[inside].mean() / plain[inside].mean() <= 1.001
 

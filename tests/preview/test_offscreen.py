@@ -6,7 +6,7 @@ import moderngl
 import numpy as np
 import pytest
 
-from preview.camera import OrbitCamera
+from preview.camera import Camera
 from preview.offscreen import Offscreen, OpenGLError, standalone_context
 from preview.scene import Scene
 
@@ -24,7 +24,7 @@ def test_without_opengl_the_message_says_what_to_install(monkeypatch):
 @pytest.mark.gl
 def test_releasing_twice_is_fine():
     with Offscreen(8, 8) as offscreen:
-        assert offscreen.render(Scene(), OrbitCamera()).shape == (8, 8, 4)
+        assert offscreen.render(Scene(), Camera()).shape == (8, 8, 4)
         assert offscreen.description
         offscreen.release()
 
@@ -32,17 +32,17 @@ def test_releasing_twice_is_fine():
 @pytest.mark.gl
 def test_the_first_row_is_the_top():
     with Offscreen(32, 32) as offscreen:
-        picture = offscreen.render(Scene(), OrbitCamera(pitch=0.3)).astype(int)
+        picture = offscreen.render(Scene(), Camera(pitch=0.3)).astype(int)
     top, bottom = picture[:8, :, :3].std(), picture[-16:, :, :3].std()
     assert bottom > top  # the grid's lines are below, the sky above
 
 
 @pytest.mark.gl
 def test_a_picture_can_be_drawn_into_the_memory_of_the_last():
-    scene, camera = Scene(), OrbitCamera(pitch=0.3)
+    scene, camera = Scene(), Camera(pitch=0.3)
     with Offscreen(32, 24) as offscreen:
         kept = offscreen.render(scene, camera)
         into = np.empty_like(kept)
         assert offscreen.render(scene, camera, into=into) is into
-        offscreen.render(scene, OrbitCamera(pitch=0.9))
+        offscreen.render(scene, Camera(pitch=0.9))
     assert (into == kept).all()

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from preview.camera import OrbitCamera
+from preview.camera import Camera
 from preview.offscreen import Offscreen
 from preview.scene import Scene
 
@@ -22,9 +22,9 @@ def test_what_was_drawn_in_another_size_is_given_back():
 
     with Offscreen(64, 64) as place:
         for n in range(6):
-            place.render(Scene(), OrbitCamera(), size=(600 + 40 * n, 500))
+            place.render(Scene(), Camera(), size=(600 + 40 * n, 500))
         before = held()
         for n in range(60):
-            place.render(Scene(), OrbitCamera(), size=(600 + 40 * (n % 6), 500 + (n % 3)))
+            place.render(Scene(), Camera(), size=(600 + 40 * (n % 6), 500 + (n % 3)))
         # Sixty pictures of 1.2 MB with their depths are 140 MB where they stay.
         assert held() - before < 40

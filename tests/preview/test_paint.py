@@ -12,7 +12,7 @@ from preview.gpu import decode_texture
 from preview.mesh import VERTEX, SkinnedMesh, TriangleBatch
 from preview.offscreen import Offscreen
 from preview.paint import without_invisible_texture
-from preview.scene import LIGHT, Scene, SceneActor
+from preview.scene import LIGHT, Actor, Scene
 
 
 def image(colors):
@@ -94,7 +94,7 @@ def test_pictures_are_the_same_with_colours_at_corners_and_faces_move_as_they_di
     rest = ada.skeleton.globals(ada.skeleton.rest)
     face = np.zeros(len(ada.morphs), np.float32)
     face[::3] = 0.8
-    scenes = [Scene((SceneActor(ada, *rest, morphs=m),)) for m in (None, face)]
+    scenes = [Scene((Actor(ada, *rest, morphs=m),)) for m in (None, face)]
     camera = frame_whole_figure(scenes[0].bounds(), size[0] / size[1]).zoom(3)
     now = [offscreen.render(s, camera, LIGHT, size).astype(int) for s in scenes]
     monkeypatch.setattr(

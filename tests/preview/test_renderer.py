@@ -13,11 +13,11 @@ from metagraph.formats.gltf.reader import read_character
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from preview import renderer
-from preview.camera import OrbitCamera, close_up, frame_whole_figure
+from preview.camera import Camera, close_up, frame_whole_figure
 from preview.figure import SkinnedFigure, StickFigure
 from preview.gpu import KEEP_MESHES
 from preview.offscreen import Offscreen
-from preview.scene import DARK, LIGHT, Scene, SceneActor
+from preview.scene import DARK, LIGHT, Actor, Scene
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 from tests.preview.conftest import chain
 from tests.preview.test_figure import character
@@ -27,7 +27,7 @@ SIZE = (160, 120)
 
 
 def resting(figure, **options):
-    return SceneActor(figure, *figure.skeleton.globals(figure.skeleton.rest), **options)
+    return Actor(figure, *figure.skeleton.globals(figure.skeleton.rest), **options)
 
 
 def posed(figure, turns, **options):
@@ -37,7 +37,7 @@ def posed(figure, turns, **options):
         rotations[skeleton.index(joint)] = rotation.from_axis_angle(
             np.array(axis, float), np.radians(degrees)
         )
-    return SceneActor(figure, *skeleton.globals(Pose(rotations, skeleton.rest_translations)), **options)
+    return Actor(figure, *skeleton.globals(Pose(rotations, skeleton.rest_translations)), **options)
 
 
 def whole(scene, size=SIZE):
@@ -73,7 +73,7 @@ def test_a_stick_figure_with_its_skeleton_and_a_mask_looks_as_it_did(offscreen, 
 
 
 def test_an_empty_scene_is_sky_and_ground(offscreen, golden):
-    golden("empty", offscreen.render(Scene(), OrbitCamera(), LIGHT, SIZE))
+    golden("empty", offscreen.render(Scene(), Camera(), LIGHT, SIZE))
 
 
 def test_one_joint_is_drawn(offscreen):
@@ -85,18 +85,18 @@ def test_one_joint_is_drawn(offscreen):
 def test_an_actor_that_is_not_a_number_is_left_out(offscreen):
     figure = StickFigure(mannequin_skeleton())
     broken = resting(figure)
-    broken = SceneActor(figure, broken.rotations, np.full_like(broken.positions, np.nan))
+    broken = Actor(figure, broken.rotations, np.full_like(broken.positions, np.nan))
     assert np.array_equal(
-        offscreen.render(Scene((broken,)), OrbitCamera(), DARK, SIZE),
-        offscreen.render(Scene(), OrbitCamera(), DARK, SIZE),
+        offscreen.render(Scene((broken,)), Camera(), DARK, SIZE),
+        offscreen.render(Scene(), Camera(), DARK, SIZE),
     )
 
 
 def test_no_instances_are_no_picture_but_no_error(offscreen):
     figure = StickFigure(mannequin_skeleton())
     count = len(figure.skeleton)
-    scene = Scene((SceneActor(figure, np.zeros((0, count, 4)), np.zeros((0, count, 3))),))
-    assert offscreen.render(scene, OrbitCamera(), DARK, SIZE).shape == (120, 160, 4)
+    scene = Scene((Actor(figure, np.zeros((0, count, 4)), np.zeros((0, count, 3))),))
+    assert offscreen.render(scene, Camera(), DARK, SIZE).shape == (120, 160, 4)
 
 
 def test_a_flat_background_is_kept_to_the_value_and_a_clear_one_is_transparent(offscreen):
@@ -112,8 +112,8 @@ def test_a_crowd_in_one_actor_looks_like_as_many_actors(offscreen):
     figure = StickFigure(mannequin_skeleton())
     rotations, positions = figure.skeleton.globals(figure.skeleton.rest)
     places = np.array([[-0.8, 0, 0], [0.0, 0, 0], [0.8, 0, 0]])
-    crowd = Scene((SceneActor(figure, np.tile(rotations, (3, 1, 1)), positions + places[:, None]),))
-    single = Scene(tuple(SceneActor(figure, rotations, positions + p) for p in places))
+    crowd = Scene((Actor(figure, np.tile(rotations, (3, 1, 1)), positions + places[:, None]),))
+    single = Scene(tuple(Actor(figure, rotations, positions + p) for p in places))
     camera = whole(crowd)
     apart = np.abs(
         offscreen.render(crowd, camera, DARK, SIZE).astype(int) - offscreen.render(single, camera, DARK, SIZE)
@@ -141,7 +141,7 @@ def test_a_morph_moves_the_mesh_and_back(offscreen):
         skeleton, positions=positions, morphs=("far",), morph_positions=np.full((1, 3, 3), [5.0, 0, 0])
     )
     figure = SkinnedFigure(made)
-    camera = OrbitCamera(yaw=0, pitch=0).frame((np.array([-0.4, 0, -0.1]), np.array([0.4, 0.7, 0.1])), 4 / 3)
+    camera = Camera(yaw=0, pitch=0).frame((np.array([-0.4, 0, -0.1]), np.array([0.4, 0.7, 0.1])), 4 / 3)
     plain = Scene((resting(figure),), background=(0, 0, 0, 1))
     gone = Scene((resting(figure, morphs=np.array([1.0])),), background=(0, 0, 0, 1))
     back = Scene((resting(figure, morphs=np.array([0.0])),), background=(0, 0, 0, 1))
@@ -159,7 +159,7 @@ def test_two_of_one_mesh_have_faces_of_their_own_and_none_is_kept(offscreen):
             skeleton, positions=positions, morphs=("far",), morph_positions=np.full((1, 3, 3), [5.0, 0, 0])
         )
     )
-    camera = OrbitCamera(yaw=0, pitch=0).frame((np.array([-0.4, 0, -0.1]), np.array([0.4, 0.7, 0.1])), 4 / 3)
+    camera = Camera(yaw=0, pitch=0).frame((np.array([-0.4, 0, -0.1]), np.array([0.4, 0.7, 0.1])), 4 / 3)
 
     def drawn(*weights):
         faces = [None if w is None else np.array([w]) for w in weights]
@@ -173,8 +173,8 @@ def test_two_of_one_mesh_have_faces_of_their_own_and_none_is_kept(offscreen):
 def test_the_ground_hides_what_is_below_it(offscreen):
     figure = StickFigure(chain("only"))
     rotations, positions = figure.skeleton.globals(figure.skeleton.rest)
-    camera = OrbitCamera(target=(0, 0, 0), pitch=0.6)
-    under = Scene((SceneActor(figure, rotations, positions - [0, 0.5, 0]),), shadow=False)
+    camera = Camera(target=(0, 0, 0), pitch=0.6)
+    under = Scene((Actor(figure, rotations, positions - [0, 0.5, 0]),), shadow=False)
     assert np.array_equal(
         offscreen.render(under, camera, DARK, SIZE), offscreen.render(Scene(), camera, DARK, SIZE)
     )
@@ -183,7 +183,7 @@ def test_the_ground_hides_what_is_below_it(offscreen):
 @pytest.mark.parametrize("pitch", [-1.5, -0.4, 0.0, 0.4, 1.55])
 def test_every_point_is_painted_from_any_side(offscreen, pitch):
     for theme in (DARK, LIGHT):
-        picture = offscreen.render(Scene(), OrbitCamera(pitch=pitch, target=(3, 0.9, 1)), theme, SIZE)
+        picture = offscreen.render(Scene(), Camera(pitch=pitch, target=(3, 0.9, 1)), theme, SIZE)
         assert (picture[..., 3] == 255).all()
         assert picture[..., :3].min() > 15
 
@@ -192,7 +192,7 @@ def test_every_point_is_painted_from_any_side(offscreen, pitch):
 @pytest.mark.parametrize("pitch", [2.0, 6.0, 30.0])
 def test_every_point_is_painted_however_wide_or_high_a_picture_is(offscreen, size, pitch):
     for distance in (1.5, 6.0, 60.0):
-        camera = OrbitCamera(distance=distance).facing(0.3, math.radians(pitch))
+        camera = Camera(distance=distance).facing(0.3, math.radians(pitch))
         picture = offscreen.render(Scene(), camera, size=size)
         assert (picture[..., 3] == 255).all(), (distance, size, pitch)
 
@@ -208,8 +208,8 @@ def test_while_the_camera_stands_pictures_are_as_if_it_had_just_come(offscreen, 
     figure = StickFigure(chain("a", "b", "c"))
     still = Scene((resting(figure),))
     moved = Scene((posed(figure, [(figure.skeleton.names[1], (0, 0, 1), 50)]),))
-    camera = OrbitCamera((0.0, 0.6, 0.0), 0.3, pitch, 4.0)
-    other = OrbitCamera((0.4, 0.6, 0.0), 0.3, pitch, 3.0)
+    camera = Camera((0.0, 0.6, 0.0), 0.3, pitch, 4.0)
+    other = Camera((0.4, 0.6, 0.0), 0.3, pitch, 3.0)
     first = [offscreen.render(scene, camera, DARK, SIZE) for scene in (moved, still, still, moved)]
     afresh = []
     for scene in (moved, still):
@@ -251,10 +251,8 @@ def check_parts(offscreen, monkeypatch, figure, random):
     for distance in (0.5, 1.0, 4.0):
         turns = rotation.from_axis_angle(random.normal(size=(len(skeleton), 3)), 0.6 * random.random())
         pose = Pose(rotation.multiply(skeleton.rest_rotations, turns), skeleton.rest_translations)
-        scene = Scene((SceneActor(figure, *skeleton.globals(pose)),), shadow=False)
-        camera = (
-            OrbitCamera().frame(scene.bounds(), SIZE[0] / SIZE[1]).facing(float(random.uniform(-3, 3)), 0.2)
-        )
+        scene = Scene((Actor(figure, *skeleton.globals(pose)),), shadow=False)
+        camera = Camera().frame(scene.bounds(), SIZE[0] / SIZE[1]).facing(float(random.uniform(-3, 3)), 0.2)
         camera = replace(camera, distance=camera.distance * distance)
         seen = offscreen.render(scene, camera, DARK, SIZE)
         with monkeypatch.context() as patch:
@@ -308,7 +306,7 @@ def test_a_broken_texture_is_drawn_white(offscreen):
         )
     )
     scene = Scene((resting(figure),), background=(0, 0, 0, 1))
-    camera = OrbitCamera(yaw=0, pitch=0).frame((np.array([-0.4, 0, -0.1]), np.array([0.4, 0.7, 0.1])), 4 / 3)
+    camera = Camera(yaw=0, pitch=0).frame((np.array([-0.4, 0, -0.1]), np.array([0.4, 0.7, 0.1])), 4 / 3)
     assert offscreen.render(scene, camera, DARK, SIZE)[..., :3].max() > 120
 
 

@@ -9,11 +9,11 @@ import pytest
 
 from metagraph.motion.character_mesh import CharacterMesh, MeshMaterial, Surface
 from preview import shadows
-from preview.camera import OrbitCamera
+from preview.camera import Camera
 from preview.figure import SkinnedFigure
 from preview.frame import Frame, piece_boxes
 from preview.offscreen import Offscreen
-from preview.scene import DARK, Scene, SceneActor
+from preview.scene import DARK, Actor, Scene
 from tests.preview.conftest import chain
 from tests.preview.test_figure import character
 
@@ -43,12 +43,12 @@ def shelf() -> Scene:
         surfaces=(Surface(0, 4, 0),),
     )
     figure = SkinnedFigure(made)
-    return Scene((SceneActor(figure, *figure.skeleton.globals(figure.skeleton.rest)),))
+    return Scene((Actor(figure, *figure.skeleton.globals(figure.skeleton.rest)),))
 
 
-def near() -> OrbitCamera:
+def near() -> Camera:
     """Straight down on the shadow's far corner, past the small square."""
-    return OrbitCamera((-0.13, 0.9, -0.20), 0.0, np.radians(88.0), 0.6)
+    return Camera((-0.13, 0.9, -0.20), 0.0, np.radians(88.0), 0.6)
 
 
 def steps(picture: np.ndarray) -> float:
@@ -65,7 +65,7 @@ def steps(picture: np.ndarray) -> float:
     return float(np.abs(at - np.polyval(np.polyfit(rows, at, 1), rows)).max())
 
 
-def frame_of(scene: Scene, camera: OrbitCamera, offscreen: Offscreen) -> Frame:
+def frame_of(scene: Scene, camera: Camera, offscreen: Offscreen) -> Frame:
     offscreen.render(scene, camera, NOON, SIZE)
     actors = list(scene.actors)
     matrix = camera.projection(1.0) @ camera.view()
@@ -121,8 +121,8 @@ def test_the_ground_is_as_dark_whether_or_not_the_body_has_a_map_of_its_own(
 ):
     """Its own shadow comes from a smaller picture then."""
     figure = SkinnedFigure(mannequin)
-    scene = Scene((SceneActor(figure, *figure.skeleton.globals(figure.skeleton.rest)),))
-    camera = OrbitCamera((0.3, 0.2, -0.3), 0.4, 0.5, 2.0)
+    scene = Scene((Actor(figure, *figure.skeleton.globals(figure.skeleton.rest)),))
+    camera = Camera((0.3, 0.2, -0.3), 0.4, 0.5, 2.0)
     pictures = []
     for limit in (1e9, 1e-9):  # never, always
         monkeypatch.setattr(shadows, "NEAR", limit)
@@ -136,14 +136,14 @@ def test_who_stands_behind_the_eye_or_round_it_is_no_trouble(offscreen, mannequi
     figure = SkinnedFigure(mannequin)
     rotations, positions = figure.skeleton.globals(figure.skeleton.rest)
     ahead, behind = (
-        SceneActor(figure, rotations, positions),
-        SceneActor(figure, rotations, positions + [0, 0, 3.0]),
+        Actor(figure, rotations, positions),
+        Actor(figure, rotations, positions + [0, 0, 3.0]),
     )
     for z in (0.0, 0.2, 1.0, 3.0):
-        camera = OrbitCamera((0.0, 1.4, z), 0.0, 0.0, 0.3)
+        camera = Camera((0.0, 1.4, z), 0.0, 0.0, 0.3)
         picture = offscreen.render(Scene((ahead, behind)), camera, NOON, SIZE)
         assert picture.shape == (*SIZE, 4)
-    away = frame_of(Scene((behind,)), OrbitCamera((0.0, 1.4, 0.0), 0.0, 0.0, 0.5), offscreen)
+    away = frame_of(Scene((behind,)), Camera((0.0, 1.4, 0.0), 0.0, 0.0, 0.5), offscreen)
     assert shadows.find_seen_window(away, np.stack(np.eye(3)))[0] == 0
 
 
@@ -153,8 +153,8 @@ def test_in_small_pictures_a_body_does_not_shade_itself_in_stripes(
     """A texel of the small map covers more of a slope than what a surface is kept away by at least."""
     figure = SkinnedFigure(mannequin)
     posed = mannequin.skeleton.globals(mannequin.skeleton.rest)
-    scene = Scene((SceneActor(figure, *(values[None] for values in posed)),))
-    camera = OrbitCamera().frame(scene.bounds(), 1.0)
+    scene = Scene((Actor(figure, *(values[None] for values in posed)),))
+    camera = Camera().frame(scene.bounds(), 1.0)
 
     def unevenness(offscreen: Offscreen) -> float:
         lit = offscreen.render(scene, camera)[..., :3].astype(float)

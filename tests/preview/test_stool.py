@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from preview.camera import OrbitCamera
+from preview.camera import Camera
 from preview.scene import LIGHT, Scene
 from preview.stool import Stool, stool
 
@@ -27,7 +27,7 @@ def test_its_mesh_moves_with_its_joint():
 
 
 def test_it_is_drawn(offscreen):
-    camera = OrbitCamera(target=(0, 0.25, 0), distance=2.0)
+    camera = Camera(target=(0, 0.25, 0), distance=2.0)
     empty = offscreen.render(Scene(), camera, LIGHT)
     drawn = offscreen.render(Scene((stool((0, 0.45, 0), 0.17),)), camera, LIGHT)
     assert (np.abs(drawn.astype(int) - empty).max(-1) > 20).mean() > 0.01

@@ -301,23 +301,23 @@ def test_missing_clips_are_left_out(sample: Project) -> None:
 
 
 def test_clips_of_the_zoo_have_finite_traits(zoo_files: dict[str, Path]) -> None:
-    from metagraph.formats.clips import read_clip_file
+    from metagraph.formats.clips import read_clips
 
     for path in zoo_files.values():
-        for found in traits_of(read_clip_file(path)).values():
+        for found in traits_of(read_clips(path)).values():
             assert np.isfinite(numbers(found)).all(), path.name
 
 
 @pytest.mark.parametrize("name", ["mesh2motion-cmu", "robot-expressive", "fbx-pab"])
 def test_real_clips_have_finite_traits(shared_data: Path, name: str) -> None:
     from metagraph.errors import FileError
-    from metagraph.formats.clips import find_clip_files, read_clip_file
+    from metagraph.formats.clips import find_clip_files, read_clips
 
     pytest.importorskip("ufbx", reason="ufbx, which reads FBX, is not installed")
     clips: list[Clip] = []
     for file in find_clip_files(shared_data / name):
         try:
-            clips += read_clip_file(file)
+            clips += read_clips(file)
         except FileError:
             continue
     for found in traits_of(clips).values():

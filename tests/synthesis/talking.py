@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from metagraph.formats.clips import read_clip_file
+from metagraph.formats.clips import read_clips
 from metagraph.graph.conversation.model import Segment, Word
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
@@ -53,7 +53,7 @@ def talking(
     """A take in which the right arm is fastest at the stress of each clause, and answers and hesitations go
     with a nod. sizes: how large the swing of each segment is, 1 where nothing is said.
     """
-    base = read_clip_file(CLIPS / "hands_at_sides__stance.glb")[0]
+    base = read_clips(CLIPS / "hands_at_sides__stance.glb")[0]
     chance = np.random.default_rng(seed)
     t = np.arange(round(seconds * fps)) / fps
     roles = find_roles(base.skeleton)

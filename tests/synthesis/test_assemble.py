@@ -9,7 +9,7 @@ from pathlib import Path as FilePath
 import numpy as np
 import pytest
 
-from metagraph.formats.clips import read_clip_file
+from metagraph.formats.clips import read_clips
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.suggest.tracks import facing_and_standing, track_rig
@@ -31,7 +31,7 @@ def takes() -> list[Clip]:
         "hands_at_sides__shrug_bt_01",
         "hands_at_sides__open_palms_bt_01",
     )
-    return [read_clip_file(CLIPS / f"{name}.glb")[0] for name in names]
+    return [read_clips(CLIPS / f"{name}.glb")[0] for name in names]
 
 
 def plain(states: list[int]) -> Path:
@@ -59,7 +59,7 @@ def test_it_begins_over_the_origin_and_faces_ahead(takes: list[Clip]) -> None:
 
 def walking(turn: float) -> Clip:
     """Somebody who walks a metre a second, turning."""
-    base = read_clip_file(CLIPS / "hands_at_sides__stance.glb")[0]
+    base = read_clips(CLIPS / "hands_at_sides__stance.glb")[0]
     n = 61
     heading = np.linspace(0, turn, n)
     step = np.stack([np.sin(heading), np.zeros(n), np.cos(heading)], axis=-1) / 30

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.formats.clips import read_clip_file
+from metagraph.formats.clips import read_clips
 from metagraph.graph.conversation.model import Segment
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
@@ -32,7 +32,7 @@ FPS = 30.0
 
 @pytest.fixture(scope="module")
 def base() -> Clip:
-    return read_clip_file(CLIPS / "hands_at_sides__stance.glb")[0]
+    return read_clips(CLIPS / "hands_at_sides__stance.glb")[0]
 
 
 def moving(

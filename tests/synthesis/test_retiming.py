@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from metagraph.formats.clips import read_clip_file
+from metagraph.formats.clips import read_clips
 from metagraph.graph.conversation.model import Segment
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
@@ -182,9 +182,7 @@ def test_retimed_motion_has_its_stroke_at_the_stress_and_its_feet_where_they_sto
 
 def test_feet_of_other_studios_takes_stay_where_they_stood_when_they_are_retimed(shared_data: Folder) -> None:
     names = ("bow_active", "bow_angry")
-    takes = [
-        read_clip_file(shared_data / "bandai-namco-1" / f"dataset-1_{name}_001.bvh")[0] for name in names
-    ]
+    takes = [read_clips(shared_data / "bandai-namco-1" / f"dataset-1_{name}_001.bvh")[0] for name in names]
     states = read_states(takes)
     jump, there = 110, int(states.starts[1])
     way = np.concatenate([np.arange(jump), there + np.arange(10, int(len(states) - there))])

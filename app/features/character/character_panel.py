@@ -33,9 +33,9 @@ from app.widgets.quiet_fields import ComboBox, Scrub
 from app.widgets.sentence import OneLine
 from app.widgets.vocabulary import vocabulary_word
 from metagraph.graph.model import LAYERS, Project
-from preview.camera import OrbitCamera, close_up, frame_whole_figure
+from preview.camera import Camera, close_up, frame_whole_figure
 from preview.figure import MeshFigure, SkinnedFigure
-from preview.scene import Scene, SceneActor
+from preview.scene import Actor, Scene
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 1.5, 2.0)
 BASE_TIP = tr_noop(
@@ -245,7 +245,7 @@ class PreviewPanel(QWidget):
             morphs = figure.morph_weights(one.morphs(seconds)) if figure.morphs else None
             marks = mask_marks(self.performance, self.session) if one is shown else {}
             self._marks = marks if one is shown else self._marks
-            actors.append(SceneActor(figure, rotations, positions, morphs, marks, self.bones))
+            actors.append(Actor(figure, rotations, positions, morphs, marks, self.bones))
             if one is shown:
                 actors += self.overlays.made(figure, seconds)
         seats = (seat for one in shown.everyone for seat in stools(one))
@@ -375,7 +375,7 @@ class PreviewPanel(QWidget):
             view.camera, view.moved_by_hand = camera, True
             view.update()
 
-    def face_camera(self, aspect: float) -> OrbitCamera | None:
+    def face_camera(self, aspect: float) -> Camera | None:
         """Return what looks at the face, None while nobody is drawn."""
         if self._last is None:
             return None

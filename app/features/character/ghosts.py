@@ -22,7 +22,7 @@ from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.posing.composer import playable
 from preview.figure import MeshFigure
-from preview.scene import SceneActor
+from preview.scene import Actor
 
 NOW = 0.03  # seconds from the present moment within which a ghost would only blur the figure
 NEAREST, FARTHEST = 0.34, 0.12  # how much of the ghost next to now is seen, and of the last
@@ -51,7 +51,7 @@ class Ghosts(QWidget):
         self._follow()
         self.panel.view.update()
 
-    def made(self, figure: MeshFigure, seconds: float) -> list[SceneActor]:
+    def made(self, figure: MeshFigure, seconds: float) -> list[Actor]:
         """Return all ghosts at a time."""
         shown, watch = self.panel.performance.shown, self.panel.session.watch.now
         self._labels = []
@@ -63,7 +63,7 @@ class Ghosts(QWidget):
             *(self._of_stance(figure, shown, seconds) if watch.stance else ()),
         ]
 
-    def _of_action(self, figure: MeshFigure, shown: ShownPlayback, seconds: float) -> list[SceneActor]:
+    def _of_action(self, figure: MeshFigure, shown: ShownPlayback, seconds: float) -> list[Actor]:
         """Return the moments of an action that are to be seen through, but for those that are now."""
         skin, out = self.panel.session.onion.skin, []
         for moment, opacity in skin.moments if skin is not None else ():
@@ -75,7 +75,7 @@ class Ghosts(QWidget):
                 out.append(self._ghost(figure, shown, pose, opacity))
         return out
 
-    def _of_moments(self, figure: MeshFigure, shown: ShownPlayback, seconds: float) -> list[SceneActor]:
+    def _of_moments(self, figure: MeshFigure, shown: ShownPlayback, seconds: float) -> list[Actor]:
         watch = self.panel.session.watch.now
         steps = [*range(-watch.before, 0), *range(1, watch.after + 1)]
         moments = [(k, seconds + k * watch.spacing) for k in steps]
@@ -96,7 +96,7 @@ class Ghosts(QWidget):
             return BEFORE
         return AFTER if self.panel.session.look.name == "dark" else AFTER_ON_LIGHT
 
-    def _of_stance(self, figure: MeshFigure, shown: ShownPlayback, seconds: float) -> list[SceneActor]:
+    def _of_stance(self, figure: MeshFigure, shown: ShownPlayback, seconds: float) -> list[Actor]:
         pose = self._stance(shown, seconds)
         if pose is None:
             return []
@@ -104,7 +104,7 @@ class Ghosts(QWidget):
         actor = self._ghost(figure, shown, pose, STANCE, (color.redF(), color.greenF(), color.blueF()))
         return [actor] if self._label(vocabulary_word("stance"), actor) else []
 
-    def _label(self, words: str, ghost: SceneActor) -> bool:
+    def _label(self, words: str, ghost: Actor) -> bool:
         """Name a ghost where it is farthest from now; return whether it is anywhere."""
         last = self.panel.drawn
         if last is None or last[2].shape != ghost.positions.shape:
@@ -135,13 +135,13 @@ class Ghosts(QWidget):
         pose: Pose,
         opacity: float,
         color: tuple[float, float, float] | None = None,
-    ) -> SceneActor:
+    ) -> Actor:
         assert shown.skeleton is not None
         rotations, positions = shown.skeleton.globals(pose)
         if shown.stand is not None:
             rotations, positions = shown.stand.placed(rotations, positions)
         marks = dict.fromkeys(range(len(shown.skeleton)), color) if color is not None else {}
-        return SceneActor(figure, rotations, positions, marks=marks, opacity=opacity)
+        return Actor(figure, rotations, positions, marks=marks, opacity=opacity)
 
     def _follow(self, *_: object) -> None:
         if bool(self._labels) == self.isHidden():

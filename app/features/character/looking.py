@@ -17,7 +17,7 @@ from app.look.theme import theme
 from app.stage.performance import StagePerformance
 from app.stage.session import StageSession
 from metagraph.graph import anatomy
-from preview.camera import OrbitCamera
+from preview.camera import Camera
 
 if TYPE_CHECKING:
     from app.stage.gl_view import GLView, ImageView
@@ -49,7 +49,7 @@ class Looking(QObject):
         """The view that was touched last, of several."""
         return self.panel.active_view
 
-    def _aim(self, camera: OrbitCamera) -> None:
+    def _aim(self, camera: Camera) -> None:
         view = self._view
         view.camera = camera
         view.moved_by_hand = True

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QWidget
 from app.stage.gl_view import GLView, ImageView
 from app.stage.performance import StagePerformance
 from app.stage.session import StageSession
-from preview.camera import OrbitCamera
+from preview.camera import Camera
 from preview.figure import MeshFigure
 from preview.scene import Scene
 
@@ -32,7 +32,7 @@ class OverlayHost(Protocol):
     def active_view(self) -> GLView | ImageView:
         """The view that was touched last, of several."""
 
-    def face_camera(self, aspect: float) -> OrbitCamera | None:
+    def face_camera(self, aspect: float) -> Camera | None:
         """Return what looks at the face, None while nobody is drawn."""
 
     def put_below_view(self, widget: QWidget) -> None:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from app.features.character.ghosts import Ghosts
     from app.features.character.hand_marks import HandMarks
     from preview.figure import MeshFigure
-    from preview.scene import SceneActor
+    from preview.scene import Actor
 
 
 class Overlays:
@@ -53,7 +53,7 @@ class Overlays:
 
         return Ghosts(self.panel)
 
-    def made(self, figure: MeshFigure, seconds: float) -> list[SceneActor]:
+    def made(self, figure: MeshFigure, seconds: float) -> list[Actor]:
         """Return all ghosts at a time."""
         session, watch = self.panel.session, self.panel.session.watch.now
         wanted = watch.stance or watch.before or watch.after or session.onion.skin is not None

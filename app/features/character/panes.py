@@ -18,7 +18,7 @@ from app.stage.gl_view import GLView, ImageView, make_beside
 from app.stage.watch import SIDES
 from app.translation import tr
 from app.widgets.making import make_widget
-from preview.camera import OrbitCamera
+from preview.camera import Camera
 from preview.scene import Scene
 
 LEAST = 240, 200  # pixels of one view
@@ -93,12 +93,12 @@ class Pane:
             view.camera = self._camera(solid, aspect)
         return scene if scene.picture is None else replace(scene, picture=None)
 
-    def _camera(self, solid: Scene, aspect: float) -> OrbitCamera:
+    def _camera(self, solid: Scene, aspect: float) -> Camera:
         looking, side = self.panes.looking, self.side
         if side == "face":
-            return self.panes.panel.face_camera(aspect) or OrbitCamera()
+            return self.panes.panel.face_camera(aspect) or Camera()
         yaw, pitch = (math.radians(x) for x in ANGLES["front" if side == "hands" else side])
-        camera = OrbitCamera().facing(yaw + looking.heading, pitch)
+        camera = Camera().facing(yaw + looking.heading, pitch)
         if side == "hands":
             return camera.frame(looking.hands() or solid.bounds(), aspect)
         camera = camera.frame(solid.bounds(), aspect)

@@ -106,12 +106,12 @@ def list_takes(
 
 def _rig_for(files: Sequence[Any], project: Project) -> Any:
     """Return the project's own joints where the takes are of its figure, None for those of another."""
-    from metagraph.formats.clips import read_clip_file
+    from metagraph.formats.clips import read_clips
     from metagraph.generation.performing import project_rig
 
     for each in files[:8]:
         try:
-            clip = max(read_clip_file(each.clip), key=lambda c: c.frames)
+            clip = max(read_clips(each.clip), key=lambda c: c.frames)
         except FileError:
             continue
         return project_rig(project) if clip.skeleton == project.skeleton else None
@@ -150,7 +150,7 @@ def side_motion(
     model: Model, named: str, speaker: Speaker, chance: Chance, progress: Progress, cancelled: Cancelled
 ) -> tuple[Loaded, tuple[str, ...]]:
     """Make the motion of one side of a conversation and keep it as a file; return what `add_clips` takes, and
-    what there is to know. Raises what `heard_side` and `side_clip` of `performing` raise.
+    what there is to know. Raises what `hear_side` and `side_clip` of `performing` raise.
     """
     from metagraph.generation.performing import hear_side, side_clip
 

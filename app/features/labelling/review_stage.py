@@ -29,7 +29,7 @@ from app.stage.session import StageSession
 from app.translation import tr
 from preview.camera import frame_whole_figure
 from preview.figure import MeshFigure
-from preview.scene import THEMES, Scene, SceneActor
+from preview.scene import THEMES, Actor, Scene
 
 FRAME = 16  # milliseconds between frames
 STRAYS = 0.2  # of its height that a figure goes before the camera goes along
@@ -230,7 +230,7 @@ class ReviewStage(QWidget):
         elif not self.view.moved_by_hand:
             self._follow(positions[0, [0, 2]])
         morphs = figure.morph_weights(self.shown.morphs(self.seconds)) if figure.morphs else None
-        return Scene((SceneActor(figure, rotations, positions, morphs, {}, False),))
+        return Scene((Actor(figure, rotations, positions, morphs, {}, False),))
 
     def _frame(self, figure: MeshFigure, positions: np.ndarray) -> None:
         aspect = self.view.width() / max(1, self.view.height())

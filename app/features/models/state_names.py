@@ -28,7 +28,7 @@ def describe_tag(state: State) -> str:
 
 
 def state_name(state: State, layer: Layer) -> str:
-    """Return a state for people, as `learn.state_words` has it in English."""
+    """Return a state for people, as `learn.describe_state` has it in English."""
     limb, kind, _ = state
     words = tr(f"{limb} {kind}") if layer == "arms" else tr(kind)
     return ", ".join(filter(None, (words, describe_tag(state))))

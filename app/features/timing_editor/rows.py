@@ -84,7 +84,7 @@ def least_rows_height(wants: Sequence[TrackWants]) -> float:
 
 
 def lay_out_rows(wants: Sequence[TrackWants], width: float, height: float) -> tuple[TrackRows, ...]:
-    """Return the rows of each action in a widget of some size, which is at least `least_height` high."""
+    """Return the rows of each action in a widget of some size, which is at least `least_rows_height` high."""
     return tuple(_laid_out(wants, width, height))
 
 

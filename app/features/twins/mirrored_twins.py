@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from app.project.jobs import WindowJob
 from app.translation import tr, tr_error, tr_plural
 from metagraph.common.file_names import file_stem
-from metagraph.formats.clips import digest, read_clip_file
+from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.gltf.writer import write_glb
 from metagraph.formats.imports import Loaded
 from metagraph.formats.store import relative
@@ -99,7 +99,7 @@ def write_twin(twin: TwinClip, folder: Path) -> Loaded:
     while path.exists():
         path, n = place / f"{stem}_{n}.glb", n + 1
     write_glb(path, [twin.motion])
-    (read,) = read_clip_file(path, REPAIRS)  # it is what it should be, so nothing of it is repaired
+    (read,) = read_clips(path, REPAIRS)  # it is what it should be, so nothing of it is repaired
     return relative(path, folder), 0, digest(path), adopt(read.renamed(twin.name), twin.motion.skeleton)
 
 

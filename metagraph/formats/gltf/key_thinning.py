@@ -58,7 +58,7 @@ def _batches(keys: Sequence[Any], sized: Any) -> Iterator[list[Any]]:
 
 
 def _thinned(many: Sequence[Array], tolerance: float, turning: bool) -> list[list[Array]]:
-    """Return what `kept_frames` does.
+    """Return what `find_kept_frames` does.
 
     Every track starts with its ends and is split at its worst frame until none is too far off, all tracks at
     once; a stretch that is near enough is not looked at again.

@@ -11,7 +11,7 @@ from metagraph.common.budgets import CONVERSATION_SECONDS, LINE_SECONDS
 from metagraph.common.files import unforeseen_error
 from metagraph.common.network_paths import explain_refusal, is_closed, original_path
 from metagraph.errors import clean_text
-from metagraph.formats.clips import digest, read_clip_file
+from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.fbx.processes import batch
 from metagraph.formats.gltf.reader import read_character
 from metagraph.formats.project.verified import (
@@ -83,7 +83,7 @@ def _clip_faults(
                 name, "has changed since it was imported: its SHA-256 is another.", CHANGED
             )
         for as_is in dict.fromkeys(entry.as_is for entry in entries):
-            takes = read_clip_file(place, as_is)
+            takes = read_clips(place, as_is)
             for entry in entries:
                 if entry.as_is == as_is:
                     yield from _take_faults(name, entry, takes, same)

@@ -2,8 +2,8 @@
 2020, section 4.2).
 
 A side keeps what its own speech is made of: phonemic clauses, listener responses and its own hesitation
-pauses, one after another. What a character moves with is another thing, `heard_by`: its own clauses and
-responses, and the hesitations of those it talks with.
+pauses, one after another. What a character moves with is another thing, `segments_heard_by`: its own clauses
+and responses, and the hesitations of those it talks with.
 """
 
 from __future__ import annotations

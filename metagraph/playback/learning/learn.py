@@ -355,7 +355,7 @@ def as_performance(name: str, observed: Mapping[Layer, Sequence[Act]], seconds: 
 
 def acts_of_asks(layer: Layer, asks: Iterable[AnyRequest]) -> tuple[Act, ...]:
     """Return the acts that a performance asks of a layer, as far as it asks for kinds and times: the inverse
-    of `asks_of`.
+    of `asks_from_acts`.
     """
     out = []
     for ask in asks:

@@ -61,7 +61,9 @@ _SIGNS = np.array([[1.0, -1, 1, 1], [1, 1, -1, 1], [-1, 1, 1, 1], [-1, -1, -1, 1
 
 
 def lids_of(face: FaceRig) -> FaceLids:
-    """Return a face's lids as `enlivened` takes them; where none is a joint, how far morph targets follow."""
+    """Return a face's lids as `solve_life` takes them; where none is a joint, how far morph targets
+    follow.
+    """
     joints = [joint >= 0 for joint in face.lid_joints.tolist()]
     follows = face.follows.tolist() if any(joints) else [MORPH_FOLLOWS, MORPH_FOLLOWS, 0.0, 0.0]
     return FaceLids(joints, follows, face.shut_by.tolist())

@@ -32,7 +32,9 @@ def vigour(project: Project, action: Action) -> float:
 
 
 def vigours(project: Project, graph: MetaGraph, speeds: Mapping[str, float]) -> dict[str, float]:
-    """Return the vigour of those actions of a layer whose speeds (`speed_within`) are known, by their ids."""
+    """Return the vigour of those actions of a layer whose speeds (`mean_speed_within`) are known, by their
+    ids.
+    """
     medians = _medians(project, graph)
     kinds: dict[Kind, list[float | None]] = {}
     for ident, speed in speeds.items():

@@ -34,7 +34,9 @@ SEED = 20_200  # of what is said: no model was trained on it
 
 @dataclass(frozen=True, eq=False)
 class ExhibitActor:
-    """One of two in all conversations. clips: its takes; speech: what it moves with in each, `heard_by`."""
+    """One of two in all conversations. clips: its takes; speech: what it moves with in each,
+    `segments_heard_by`.
+    """
 
     name: str
     clips: tuple[Clip, ...]

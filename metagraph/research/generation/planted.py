@@ -76,9 +76,9 @@ def write_planted(
     progress: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> int:
-    """Write planted takes as `take_files.read_takes` reads them; return how many conversations were made:
-    those that are there already are kept, so an end midway costs one. licence: what is written beside them.
-    Raises FileError, also for a folder that holds something else; ValueError for what cannot be made;
+    """Write planted takes as `take_files.read_take_files` reads them; return how many conversations were
+    made: those that are there already are kept, so an end midway costs one. licence: what is written beside
+    them. Raises FileError, also for a folder that holds something else; ValueError for what cannot be made;
     CancelledError once `cancelled` says so.
     """
     if not 1 <= planted.count <= MOST:

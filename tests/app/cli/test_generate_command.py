@@ -19,7 +19,7 @@ import soundfile
 
 from app.cli import generate_training
 from app.cli.parser import main
-from metagraph.formats.clips import read_clip_file
+from metagraph.formats.clips import read_clips
 from metagraph.formats.gltf.writer import write_glb
 from metagraph.formats.store import open_project, save_project
 from metagraph.generation import train_process
@@ -207,7 +207,7 @@ def test_motion_is_sampled_and_the_same_seed_gives_the_same(
     data = json.loads(
         run(capsys, "sample", model, "--speech", talk, "--side", 2, "-o", tmp_path / "d.glb", "--json")
     )
-    clip = read_clip_file(tmp_path / "d.glb")[0]
+    clip = read_clips(tmp_path / "d.glb")[0]
     assert clip.frames == data["frames"] and data["activity"]["speaking"] > 0.2
 
 
@@ -278,7 +278,7 @@ def test_what_is_odd_about_a_sound_is_told_and_it_is_used(
     holed = np.stack([babble(3.0), babble(3.0, 2)])
     holed[0, 100] = np.nan  # read as silence, as everywhere
     assert np.isfinite(
-        read_clip_file(_sampled(model, sound(tmp_path / "h.wav", holed, "FLOAT")))[0].rotations
+        read_clips(_sampled(model, sound(tmp_path / "h.wav", holed, "FLOAT")))[0].rotations
     ).all()
     for path, words in ((alone, "only one voice"), (loud, "is clipped")):
         assert (
@@ -310,7 +310,7 @@ def test_pieces_are_cut_and_know_model_and_seed(
     assert [p["seed"] for p in data["pieces"]] == [7, 7] and data["added"] == 2
     entries = json.loads((tmp_path / "clips" / "pieces.json").read_text())
     assert {e["model"] for e in entries} == {"plain.mgmodel"} and entries == data["pieces"]
-    found = read_clip_file(tmp_path / "clips" / entries[0]["file"])[0]
+    found = read_clips(tmp_path / "clips" / entries[0]["file"])[0]
     assert found.duration == pytest.approx(2.0, abs=0.05)
     names = [e.name for e in open_project(tmp_path / "mine.metagraph.yaml").project.clips.values()]
     assert all("plain_seed7" in n for n in names) and len(names) == 2

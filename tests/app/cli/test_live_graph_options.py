@@ -18,7 +18,7 @@ import pytest
 
 from app.cli.live_graph_options import NAME, read_graphs
 from app.cli.parser import main
-from metagraph.formats.clips import read_clip_file
+from metagraph.formats.clips import read_clips
 from metagraph.formats.conversations.writers import write_json
 from metagraph.formats.gltf.writer import write_glb
 from metagraph.graph.conversation.model import Conversation, Side
@@ -80,7 +80,7 @@ def test_takes_of_another_skeleton_are_refused_or_brought_onto_the_characters(
     assert read_graphs(Namespace(takes=[]), sample) == {}  # no conversation of it has takes
     (tmp_path / "takes").mkdir()
     for path in sorted((folder / "takes").glob("*.glb")):
-        take = read_clip_file(path)[0]
+        take = read_clips(path)[0]
         s = take.skeleton
         tall = Skeleton(s.names, s.parents, s.rest_rotations, (1.2 * s.rest_translations).astype(np.float32))
         moved = np.asarray(1.2 * take.translations, np.float32)
@@ -123,5 +123,5 @@ def test_a_file_is_moved_to_kept_and_made_again(few: Path, folder: Path, tmp_pat
     again = ["--again", str(tmp_path / "few - talk.motion.json"), "-o", str(out)]
     takes = words(folder)[1:]
     assert main(["motion-graph", "synthesize", *takes, *again]) == 0
-    assert read_clip_file(out)[0].frames == kept.frames
+    assert read_clips(out)[0].frames == kept.frames
     assert msgspec.json.decode((tmp_path / "few - talk.motion.json").read_bytes())["version"] == 1

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from app.cli.parser import main
-from metagraph.formats.clips import read_clip_file
+from metagraph.formats.clips import read_clips
 from metagraph.formats.store import open_project, read_project, save_project
 from metagraph.graph import edits
 from metagraph.graph.requests import Performance
@@ -120,13 +120,13 @@ def test_the_persons_own_motion_becomes_a_take(
 ) -> None:
     out = tmp_path / "takes" / "seen.bvh"
     code, data, _ = run(capsys, project, DEEP, "--no-mirror", "--take", out)
-    clip = read_clip_file(out)[0]
+    clip = read_clips(out)[0]
     assert code == 0 and str(out) in data["written"]
     assert clip.duration == pytest.approx(data["seconds"], abs=0.2)
     left, right = tmp_path / "l.glb", tmp_path / "r.glb"
     run(capsys, project, DEEP, "--no-mirror", "--take", left)
     run(capsys, project, DEEP, "--take", right)  # as in a mirror
-    turns = [read_clip_file(path)[0].rotations for path in (left, right)]
+    turns = [read_clips(path)[0].rotations for path in (left, right)]
     assert np.abs(turns[0] - turns[1]).max() > 0.1
 
 

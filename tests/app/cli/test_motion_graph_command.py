@@ -13,7 +13,7 @@ import soundfile
 
 from app.cli.parser import main
 from metagraph.formats.bvh.file import write_bvh
-from metagraph.formats.clips import read_clip_file
+from metagraph.formats.clips import read_clips
 from metagraph.formats.conversations.writers import write_elan, write_json, write_textgrid
 from metagraph.graph.conversation.model import Conversation, Side
 from tests.synthesis.talking import VOICE, aloud, speech, talking
@@ -89,7 +89,7 @@ def test_motion_is_made_for_a_takes_speech_and_for_new_speech(
     of_take = ["--take", "2", "--search", "greedy"]
     text = run(capsys, "synthesize", *given, *of_take, "-o", str(tmp_path / "out.bvh"))
     assert "15.0 s with" in text and "of 2 takes" in text
-    assert read_clip_file(tmp_path / "out.bvh")[0].frames == 450
+    assert read_clips(tmp_path / "out.bvh")[0].frames == 450
     new = [
         "--new",
         str(folder / "take0.eaf"),
@@ -101,7 +101,7 @@ def test_motion_is_made_for_a_takes_speech_and_for_new_speech(
         "hesitation",
     ]
     data = json.loads(run(capsys, "synthesize", *given, *new, "-o", str(tmp_path / "out.glb"), "--json"))
-    assert data["frames"] == 150 and read_clip_file(tmp_path / "out.glb")[0].duration == pytest.approx(
+    assert data["frames"] == 150 and read_clips(tmp_path / "out.glb")[0].duration == pytest.approx(
         149 / 30, abs=1e-3
     )
 
@@ -279,7 +279,7 @@ def test_loudness_rate_words_and_speed_are_asked_for_and_told(
     assert [m["measure"] for m in data["matches"]] == ["loudness", "rate"]
     assert data["words"] and data["paid"]["loudness"] > 0 and data["was"] >= data["off"] > 0
     plain = json.loads(run(capsys, "synthesize", *given, "--json"))
-    assert "beside" not in plain and read_clip_file(tmp_path / "out.bvh")[0].frames == 300
+    assert "beside" not in plain and read_clips(tmp_path / "out.bvh")[0].frames == 300
     text = run(capsys, "synthesize", *given, "--loudness", "0.5", "--word", "went", "--words-must")
     assert re.search(r"loudness 0\.\d\d spreads off.*words from where a take says them.*paid", text)
     new = ["--new", str(aloud_folder / "take1.json"), "-s", "5", "-o", out, "--rate", "0.5"]

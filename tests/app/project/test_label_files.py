@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QFileDialog
 
 from app.project.label_files import find_clips_beside
 from metagraph.formats.bvh.file import write_bvh
-from metagraph.formats.clips import read_clip_file
+from metagraph.formats.clips import read_clips
 
 pytestmark = pytest.mark.window
 
@@ -24,7 +24,7 @@ def labels(tmp_path, toys):
     motion = project.clips[known.clip].motion
     write_bvh(motion, tmp_path / "back.bvh")
     shutil.copy(tmp_path / "back.bvh", tmp_path / "other.bvh")
-    (name,) = (clip.name for clip in read_clip_file(tmp_path / "back.bvh"))
+    (name,) = (clip.name for clip in read_clips(tmp_path / "back.bvh"))
     stance = project.graphs["arms"].stances[known.stance].name if known.layer == "arms" else "apart"
     rows = [
         {"clip": name, "name": "new there", "kind": "gesture", "layer": "arms", "stance": stance},

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from metagraph.errors import FileError
-from metagraph.formats.clips import import_clips, read_clip_file
+from metagraph.formats.clips import import_clips, read_clips
 from metagraph.formats.fbx import processes as fbx_readers
 from metagraph.formats.fbx import reader as fbx
 from metagraph.formats.gltf.reader import write_glb
@@ -49,7 +49,7 @@ for line in sys.stdin.buffer:
 
 def refused(path: Path, *words: str) -> None:
     with pytest.raises(FileError) as caught:
-        read_clip_file(path)
+        read_clips(path)
     assert caught.value.cause and caught.value.remedy
     for word in words:
         assert word in str(caught.value)
@@ -140,7 +140,7 @@ def test_files_read_one_after_another_by_one_process_are_as_read_alone(
     files = sorted((shared_data / "mesh2motion-cmu").glob("*.fbx")) + sorted(
         (shared_data / "fbx-pab").glob("*.fbx")
     )
-    alone = [read_clip_file(f)[0] for f in files[-3:]]
+    alone = [read_clips(f)[0] for f in files[-3:]]
     monkeypatch.setattr(os, "cpu_count", lambda: 1)
     together = import_clips([*files, *files])
     assert not together.failures and len(together.clips) == 2 * len(files)
@@ -154,7 +154,7 @@ def test_files_read_one_after_another_by_one_process_are_as_read_alone(
     [("fbx-pab/crossarms.fbx", 1.8), ("fbx-pab/walk.fbx", 1.8), ("mesh2motion-cmu/91_48.fbx", 1.5)],
 )
 def test_real_files_are_people_in_metres_with_y_up(shared_data: Path, file: str, tall: float) -> None:
-    (clip,) = read_clip_file(shared_data / file)
+    (clip,) = read_clips(shared_data / file)
     roles = find_roles(clip.skeleton)
     assert clip.fps == 30 and clip.name == Path(file).stem and is_humanoid(roles)
     _, positions = clip.skeleton.globals(clip.poses())
@@ -167,7 +167,7 @@ def test_joints_stand_where_the_library_itself_puts_them(shared_data: Path) -> N
     import ufbx
 
     path = shared_data / "fbx-pab" / "walk.fbx"
-    (clip,) = read_clip_file(path)
+    (clip,) = read_clips(path)
     scene = ufbx.load_file(str(path), target_unit_meters=1.0, target_axes=ufbx.axes_right_handed_y_up)
     stacks = list(scene.anim_stacks)
     frame = 12
@@ -185,4 +185,4 @@ def test_joints_stand_where_the_library_itself_puts_them(shared_data: Path) -> N
 @needs_ufbx
 def test_clips_of_one_actor_share_a_skeleton(shared_data: Path) -> None:
     files = [shared_data / "mesh2motion-cmu" / f"91_{n}.fbx" for n in (48, 52)]
-    assert len({read_clip_file(f)[0].skeleton.fingerprint for f in files}) == 1
+    assert len({read_clips(f)[0].skeleton.fingerprint for f in files}) == 1

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
-from metagraph.formats.clips import digest, read_clip_file
+from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.gltf.writer import write_glb
 from metagraph.graph import edits
 from metagraph.graph.edit_error import EditError
@@ -223,7 +223,7 @@ def test_a_mirrored_clip_can_be_written_and_read_back(sample: Project, tmp_path:
     (twin,) = twin_clips(sample, [action.id])
     path = tmp_path / f"{twin.name}.glb"
     write_glb(path, [twin.motion])
-    (read,) = read_clip_file(path)
+    (read,) = read_clips(path)
     project = place_twins(*_added(sample, path, read, action.id))
     assert new_actions(sample, project)[0].limb == "right"
 

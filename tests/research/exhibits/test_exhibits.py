@@ -10,7 +10,7 @@ import pytest
 from msgspec import structs
 
 from metagraph.formats.bvh.file import write_bvh
-from metagraph.formats.clips import read_clip_file
+from metagraph.formats.clips import read_clips
 from metagraph.formats.corpora import Recorded
 from metagraph.formats.store import open_project
 from metagraph.generation.offered import SHIPPED
@@ -143,7 +143,7 @@ def test_takes_of_another_figure_are_retargeted_before_a_model_is_judged_on_them
     clip = talks[0].clips[0]
     assert clip is not None
     write_bvh(clip, tmp_path / "other.bvh")  # which has no rest rotations: another skeleton
-    (other,) = read_clip_file(tmp_path / "other.bvh")
+    (other,) = read_clips(tmp_path / "other.bvh")
     assert other.skeleton != clip.skeleton
     talk = replace(talks[0], clips=(other, None))
     material = ExhibitMaterial(sample, (talk,), "one talk", SHIPPED)

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from metagraph.formats.clips import read_clip_file
+from metagraph.formats.clips import read_clips
 from metagraph.research.motion_graph.extending_evaluation import extend_by_windows, news_of
 from metagraph.synthesis.constraints import HeardStates
 from metagraph.synthesis.extending.path import (
@@ -158,7 +158,7 @@ def test_a_run_that_ends_too_soon_is_left_before_the_least_time() -> None:
 
 @pytest.mark.skipif(not REAL.is_dir(), reason="the recordings of others are not there")
 def test_somebody_elses_clips_go_on_for_a_minute_without_standing_still() -> None:
-    clips = [read_clip_file(path)[0] for path in sorted(REAL.glob("*Idle*.bvh"))[:8]]
+    clips = [read_clips(path)[0] for path in sorted(REAL.glob("*Idle*.bvh"))[:8]]
     states = read_states(clips)
     sound = HeardStates(np.ones(len(states), np.uint8), np.zeros(len(states), bool))
     way = np.array(shown(PathExtender(driver_graph(build_graph(states), sound)), 1800))

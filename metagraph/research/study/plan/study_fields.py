@@ -60,7 +60,7 @@ class Plan(Struct, frozen=True, forbid_unknown_fields=True):
     condition but the last. when: what questionnaires are about that do not say it themselves. tolerance:
     seconds by which a timing may differ from the reference. allow: `labels` lets proposals be asked for.
     operators: seconds each operator of the keystroke-level model takes these participants, where it is not
-    as `klm.Times` has it.
+    as `klm.OperatorTimes` has it.
     """
 
     study: int

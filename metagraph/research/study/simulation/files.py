@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.bvh.file import write_bvh
-from metagraph.formats.clips import digest, read_clip_file
+from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.store import save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Layer, Project
@@ -145,7 +145,7 @@ def _reference(folder: Path, task: str) -> Project:
     """Return the right answer, its paths relative to the study's folder."""
     paths = [folder / "clips" / f"{n}.bvh" for n in clips_of(task)]
     project = edits.add_clips(
-        Project(task), [(f"clips/{p.name}", 0, digest(p), read_clip_file(p)[0]) for p in paths]
+        Project(task), [(f"clips/{p.name}", 0, digest(p), read_clips(p)[0]) for p in paths]
     )
     ids = {e.name: e.id for e in project.clips.values()}
     for stance in TASKS[task]:

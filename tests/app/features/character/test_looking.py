@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QApplication
 
 from app.features.character.looking import SIDES
 from metagraph.graph import anatomy
-from preview.camera import OrbitCamera
+from preview.camera import Camera
 
 KEYPAD = Qt.KeyboardModifier.KeypadModifier
 CONTROL = Qt.KeyboardModifier.ControlModifier
@@ -83,7 +83,7 @@ def test_flat_and_back_what_is_at_the_target_stays_as_large(toys):
 
 @pytest.mark.parametrize("distance", [0.3, 1.0, 4.2, 30.0])
 def test_a_flat_camera_goes_back_to_where_it_was_as_far_as_it_may_go_away(distance):
-    camera = OrbitCamera(distance=distance)
+    camera = Camera(distance=distance)
     flat = camera.flattened()
     assert flat.flat and flat.deepened().distance == pytest.approx(
         distance, rel=1e-6 if distance < 15 else 0.5

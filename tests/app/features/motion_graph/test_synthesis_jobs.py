@@ -21,7 +21,7 @@ from app.features.motion_graph.synthesis_jobs import (
 )
 from app.project.new_clips import cut_into_pieces, save
 from metagraph.errors import FileError
-from metagraph.formats.clips import read_clip_file
+from metagraph.formats.clips import read_clips
 from metagraph.graph.conversation.model import Conversation, Segment, Side
 from metagraph.graph.model import Project
 from metagraph.research.motion_graph.search_evaluation import cut_segments
@@ -176,7 +176,7 @@ def test_pieces_are_kept_as_files_that_read_back_under_names_that_are_free(
     assert len({path for path, *_ in (*loaded, *again)}) == 4
     assert loaded[0][3].name != f"{clip.name}_01"
     for path, take, digest, motion in loaded:
-        read = read_clip_file(tmp_path / path)[take]
+        read = read_clips(tmp_path / path)[take]
         assert read.frames == motion.frames and len(digest) == 64
         assert read.skeleton == clip.skeleton
 
