@@ -21,7 +21,8 @@ import numpy as np
 from metagraph.common.budgets import CLIP_SECONDS, FBX_MEMORY, FBX_SAMPLES, NODES
 from metagraph.formats.gltf.binary import BinaryChunk, glb_bytes
 
-FPS = 30.0
+FPS = 30.0  # where the file's own rate is none that motion is recorded at
+_RATES = (10.0, 240.0)
 MISSING, REFUSED = 4, 3  # exit code; code of an answer
 _CAMERAS = (3, 4, 18, 19)  # ufbx element types: light, camera, camera switcher, stereo camera
 _PATHS = (("translation", slice(0, 3)), ("rotation", slice(3, 7)), ("scale", slice(7, 10)))
@@ -84,13 +85,16 @@ def _transform(t: Any) -> tuple[float, ...]:
 
 @dataclass(frozen=True, eq=False)
 class _Scene:
-    """What of a scene is written. nodes, stacks, clusters: the library's. parents: of each node, -1 for none.
-    bones: which nodes are. still: `[N, 10]` where nodes stand without motion: place, turn, scale.
+    """What of a scene is written. nodes, stacks, clusters, blends: the library's, the last the channels of
+    blend shapes. parents: of each node, -1 for none. bones: which nodes are. still: `[N, 10]` where nodes
+    stand without motion: place, turn, scale. fps: the rate that takes are sampled at.
     """
 
     nodes: list[Any]
     stacks: list[Any]
     clusters: list[Any]
+    blends: list[Any]
+    fps: float
     parents: list[int]
     bones: list[int]
     still: Any
@@ -107,7 +111,7 @@ def _convert(scene: Any) -> bytes:
         matrices = np.stack([np.linalg.pinv(bind[i]) for i in read.bones])
         inverse = body.array(matrices.transpose(0, 2, 1).reshape(-1, 16), 5126)
         document["skins"] = [{"joints": read.bones, "inverseBindMatrices": inverse}]
-    animations = _animations(read, body)
+    animations = _animations(read, document, body)
     if animations:
         document["animations"] = animations
     return glb_bytes(document, body)
@@ -117,13 +121,16 @@ def _read(scene: Any) -> _Scene:
     nodes = list(scene.nodes)
     stacks = list(scene.anim_stacks)
     clusters = list(scene.skin_clusters)
-    _held.append((nodes, stacks, clusters))
+    blends = list(scene.blend_channels)
+    _held.append((nodes, stacks, clusters, blends))
     if len(nodes) > NODES:
         raise ValueError(f"it has more than {NODES:,} nodes")
     bones = [i for i, node in enumerate(nodes) if node.bone is not None]
     parents = [node.parent.typed_id if node.parent is not None else -1 for node in nodes]
     still = np.array([_transform(node.local_transform) for node in nodes])
-    return _Scene(nodes, stacks, clusters, parents, bones, still)
+    stated = float(scene.settings.frames_per_second)
+    fps = stated if _RATES[0] <= stated <= _RATES[1] else FPS
+    return _Scene(nodes, stacks, clusters, blends, fps, parents, bones, still)
 
 
 def _described(scene: _Scene) -> list[dict[str, Any]]:
@@ -182,18 +189,21 @@ def _moving(scene: _Scene) -> list[int]:
     ]
 
 
-def _animations(scene: _Scene, body: BinaryChunk) -> list[dict[str, Any]]:
-    """Return the takes that move anything. Raises ValueError where they are too long together."""
+def _animations(scene: _Scene, document: dict[str, Any], body: BinaryChunk) -> list[dict[str, Any]]:
+    """Return the takes that move anything. document: gets a node for the face of each take that has one.
+    Raises ValueError where they are too long together.
+    """
     moving = _moving(scene)
     animations = []
     asked = 0
     for stack in scene.stacks:
         length = float(stack.time_end - stack.time_begin)
-        frames = round(length * FPS) + 1 if 0 <= length < CLIP_SECONDS else 1
-        asked += frames * len(moving)
+        frames = round(length * scene.fps) + 1 if 0 <= length < CLIP_SECONDS else 1
+        asked += frames * (len(moving) + len(scene.blends))
         if asked > FBX_SAMPLES:
             raise ValueError(f"its takes, up to '{stack.name}' of {length:.0f} s, are too long")
         animation = _animation(scene, stack, frames, moving, body)
+        _add_face(animation, scene, stack, frames, document, body)
         if animation["channels"]:
             animations.append(animation)
     return animations
@@ -206,7 +216,7 @@ def _animation(
     they keep the length of the take.
     """
     anim = stack.anim
-    times = stack.time_begin + np.arange(frames) / FPS
+    times = stack.time_begin + np.arange(frames) / scene.fps
     samplers: list[dict[str, Any]] = []
     channels: list[dict[str, Any]] = []
     for i in moving:
@@ -222,7 +232,41 @@ def _animation(
             source = body.array(times[:kept] - stack.time_begin, 5126)
             samplers.append({"input": source, "output": body.array(own[:kept], 5126)})
             channels.append({"sampler": len(samplers) - 1, "target": {"node": i, "path": name}})
-    return {"name": stack.name, "samplers": samplers, "channels": channels, "extras": {"fps": FPS}}
+    return {"name": stack.name, "samplers": samplers, "channels": channels, "extras": {"fps": scene.fps}}
+
+
+def _add_face(
+    animation: dict[str, Any],
+    scene: _Scene,
+    stack: Any,
+    frames: int,
+    document: dict[str, Any],
+    body: BinaryChunk,
+) -> None:
+    """Add the weights of blend shapes that are not zero throughout a take. Meshes that share a shape's name
+    share its weight; names lose the deformer's that stands before them ("blendShape1.jawOpen").
+    """
+    times = stack.time_begin + np.arange(frames) / scene.fps
+    columns: dict[str, Any] = {}
+    for blend in scene.blends:
+        name = blend.name.rpartition(".")[2].strip()
+        weights = np.array([blend.evaluate_blend_weight(stack.anim, t) for t in times])
+        if name and np.isfinite(weights).all() and np.abs(weights).max() > 1e-5:
+            columns.setdefault(name, weights)
+    if not columns:
+        return
+    mesh = {
+        "name": "face",
+        "primitives": [{"attributes": {}, "targets": [{} for _ in columns]}],
+        "extras": {"targetNames": [*columns]},
+    }
+    document.setdefault("meshes", []).append(mesh)
+    document["nodes"].append({"name": "face", "mesh": len(document["meshes"]) - 1})
+    source = body.array(times - stack.time_begin, 5126)
+    output = body.array(np.stack([*columns.values()], 1).reshape(-1), 5126)
+    animation["samplers"].append({"input": source, "output": output})
+    target = {"node": len(document["nodes"]) - 1, "path": "weights"}
+    animation["channels"].append({"sampler": len(animation["samplers"]) - 1, "target": target})
 
 
 if __name__ == "__main__":

@@ -25,9 +25,10 @@ _AGAIN = phrase("Export it again from the program that made it, as binary FBX 20
 
 
 def read_fbx_clips(path: str | Path, timeout: float = TIMEOUT, as_is: Collection[str] = ()) -> list[Clip]:
-    """Return every take of an FBX file, sampled at 30 fps, in metres, Y up, on one Skeleton.
+    """Return every take of an FBX file, with the weights of its blend shapes, sampled at the file's own rate
+    (30 fps where that is not from 10 to 240), in metres, Y up, on one Skeleton.
 
-    Needs the extra `metagraph-studio[fbx]`. Meshes and blend shapes are not read. Raises FileError, also when
+    Needs the extra `metagraph-studio[fbx]`. Meshes are not read. Raises FileError, also when
     the library is missing, takes longer than `timeout` seconds or crashes on the file. as_is: repairs
     (`takes.REPAIRS`) not to make.
     """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from metagraph.common.wording import phrase
 from metagraph.errors import FileError
-from metagraph.formats.gltf.columns import MODES, NO_MODE, SCALE, UNKNOWN, WEIGHTS, ChannelTable
+from metagraph.formats.gltf.columns import MODES, NO_MODE, SCALE, TRANSLATION, UNKNOWN, WEIGHTS, ChannelTable
 from metagraph.formats.gltf.file import Gltf
 
 Array = NDArray[Any]
@@ -104,12 +105,20 @@ def note_unused_channels(gltf: Gltf, table: ChannelTable, number: int) -> list[s
     return [f"channels for '{path[:40]}' were left out" for path in paths]
 
 
-def morph_channels(table: ChannelTable, number: int) -> list[tuple[int, str, int, int]]:
-    """Return an animation's channels of weights: input, mode, node, output."""
-    if number not in table.odd:
+def morph_channels(
+    table: ChannelTable, number: int, expressions: Collection[int] = ()
+) -> list[tuple[int, str, int, int]]:
+    """Return an animation's channels of weights: input, mode, node, output. expressions: nodes whose
+    translation is a weight.
+    """
+    if number not in table.odd and not expressions:
         return []
     own = slice(table.begins[number], table.begins[number + 1])
-    which = np.flatnonzero((table.paths[own] == WEIGHTS) & (table.nodes[own] >= 0)) + own.start
+    paths, nodes = table.paths[own], table.nodes[own]
+    wanted = (paths == WEIGHTS) & (nodes >= 0)
+    if expressions:
+        wanted |= (paths == TRANSLATION) & np.isin(nodes, list(expressions))
+    which = np.flatnonzero(wanted) + own.start
     columns = (table.inputs, table.modes, table.nodes, table.outputs)
     rows = np.array([some[which] for some in columns]).T.tolist()
     return [(source, _NAMES[mode], node, output) for source, mode, node, output in rows]

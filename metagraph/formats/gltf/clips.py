@@ -40,7 +40,8 @@ def read_animations(gltf: Gltf, rig: GltfRig, as_is: Collection[str] = ()) -> li
     """
     table = gltf.channels
     channels = JointChannels.of(table, rig.places, len(gltf.json.nodes), len(gltf.json.accessors))
-    keys = sound_times(gltf, np.concatenate([channels.sources, table.inputs[table.paths == WEIGHTS]]))
+    weights = (table.paths == WEIGHTS) | np.isin(table.nodes, list(gltf.vrm_face.nodes))
+    keys = sound_times(gltf, np.concatenate([channels.sources, table.inputs[weights]]))
     numbers = range(len(gltf.json.animations))
     planned = (_planned(gltf, rig, n, table, channels, keys) for n in numbers)
     plans = [plan for plan in planned if plan is not None]
@@ -83,7 +84,11 @@ def _planned(
     where = phrase("animation {a} '{name}'", a=number, name=animation.name)
     check_channels(gltf, table, number, where)
     first, after = channels.of_take(number)
-    morphs, notes = morph_channels(table, number), note_unused_channels(gltf, table, number)
+    morphs = morph_channels(table, number, gltf.vrm_face.expressions)
+    notes = note_unused_channels(gltf, table, number)
+    own_nodes = table.nodes[table.begins[number] : table.begins[number + 1]]
+    if gltf.vrm_face.gaze is not None and gltf.vrm_face.gaze in own_nodes:
+        notes.append(phrase("where its eyes look (lookAt) was left out: the project's own gaze moves them"))
     if first == after and not morphs:
         return None
     inputs = {*channels.sources[first:after].tolist(), *(channel[0] for channel in morphs)}

@@ -26,6 +26,7 @@ from metagraph.errors import FileError
 from metagraph.formats.gltf.columns import WIDTHS, ChannelTable, PlainAccessors, decode_columns
 from metagraph.formats.gltf.meshopt import MeshoptError, unpack_buffer
 from metagraph.formats.gltf.values import Accessor, Buffer, BufferView, Document, PackedView, Sparse
+from metagraph.formats.gltf.vrm_animation import VrmFace, find_vrm_face
 
 Array = NDArray[Any]
 
@@ -241,6 +242,11 @@ class Gltf:
         first buffer, as `PlainAccessors` does.
         """
         return self.plain.starts(indices, counts, width, len(self.buffer(0, where)))
+
+    @cached_property
+    def vrm_face(self) -> VrmFace:
+        """The nodes that are the face of a VRM animation."""
+        return find_vrm_face(extras(self.json.extensions))
 
     @cached_property
     def channels(self) -> ChannelTable:

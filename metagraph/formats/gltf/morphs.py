@@ -40,13 +40,18 @@ def read_morph_names(gltf: Gltf, node: int) -> tuple[str, ...]:
 def morph_weights(
     gltf: Gltf, channels: list[tuple[int, str, int, int]], keys: dict[int, Array], grid: FrameGrid, where: str
 ) -> tuple[tuple[str, ...], Array | None]:
-    """Return morph names and weights `[F, K]`; meshes that share a target's name share its weight."""
+    """Return morph names and weights `[F, K]`; meshes that share a target's name share its weight. The
+    expressions of a VRM animation are named as it names them.
+    """
     columns: dict[str, Array] = {}
     for source, mode, node, output in channels:
         if node >= len(gltf.json.nodes):
             gltf.fail(phrase("its target node {node} does not exist", node=node), where)
-        names = read_morph_names(gltf, node)
-        values = gltf.array(output, where, "SCALAR")
+        expression = gltf.vrm_face.expressions.get(node)
+        if expression is None:
+            names, values = read_morph_names(gltf, node), gltf.array(output, where, "SCALAR")
+        else:
+            names, values = (expression,), gltf.array(output, where, "VEC3")[:, 0]
         count = len(keys[source]) * (3 if mode == "CUBICSPLINE" else 1)
         if not names:
             continue

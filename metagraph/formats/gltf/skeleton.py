@@ -339,6 +339,9 @@ def _members(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int]
         members = skinned | moving
     else:
         members = _without_skin(nodes, parents, order, set(animated))
+    face = gltf.vrm_face.nodes - skinned
+    if members - face:
+        members -= face
     # Close the gaps: a node between two joints is a joint.
     under, over = set(), set(members)
     for i in order:

@@ -186,3 +186,70 @@ def test_joints_stand_where_the_library_itself_puts_them(shared_data: Path) -> N
 def test_clips_of_one_actor_share_a_skeleton(shared_data: Path) -> None:
     files = [shared_data / "mesh2motion-cmu" / f"91_{n}.fbx" for n in (48, 52)]
     assert len({read_clips(f)[0].skeleton.fingerprint for f in files}) == 1
+
+
+TIME = 46186158000  # FBX's units in a second
+
+
+def fbx_face(mode: int) -> str:
+    """Return a text FBX of one bone that turns for a second and a mesh whose jaw opens, a shape that never
+    moves beside it. mode: the number of the file's frame rate.
+    """
+
+    def curve(number: int, last: float) -> str:
+        return (
+            f'AnimationCurve: {number}, "AnimCurve::", "" {{\n KeyVer: 4008\n KeyTime: *2 {{ a: 0,{TIME} }}\n'
+            f" KeyValueFloat: *2 {{ a: 0,{last} }}\n KeyAttrFlags: *1 {{ a: 4 }}\n"
+            " KeyAttrDataFloat: *4 { a: 0,0,0,0 }\n KeyAttrRefCount: *1 { a: 2 }\n}\n"
+        )
+
+    def shape(number: int, name: str) -> str:
+        return (
+            f'Geometry: {number}, "Geometry::{name}", "Shape" {{\n Indexes: *1 {{ a: 0 }}\n'
+            " Vertices: *3 { a: 0,-1,0 }\n}\n"
+            f'Deformer: {number + 1}, "SubDeformer::head.{name}", "BlendShapeChannel" {{\n DeformPercent: 0\n'
+            " FullWeights: *1 { a: 100 }\n}\n"
+        )
+
+    links = [
+        (10, 0), (11, 10), (20, 0), (21, 20), (22, 21), (31, 22), (30, 31), (33, 22), (32, 33), (41, 40),
+    ]  # fmt: skip
+    named = [(42, 41, ""), (42, 10, "Lcl Rotation"), (43, 42, "d|X"), (44, 41, ""), (44, 31, "DeformPercent")]
+    named.append((45, 44, "d|DeformPercent"))
+    connections = [f'C: "OO",{a},{b}' for a, b in links]
+    connections += [f'C: "OP",{a},{b},"{name}"' if name else f'C: "OO",{a},{b}' for a, b, name in named]
+    return (
+        "; FBX 7.4.0 project file\nFBXHeaderExtension:  {\n FBXVersion: 7400\n}\n"
+        f'GlobalSettings: {{\n Version: 1000\n Properties70: {{\n  P: "TimeMode", "enum", "", "",{mode}\n'
+        '  P: "UnitScaleFactor", "double", "Number", "",100\n }\n}\nObjects:  {\n'
+        'Model: 10, "Model::Head", "LimbNode" {\n Version: 232\n}\n'
+        'NodeAttribute: 11, "NodeAttribute::Head", "LimbNode" {\n TypeFlags: "Skeleton"\n}\n'
+        'Model: 20, "Model::Mesh", "Mesh" {\n Version: 232\n}\n'
+        'Geometry: 21, "Geometry::Mesh", "Mesh" {\n Vertices: *9 { a: 0,0,0,1,0,0,0,1,0 }\n'
+        " PolygonVertexIndex: *3 { a: 0,1,-3 }\n}\n"
+        'Deformer: 22, "Deformer::head", "BlendShape" {\n}\n' + shape(30, "jawOpen") + shape(32, "cheekPuff")
+        + 'AnimationStack: 40, "AnimStack::nod", "" {\n Properties70: {\n'
+        '  P: "LocalStart", "KTime", "Time", "",0\n'
+        f'  P: "LocalStop", "KTime", "Time", "",{TIME}\n }}\n}}\n'
+        'AnimationLayer: 41, "AnimLayer::base", "" {\n}\n'
+        'AnimationCurveNode: 42, "AnimCurveNode::R", "" {\n}\n' + curve(43, 40.0)
+        + 'AnimationCurveNode: 44, "AnimCurveNode::DeformPercent", "" {\n}\n' + curve(45, 60.0)
+        + "}\nConnections:  {\n" + "\n".join(connections) + "\n}\n"
+    )  # fmt: skip
+
+
+@needs_ufbx
+def test_blend_shapes_that_move_come_along_by_their_own_names(tmp_path: Path) -> None:
+    (tmp_path / "a.fbx").write_text(fbx_face(3))
+    (clip,) = read_clips(tmp_path / "a.fbx")
+    assert clip.morphs == ("jawOpen",) and clip.weights is not None
+    assert clip.weights[:, 0] == pytest.approx(np.linspace(0, 0.6, 61), abs=1e-5)
+    assert clip.skeleton.names == ("Head",)
+
+
+@needs_ufbx
+@pytest.mark.parametrize(("mode", "fps"), [(3, 60.0), (11, 24.0), (6, 30.0), (1, 120.0)])
+def test_takes_keep_their_file_s_rate(tmp_path: Path, mode: int, fps: float) -> None:
+    (tmp_path / "a.fbx").write_text(fbx_face(mode))
+    (clip,) = read_clips(tmp_path / "a.fbx")
+    assert clip.fps == fps and clip.frames == round(fps) + 1

@@ -439,6 +439,45 @@ def test_vrm_files_state_their_roles(tmp_path: Path, extension: dict[str, Any]) 
     assert vrm_roles(scene.glb(tmp_path / "me.vrm")) == {"hips": 0, "head": 2}
 
 
+def vrm_animation(skin: bool) -> Scene:
+    scene = Scene([*bones(), {"name": "mouth"}, {"name": "smirk"}, {"name": "eyes"}])
+    if skin:
+        scene.json["skins"] = [{"joints": [0, 1, 2]}]
+    scene.json["extensions"] = {
+        "VRMC_vrm_animation": {
+            "humanoid": {"humanBones": {"hips": {"node": 0}, "head": {"node": 2}}},
+            "expressions": {"preset": {"aa": {"node": 3}}, "custom": {"Smirk": {"node": 4}, "odd": 7}},
+            "lookAt": {"node": 5},
+        }
+    }
+    moved = [[0, 0, 0], [0.5, 0, 0], [1, 0, 0]]
+    scene.animate(
+        "talk",
+        (1, "rotation", [0, 1], TURN, "LINEAR"),
+        (3, "translation", [0, 0.5, 1], moved, "LINEAR"),
+        (4, "translation", [0, 0.5, 1], moved[::-1], "LINEAR"),
+        (5, "rotation", [0, 1], TURN, "LINEAR"),
+    )
+    return scene
+
+
+@pytest.mark.parametrize("skin", [True, False])
+def test_the_expressions_of_a_vrm_animation_are_weights_and_its_eyes_are_named(
+    tmp_path: Path, skin: bool
+) -> None:
+    clip = read_one(vrm_animation(skin), tmp_path, "talk.vrma")
+    assert clip.skeleton.names == ("Hips", "Spine", "Head")
+    assert clip.morphs == ("aa", "Smirk") and clip.weights is not None
+    np.testing.assert_allclose(clip.weights[[0, 15, 30]], [[0, 1], [0.5, 0.5], [1, 0]], atol=1e-6)
+    assert any("lookAt" in note for note in clip.notes)
+
+
+def test_an_expression_whose_weight_is_no_number_of_its_node_is_refused(tmp_path: Path) -> None:
+    scene = vrm_animation(False)
+    scene.animate("odd", (3, "translation", [0, 1], [0.0, 1.0], "LINEAR"))
+    refused(scene, tmp_path, "VEC3")
+
+
 def test_files_that_are_not_vrm_state_no_roles(tmp_path: Path) -> None:
     scene = Scene(bones())
     assert vrm_roles(scene.glb(tmp_path / "me.glb")) == {}
