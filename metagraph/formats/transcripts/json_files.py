@@ -6,8 +6,9 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from statistics import median
 from typing import Any
 
 from metagraph.common.wording import phrase
@@ -18,6 +19,7 @@ _REMEDY = phrase(
     "Whisper writes 'segments', with 'words' if word timestamps were "
     "requested; IBM writes 'results' with 'timestamps'."
 )
+_SLOWEST = 3.0  # seconds a letter: the slowest speech has a fifth of that, a word in milliseconds 20 or more
 
 
 def read_json(path: Path, text: str) -> Transcript:
@@ -38,6 +40,9 @@ def read_json(path: Path, text: str) -> Transcript:
     out = Collected(path)
     if isinstance(data, dict) and "sides" in data:
         return _ours(out, text)
+    if _in_milliseconds(data):
+        out.unit = 0.001
+        out.notes.append(phrase("its times are whole numbers too large for seconds: read as milliseconds"))
     if isinstance(data, list):
         if all(isinstance(x, dict) and "results" in x for x in data) and data:
             data = {
@@ -127,7 +132,36 @@ def _time(out: Collected, value: Any, where: str) -> float | None:
         raise out.fail(phrase("a time is '{value}'", value=str(value)[:30]), where) from None
     if not math.isfinite(seconds):
         raise out.fail(phrase("a time is {seconds:g}", seconds=seconds), where)
-    return seconds
+    return seconds * out.unit
+
+
+def _in_milliseconds(data: Any) -> bool:
+    """Return whether every time of a text is a whole number, and half of the texts would last over
+    `_SLOWEST` seconds a letter if these were seconds.
+    """
+    lengths = []
+    for start, end, text in _timed_texts(data):
+        if not (float(start).is_integer() and float(end).is_integer()):
+            return False
+        letters = sum(c.isalnum() for c in text)
+        if letters:
+            lengths.append((end - start) / letters)
+    return bool(lengths) and median(lengths) > _SLOWEST
+
+
+def _timed_texts(data: Any) -> Iterator[tuple[float, float, str]]:
+    """Yield starts, ends and texts of all objects that have them, however deep they lie."""
+    waiting = [data]
+    while waiting:
+        value = waiting.pop()
+        if isinstance(value, list):
+            waiting.extend(value)
+        elif isinstance(value, dict):
+            waiting.extend(value.values())
+            start, end = value.get("start"), value.get("end")
+            text = _text(value.get("word", value.get("text", value.get("punctuated_word"))))
+            if type(start) in (int, float) and type(end) in (int, float) and abs(start) + abs(end) < 1e15:
+                yield start, end, text
 
 
 def _text(value: Any) -> str:

@@ -67,7 +67,7 @@ class Transcript:
 @dataclass
 class Collected:
     """Words while a file is being read. spread: texts of several words whose times were shared out; wrong:
-    those out of order.
+    those out of order. unit: seconds that one of the file's units of time is.
     """
 
     path: Path
@@ -76,6 +76,7 @@ class Collected:
     spread: int = 0
     wrong: int = 0
     count: int = 0
+    unit: float = 1.0
 
     def fail(self, cause: str, where: str = "", remedy: str = _CORRECT) -> FileError:
         return FileError(self.path, cause, where, remedy)

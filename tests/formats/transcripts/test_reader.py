@@ -314,6 +314,28 @@ def test_words_alone_are_read(read: Reader, key: str | None) -> None:
     assert rows(read(json.dumps({key: words} if key else words))) == {"": [("so", 1, 1.5)]}
 
 
+def test_whole_milliseconds_are_told_from_seconds_by_how_long_words_would_last(read: Reader) -> None:
+    words = [("so", 0, 380), ("today", 500, 880), ("we", 2_400_000, 2_400_300)]
+    data = {"words": [{"text": w, "start": a, "end": b} for w, a, b in words]}
+    found = read(json.dumps(data))
+    assert rows(found) == {"": [("so", 0, 0.38), ("today", 0.5, 0.88), ("we", 2400, 2400.3)]}
+    assert any("milliseconds" in note for note in found.notes)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        [("so", 1, 2), ("today", 2, 3), ("we", 40, 45)],  # one word that goes on, in whole seconds
+        [("so", 0.5, 380), ("today", 500, 880)],  # no whole number
+        [("now", 5, 5), ("then", 6, 6)],
+    ],
+)
+def test_whole_seconds_stay_seconds(read: Reader, words: list[tuple[str, float, float]]) -> None:
+    found = read(json.dumps({"words": [{"text": w, "start": a, "end": b} for w, a, b in words]}))
+    assert not any("milliseconds" in note for note in found.notes)
+    assert [w.start for w in found.speakers[""]] == [a for _, a, _ in words]
+
+
 def test_ibm_speakers_come_by_their_labels(read: Reader) -> None:
     data = {
         "result_index": 0,
