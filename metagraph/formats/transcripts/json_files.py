@@ -160,7 +160,7 @@ def _timed_texts(data: Any) -> Iterator[tuple[float, float, str]]:
             waiting.extend(value.values())
             start, end = value.get("start"), value.get("end")
             text = _text(value.get("word", value.get("text", value.get("punctuated_word"))))
-            if type(start) in (int, float) and type(end) in (int, float) and abs(start) + abs(end) < 1e15:
+            if isinstance(start, int | float) and isinstance(end, int | float) and start + end < 1e15:
                 yield start, end, text
 
 
