@@ -2,7 +2,8 @@
 
 Poses are compared whole, by where their joints are: joints count as much as their bones are long, so fingers
 and helpers decide nothing. A stray pose both looks like one (the rest pose, or arms held straight out as in a
-T- or A-pose) and is left by a step unlike the take's own motion; either alone is no reason.
+T- or A-pose) and is left by a step unlike the take's own motion. Its looks alone are no reason; the step alone is
+one only where it is many times as large as any other of the take.
 """
 
 from __future__ import annotations
@@ -32,6 +33,8 @@ VISIBLE = 0.007  # of the spread: a smaller step is not seen
 # real clips, which begin or end anywhere, stay below 2.
 LIKENESS = ((0.05, 3.0), (0.15, 4.0))
 ARMS_OUT = 4.0  # the same for a pose that is a T- or an A-pose by its shape alone
+UNLIKE = 12.0  # the same for any pose: an A-pose with bent elbows in a file whose rest pose is the idle
+ALONE = 5.0  # times the take's largest step after it that the step from such a pose must be
 CERTAIN = 12.0  # the same where the clip moves as quickly elsewhere
 OWN = 1.5  # times the clip's 95 % step that the step must be: a clip that jumps all along is no other
 LONE, LONE_BOUND = 6.0, 4.0  # how many times any step around it those to and from a lone frame are
@@ -100,14 +103,12 @@ class _Take:
         return np.asarray(places - np.einsum("ji,j->i", places, self.weights))
 
     def factor(self, frame: int) -> float:
-        """Return how many times the motion's own the step from this pose must be; infinite for a pose that is
-        no bind pose.
-        """
+        """Return how many times the motion's own the step from this pose must be."""
         away = min(self.apart(self.places[frame], pose) for pose in self.bound)
         for near, factor in LIKENESS:
             if away <= near:
                 return factor
-        return ARMS_OUT if self.arms_out(frame) else np.inf
+        return ARMS_OUT if self.arms_out(frame) else UNLIKE
 
     def apart(self, one: Array, other: Array) -> float:
         """Return how far two poses are apart, whichever way either faces or lies."""
@@ -242,7 +243,7 @@ def _stray(take: _Take) -> StrayPoses:
 
 def is_bind_pose(clip: Clip) -> bool:
     """Whether a clip's first frame is the rest pose, a T- or an A-pose."""
-    return bool(np.isfinite(_Take.alike([clip], ())[0].factor(0)))
+    return _Take.alike([clip], ())[0].factor(0) < UNLIKE
 
 
 def _leading(take: _Take, backwards: bool) -> int:
@@ -296,7 +297,8 @@ def _run(take: _Take, steps: Array, way: slice, fps: float, frames: int) -> int:
             if (inner[1:-1] > np.maximum(0.5 * peak, LIKENESS[-1][1] * beside)).any():
                 continue  # a take that jumps elsewhere, too, is made of poses
             first = range(frames)[way][start]
-            if odds < take.factor(first):
+            factor = take.factor(first)
+            if odds < factor or (factor == UNLIKE and peak < ALONE * max(numbers[end:])):
                 continue
             if length == 1 or _straight(take.clip, np.arange(frames)[way][start : end + 1]):
                 return end

@@ -15,6 +15,7 @@ from metagraph.formats.stray_poses import stray_poses
 from metagraph.formats.takes import BIND_POSE, LONE_FRAME, drop_stray_poses
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import Pose
 from tests.benchmarks import bench_stray_poses as made
 
 Array = NDArray[Any]
@@ -132,11 +133,40 @@ def test_a_lone_frame_is_made_anew_between_its_neighbours_and_can_be_left(takes:
 def test_a_pose_that_the_nodes_hold_counts_as_a_bind_pose_where_the_reader_knows_it(
     takes: list[Clip],
 ) -> None:
-    clip = takes[0]
-    rng = np.random.default_rng(1)
-    rest = clip.skeleton.rest
-    axes = rotation.normalize(rng.normal(size=(len(clip.skeleton), 4)) * 0.3 + [0, 0, 0, 1.0])
-    odd = replace(rest, rotations=rotation.multiply(rest.rotations, axes))
+    clip = quick(takes)
+    odd = odd_pose(clip)
     take = made.joined(clip, [made.row(clip, odd, False, 0), made.whole(clip)])
     assert stray_poses([take])[0].first == 0
     assert stray_poses([take], [odd])[0].first == 1
+
+
+def odd_pose(clip: Clip) -> Pose:
+    """Return a pose that is neither the rest pose nor one with its arms out."""
+    rest = clip.skeleton.rest
+    noise = np.random.default_rng(1).normal(size=(len(clip.skeleton), 4))
+    return replace(
+        rest, rotations=rotation.multiply(rest.rotations, rotation.normalize(noise * 0.3 + [0, 0, 0, 1.0]))
+    )
+
+
+def quick(takes: list[Clip]) -> Clip:
+    """Return the take that turns most, at four times its speed."""
+
+    def turned(clip: Clip) -> float:
+        return float(rotation.angle_between(clip.rotations[1:], clip.rotations[:-1]).sum(1).max())
+
+    clip = max(takes, key=turned)
+    return replace(
+        clip, rotations=clip.rotations[::4], translations=clip.translations[::4], weights=None, morphs=()
+    )
+
+
+@pytest.mark.parametrize("backwards", [False, True])
+def test_any_pose_that_a_step_far_above_all_others_leaves_is_stray(
+    takes: list[Clip], backwards: bool
+) -> None:
+    clip = next(c for c in takes if c.frames > 60)
+    rows = [made.row(clip, odd_pose(clip), False, 0), made.whole(clip)]
+    take = made.joined(clip, rows[::-1] if backwards else rows)
+    found = stray_poses([take])[0]
+    assert (found.first, found.last) == ((0, 1) if backwards else (1, 0))
