@@ -12,7 +12,7 @@ from typing import Literal
 
 from metagraph.common.wording import join_phrases, phrase, plural_phrase
 from metagraph.formats.imports import Imported, Strangers
-from metagraph.formats.takes import BIND_POSE, LONE_FRAME, NAME, ONE_FRAME, UNIT, UP
+from metagraph.formats.takes import BIND_POSE, FRAME_TIME, FROM_OFFSET, LONE_FRAME, NAME, ONE_FRAME, UNIT, UP
 
 _RIGHT = {
     BIND_POSE: phrase("bind poses on first frames"),
@@ -20,6 +20,8 @@ _RIGHT = {
     UP: phrase("Z up"),
     ONE_FRAME: phrase("takes of one frame"),
     LONE_FRAME: phrase("single stray frames"),
+    FROM_OFFSET: phrase("positions relative to OFFSET"),
+    FRAME_TIME: phrase("frame times"),
     NAME: phrase("names"),
 }
 _VARIES = re.compile(r"'[^']*'|\d+(?:\.\d+)?")

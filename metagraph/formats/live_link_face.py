@@ -37,6 +37,7 @@ SPARSE = 20  # frames for each row, in all
 HOLE = 0.5  # seconds without a face from which on it is told
 _REMEDY = "Take the CSV file of a recording of Live Link Face as the app wrote it."
 _TIME = re.compile(r"(\d{1,2}):(\d{1,2}):(\d{1,2})([:;])(\d{1,3})(?:\.(\d{1,9}))?$")
+_SEMICOLONS = ("semicolons separate its columns; its decimal commas were read as points",)
 _LONGEST = 64_000  # characters a line
 _AGREE = 0.3  # how well eyes' angles have to go with the shapes that say where they look
 
@@ -46,7 +47,7 @@ def is_live_link(head: bytes) -> bool:
     line = (
         head.lstrip(b"\xef\xbb\xbf \t\r\n").split(b"\n", 1)[0].lower().replace(b" ", b"").replace(b'"', b"")
     )
-    return line.startswith(b"timecode,blendshapecount")
+    return line.startswith((b"timecode,blendshapecount", b"timecode;blendshapecount"))
 
 
 @guard_reader
@@ -55,7 +56,7 @@ def read_live_link(path: str | Path) -> Clip:
     path = Path(path)
     columns: list[tuple[int, str]] = []
     unknown: list[str] = []
-    width = 0
+    width, separator = 0, ","
     stamps: list[tuple[int, int, float, bool]] = []  # second of the day, frame, part of it, drop-frame
     rows: list[list[float]] = []
     empty = 0
@@ -64,7 +65,10 @@ def read_live_link(path: str | Path) -> Clip:
         number = 0
         while line := file.readline(_LONGEST):
             number += 1
-            cells = [c.strip().strip('"') for c in _text(path, line, number).strip().split(",")]
+            text = _text(path, line, number).strip()
+            if not width:
+                separator = ";" if ";" in text else ","
+            cells = _cells(text, separator)
             if not any(cells):
                 continue
             if torn is not None:
@@ -95,7 +99,7 @@ def read_live_link(path: str | Path) -> Clip:
         if torn is not None:
             raise torn
         raise FileError(path, "no row has a face", f"line {2 + empty}", _REMEDY)
-    notes = []
+    notes = list(_SEMICOLONS) if separator == ";" else []
     if torn is not None:
         notes.append("its last line is cut off and was left out")
     if unknown:
@@ -103,6 +107,13 @@ def read_live_link(path: str | Path) -> Clip:
     times, rate, told = _times(stamps)
     notes += told
     return _clip(path, [name for _, name in columns], times, np.array(rows), rate, notes, empty)
+
+
+def _cells(text: str, separator: str) -> list[str]:
+    """Return the cells of a line; between semicolons commas are decimal points."""
+    if separator == ";":
+        text = text.replace(",", ".")
+    return [cell.strip().strip('"') for cell in text.split(separator)]
 
 
 def _text(path: Path, line: bytes, number: int) -> str:

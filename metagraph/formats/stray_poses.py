@@ -2,8 +2,8 @@
 
 Poses are compared whole, by where their joints are: joints count as much as their bones are long, so fingers
 and helpers decide nothing. A stray pose both looks like one (the rest pose, or arms held straight out as in a
-T- or A-pose) and is left by a step unlike the take's own motion. Its looks alone are no reason; the step alone is
-one only where it is many times as large as any other of the take.
+T- or A-pose) and is left by a step unlike the take's own motion. Its looks alone are no reason; the step
+alone is one only where it is many times as large as any other of the take.
 """
 
 from __future__ import annotations

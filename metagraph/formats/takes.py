@@ -19,8 +19,8 @@ Array = NDArray[Any]
 
 # What readers put right on their own and leave as it is when they are told to.
 BIND_POSE, UNIT, UP, NAME, ONE_FRAME = "bind_pose", "unit", "up_axis", "name", "one_frame"
-LONE_FRAME = "lone_frame"
-REPAIRS = (BIND_POSE, UNIT, UP, NAME, ONE_FRAME, LONE_FRAME)
+LONE_FRAME, FROM_OFFSET, FRAME_TIME = "lone_frame", "from_offset", "frame_time"
+REPAIRS = (BIND_POSE, UNIT, UP, NAME, ONE_FRAME, LONE_FRAME, FROM_OFFSET, FRAME_TIME)
 
 # Names that tools give on their own; the file's name says more.
 _GENERIC = re.compile(

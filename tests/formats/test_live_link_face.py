@@ -55,6 +55,15 @@ def nod(n: int) -> dict[str, float]:
     }  # fmt: skip
 
 
+def test_tables_with_semicolons_and_decimal_commas_are_read_alike(tmp_path: Path) -> None:
+    plain = written(tmp_path, [row(stamp(n), nod(n)) for n in range(90)])
+    parted = tmp_path / "parted.csv"
+    parted.write_text(plain.read_text("utf-8").replace(",", ";").replace(".", ","), encoding="utf-8")
+    (one,), (other,) = read_clips(plain), read_clips(parted)
+    np.testing.assert_array_equal(one.weights, other.weights)
+    assert any("semicolons" in note for note in other.notes) and find_clip_files(tmp_path) == [parted, plain]
+
+
 def test_61_values_a_row_become_52_curves_and_turns_at_the_rate_of_the_timecode(tmp_path: Path) -> None:
     clip = read_live_link(written(tmp_path, [row(stamp(n), nod(n)) for n in range(181)]))
     assert clip.morphs == ARKIT and clip.fps == 60 and clip.frames == 181

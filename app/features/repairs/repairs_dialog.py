@@ -24,7 +24,7 @@ from app.translation import lazy_texts, tr, tr_error, tr_plural
 from app.widgets.making import make_widget
 from app.widgets.tree_items import items_below, top_items
 from metagraph.formats.repairs import Repaired, Reread, repairs_of, reread
-from metagraph.formats.takes import BIND_POSE, LONE_FRAME, NAME, ONE_FRAME, UNIT, UP
+from metagraph.formats.takes import BIND_POSE, FRAME_TIME, FROM_OFFSET, LONE_FRAME, NAME, ONE_FRAME, UNIT, UP
 from metagraph.graph.edit_error import EditError
 
 PLACE = Qt.ItemDataRole.UserRole
@@ -34,6 +34,8 @@ TITLES = lazy_texts(
         LONE_FRAME: tr("Smooth single stray frames"),
         UNIT: tr("Detect the unit of length"),
         UP: tr("Rotate from Z up to Y up"),
+        FROM_OFFSET: tr("Add a joint's OFFSET to its positions"),
+        FRAME_TIME: tr("Correct the frame time"),
         ONE_FRAME: tr("Skip one-frame bind poses"),
         NAME: tr("Clean names"),
     }

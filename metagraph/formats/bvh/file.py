@@ -27,8 +27,8 @@ from metagraph.common.wording import phrase
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.bvh.decimal_text import decimals
-from metagraph.formats.bvh.space import USUAL, find_unit, is_z_up, stand_up
-from metagraph.formats.takes import UNIT, UP, drop_stray_poses, note_repair
+from metagraph.formats.bvh.space import USUAL, find_relative_joints, find_unit, is_z_up, stand_up
+from metagraph.formats.takes import FRAME_TIME, FROM_OFFSET, UNIT, UP, drop_stray_poses, note_repair
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip, Repair
 from metagraph.motion.roles import find_roles
@@ -37,6 +37,7 @@ from metagraph.motion.skeleton import Skeleton, unique_names
 Array = NDArray[Any]
 
 _LONGEST_HEADER = 16 * MIB
+_SLOWEST = 4.0  # seconds that no frame lasts: what says so is milliseconds
 _DAMAGED = phrase("The file is damaged: export it again.")
 _TO_Y_UP = rotation.from_axis_angle([1, 0, 0], -np.pi / 2)
 
@@ -70,6 +71,10 @@ def read_bvh(path: str | Path, scale: float | None = None, as_is: Collection[str
             phrase("line 1"),
             phrase("Check that it is a BVH file."),
         )
+    notes: list[str] = []
+    if b"," in data and not re.search(rb"\d\.\d", data):
+        data = re.sub(rb"(?<=\d),(?=\d)", b".", data)
+        notes.append(phrase("its decimal commas were read as points"))
     motion = re.search(rb"(?im)^[ \t]*MOTION[ \t]*\r?$", data)
     if motion is None:
         raise FileError(
@@ -78,10 +83,11 @@ def read_bvh(path: str | Path, scale: float | None = None, as_is: Collection[str
     if motion.start() > _LONGEST_HEADER:
         raise FileError(path, phrase("its HIERARCHY is too long"), phrase("its HIERARCHY"), _DAMAGED)
     joints = _Header(path, data[: motion.start()].decode("utf-8", "replace")).joints()
-    notes: list[str] = []
-    values, fps = _motion(path, data, motion.end(), sum(len(j.channels) for j in joints), notes)
+    values, fps, repairs = _motion(
+        path, data, motion.end(), sum(len(j.channels) for j in joints), notes, as_is
+    )
     _afford(path, len(data), len(values), joints)
-    return _clip(path, joints, values, fps, scale, notes, as_is)
+    return _clip(path, joints, values, fps, scale, notes, repairs, as_is)
 
 
 def _afford(path: Path, size: int, frames: int, joints: list[_Joint]) -> None:
@@ -227,8 +233,10 @@ class _Header:
                 self.fail(phrase("joint '{name}' has no OFFSET", name=joint.name), joint.line)
 
 
-def _motion(path: Path, data: bytes, at: int, channels: int, notes: list[str]) -> tuple[Array, float]:
-    """Return the rows `[F, C]` and frames per second."""
+def _motion(
+    path: Path, data: bytes, at: int, channels: int, notes: list[str], as_is: Collection[str]
+) -> tuple[Array, float, list[Repair]]:
+    """Return the rows `[F, C]`, frames per second, and what was repaired of the frame time."""
     head = re.compile(
         rb"\s*Frames[ \t]*:[ \t]*(\S*)\s*Frame[ \t]*Time[ \t]*:[ \t]*(\S*)", re.IGNORECASE
     ).match(data, at)
@@ -246,6 +254,12 @@ def _motion(path: Path, data: bytes, at: int, channels: int, notes: list[str]) -
         raise FileError(
             path, phrase("'Frames:' and 'Frame Time:' are not numbers"), where, _DAMAGED
         ) from None
+    digits, repairs = head[2].decode("ascii", "replace"), []
+    if _SLOWEST <= step <= 1000 * _SLOWEST:
+        words = f"its frame time of {step:g} is milliseconds: {1000 / step:.4g} frames a second"
+        repairs.append(Repair(FRAME_TIME, words, FRAME_TIME not in as_is))
+        if FRAME_TIME not in as_is:
+            step, digits = step / 1000, "0.000" + digits.partition(".")[2]
     if not FRAME_SECONDS[0] <= step <= FRAME_SECONDS[1]:
         raise FileError(
             path,
@@ -303,7 +317,7 @@ def _motion(path: Path, data: bytes, at: int, channels: int, notes: list[str]) -
         notes.append("its last row was cut off and was dropped")
     if rows != promised:
         notes.append(f"'Frames:' says {promised}, the file has {rows}")
-    return numbers[: rows * channels].reshape(rows, channels), _fps(head[2].decode("ascii", "replace"), step)
+    return numbers[: rows * channels].reshape(rows, channels), _fps(digits, step), repairs
 
 
 def _line(data: bytes, at: int) -> int:
@@ -388,6 +402,7 @@ def _clip(
     fps: float,
     scale: float | None,
     notes: list[str],
+    repairs: list[Repair],
     as_is: Collection[str],
 ) -> Clip:
     """Put channels, units and axes together."""
@@ -404,7 +419,8 @@ def _clip(
     skeleton = Skeleton(names, parents.copy(), rotation.identity_rotations((len(joints),)), offsets)
     roles = find_roles(skeleton)
 
-    scale, repairs = _metres(skeleton, roles, scale, notes, as_is)
+    scale, found = _metres(skeleton, roles, scale, notes, as_is)
+    repairs += found
     offsets = offsets * scale
     placed = {i: p * scale for i, p in placed.items()}
     up, rest_too = is_z_up(skeleton, roles, rotations, placed, offsets)
@@ -416,6 +432,19 @@ def _clip(
         _turn_up(roots, rotations, offsets, placed)
         if rest_too:
             rest_rotations[roots] = _TO_Y_UP
+    relative = find_relative_joints(
+        Skeleton(names, parents.copy(), rest_rotations.copy(), offsets.copy()), roles, rotations, placed
+    )
+    if relative:
+        words = (
+            "the root's positions are relative to its OFFSET, which was added: the feet are then on the floor"
+            if relative == [0]
+            else f"the positions of {len(relative)} joints are relative to their OFFSET, which was added"
+        )
+        repairs.append(Repair(FROM_OFFSET, words, FROM_OFFSET not in as_is))
+        if FROM_OFFSET not in as_is:
+            for i in relative:
+                placed[i] = placed[i] + offsets[i]
     stand_up(
         offsets,
         parents,

@@ -14,6 +14,9 @@ Array = NDArray[Any]
 
 _HUMAN = (1.2, 2.5)  # metres from sole to the base of the head's top; what a unit must make of the skeleton
 USUAL = 0.01  # metres per unit of most files
+_BURIED = 0.25  # of the figure's height: a foot that is deeper on average is under the floor
+_ON_FLOOR = 0.12  # of it: a foot that is nearer to the floor on average stands there
+_COLLAPSED = 0.3  # of their length: bones that are shorter on average have lost it
 _UNITS = (
     (1.0, "metres"),
     (0.01, "centimetres"),
@@ -50,6 +53,36 @@ def stand_up(offsets: Array, parents: Array, rest_rotations: Array, placed: set[
     offsets[line[-1]] = (
         rotation.rotate_vectors(rotation.conjugate(rest_rotations[0]), lift) if len(line) > 1 else lift
     )
+
+
+def find_relative_joints(
+    skeleton: Skeleton, roles: dict[str, int], rotations: Array, placed: dict[int, Array]
+) -> list[int]:
+    """Return the joints whose positions are relative to their OFFSET, as some programs for the web write BVH;
+    in most files positions replace it.
+
+    The root's are where its feet are far below the floor as they stand, and on it with the OFFSET added; the
+    other joints' where half of their bones would lose most of their length. skeleton: at rest, Y up; placed:
+    positions `[F, 3]`; both metres. rotations `[F, J, 4]`.
+    """
+    offsets = skeleton.rest_translations
+    lengths = np.linalg.norm(offsets, axis=-1)
+    inner = [i for i in placed if skeleton.parents[i] >= 0 and lengths[i] > 1e-3]
+    shares = [float(np.linalg.norm(placed[i], axis=-1).mean()) / lengths[i] for i in inner]
+    out = [i for i in placed if skeleton.parents[i] >= 0] if inner and np.median(shares) < _COLLAPSED else []
+    feet = [roles[r] for r in ("left_foot", "right_foot", "left_toes", "right_toes") if r in roles]
+    if not feet or "head" not in roles or skeleton.parents[0] >= 0:
+        return out
+    some = np.unique(np.linspace(0, len(rotations) - 1, 24).astype(int))
+    translations = np.tile(offsets, (len(some), 1, 1))
+    for i, p in placed.items():
+        translations[:, i] = p[some] + (offsets[i] if i in out else 0)
+    _, places = skeleton.globals(Pose(rotations[some].astype(float), translations))
+    tall = float(np.ptp(skeleton.globals(skeleton.rest)[1][:, 1]))
+    lowest = float(np.median(places[:, feet, 1].min(1)))
+    if lowest < -_BURIED * tall and abs(lowest + offsets[0, 1]) < _ON_FLOOR * tall:
+        out.append(0)
+    return sorted(out)
 
 
 def find_unit(skeleton: Skeleton, roles: dict[str, int]) -> tuple[float, str]:

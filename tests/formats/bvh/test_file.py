@@ -11,6 +11,7 @@ import pytest
 
 from metagraph.errors import FileError
 from metagraph.formats.bvh.file import read_bvh, write_bvh
+from metagraph.formats.takes import FRAME_TIME, FROM_OFFSET
 from metagraph.motion import rotation
 from metagraph.motion.adopt import difference
 from metagraph.motion.clip import Clip
@@ -88,6 +89,69 @@ def test_rows_that_are_not_whole_are_refused_with_their_line(
     path: Path, frames: int, rows: list[str], words: tuple[str, ...]
 ) -> None:
     refused(path, figure(rows="".join(f"{row}\n" for row in rows), frames=frames), *words)
+
+
+@pytest.mark.parametrize(("time", "fps"), [("33.3333", 30), ("8.33333", 120), ("41.7083", 1000 / 41.7083)])
+def test_frame_times_in_milliseconds_are_corrected_and_reported(path: Path, time: str, fps: float) -> None:
+    clip = read(path, figure(time=time))
+    assert clip.fps == pytest.approx(fps) and any("milliseconds" in note for note in clip.notes)
+    left = read_bvh(path, 0.01, (FRAME_TIME,))
+    assert left.fps == pytest.approx(1 / float(time)) and not left.repairs[0].made
+
+
+def test_decimal_commas_are_points_and_commas_in_names_stay(path: Path) -> None:
+    text = figure(rows="0,5 90,25 0 0 0 0  10 0 0\n" * 2, time="0,0333333").replace("Spine", "Spine, upper")
+    clip = read(path, text)
+    np.testing.assert_allclose(clip.translations[0, 0], [0.005, 0.9025, 0], atol=1e-6)
+    assert clip.fps == 30 and clip.skeleton.names[1] == "Spine, upper"
+    assert any("commas" in note for note in clip.notes)
+
+
+def walker(root: str, offset: float) -> str:
+    """Return a person whose hips' positions are `root`, their OFFSET `offset` up, in centimetres."""
+
+    def joint(name: str, at: str, *below: str) -> str:
+        inside = "\n".join(below) or "End Site\n{\nOFFSET 0 -5 10\n}"
+        return f"JOINT {name}\n{{\nOFFSET {at}\nCHANNELS 3 Zrotation Xrotation Yrotation\n{inside}\n}}"
+
+    legs = [
+        joint(f"{s}UpLeg", f"{x} 0 0", joint(f"{s}Leg", "0 -45 0", joint(f"{s}Foot", "0 -45 0")))
+        for s, x in (("Left", 10), ("Right", -10))
+    ]
+    body = joint("Spine", "0 20 0", joint("Neck", "0 35 0", joint("Head", "0 10 0")))
+    head = f"HIERARCHY\nROOT Hips\n{{\nOFFSET 0 {offset} 0\nCHANNELS {ROOT_CHANNELS}\n"
+    row = f"{root} 0 0 0 " + "0 0 0 " * 9
+    return (
+        f"{head}{legs[0]}\n{legs[1]}\n{body}\n}}\nMOTION\nFrames: 5\nFrame Time: 0.0333333\n" + f"{row}\n" * 5
+    )
+
+
+@pytest.mark.parametrize(
+    ("root", "offset", "added"),
+    [
+        ("0 1 0", 95, True),
+        ("3 95 2", 95, False),
+        ("0 95 0", 0, False),
+        ("0 2 0", 0, False),
+        ("0 40 0", 95, False),
+    ],
+)
+def test_root_positions_relative_to_offset_are_known_by_feet_under_the_floor(
+    path: Path, root: str, offset: float, added: bool
+) -> None:
+    clip = read(path, walker(root, offset), None)
+    assert any(r.name == FROM_OFFSET for r in clip.repairs) == added
+    if added:
+        assert clip.translations[0, 0, 1] == pytest.approx(0.96)
+        assert read_bvh(path, None, (FROM_OFFSET,)).translations[0, 0, 1] == pytest.approx(0.01)
+
+
+def test_positions_that_would_take_the_bones_their_length_are_relative_to_offset(path: Path) -> None:
+    child = "6 Xposition Yposition Zposition Zrotation Xrotation Yrotation"
+    clip = read(path, figure(child=child, rows="0 90 0 0 0 0  0 0.1 0 10 0 0\n" * 2))
+    assert clip.pose_at(0).translations[1, 1] == pytest.approx(0.101)
+    whole = read(path, figure(child=child, rows="0 90 0 0 0 0  0 10 0 10 0 0\n" * 2))
+    assert whole.pose_at(0).translations[1, 1] == pytest.approx(0.1) and not whole.repairs
 
 
 @pytest.mark.parametrize("time", ["0", "-0.03", "nan", "inf", "fast", ""])
