@@ -15,14 +15,10 @@ from metagraph.suggest.motion_guess import MotionGuess
 from metagraph.suggest.proposal import Proposals, StancePlace, plain_stance_name
 from metagraph.suggest.stances.known import Stances, likely
 from metagraph.suggest.traits import Traits
-from metagraph.suggest.words.names import NameGuess
+from metagraph.suggest.words.names import NEVER, NameGuess
 
 # Words that mean nothing else; others may be a beat in another language, or in another mouth
-SURELY = frozenset(
-    ("walk", "walking", "run", "running", "jog", "jogging", "sprint", "strafe", "jump", "climb", "swim")
-    + ("crawl", "fly", "fall", "death", "die", "dying", "dead", "locomotion", "dance", "dancing", "t pose")
-    + ("a pose", "tpose", "apose", "bind pose", "turn in place")
-)
+SURELY = NEVER | {"dance", "dancing", "turn in place"}
 MANY = 0.2  # of a set's names that say so, from which on it is a game's
 POSE = 0.2  # seconds, below which a clip is a pose and no movement
 FAR = 0.5  # heights over the ground, from which on a clip that goes to no other stance goes away

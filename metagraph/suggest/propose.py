@@ -21,7 +21,7 @@ from metagraph.suggest.alike import Alike, LabelledExample
 from metagraph.suggest.clip_measures import layer_of, with_tremble
 from metagraph.suggest.details import rest_of, with_likelihoods, with_moved_joints, with_stroke, with_timing
 from metagraph.suggest.estimate import Belief
-from metagraph.suggest.left_aside import MANY, explain_skipping
+from metagraph.suggest.left_aside import FAR, MANY, explain_skipping
 from metagraph.suggest.motion_guess import MotionGuess, guess
 from metagraph.suggest.proposal import (
     Proposal,
@@ -181,9 +181,12 @@ def propose(
             others.append(each)
         else:
             heard.append(each)
-    places = StancePlaces(project, heard, shapes)
-    out = {each.clip: p for each in heard if (p := _proposal(each, places)) is not None}
-    out = _somewhere(out, places.by_key)
+    places, out = _placed(project, heard, shapes)
+    if going := _going_away(out, traits):
+        aside |= going
+        others += [each for each in heard if each.clip in going]
+        heard = [each for each in heard if each.clip not in going]
+        places, out = _placed(project, heard, shapes)
     spare = _spare(out, others, places)
     if moving:
         out = with_timing(project, out, cancelled)
@@ -195,6 +198,35 @@ def propose(
     return Proposals(
         with_likelihoods(project, out), _with_rests(project, places.by_key, out), aside, whole, spare
     )
+
+
+def _placed(
+    project: Project, heard: Sequence[ClipEvidence], shapes: Mapping[Layer, Sequence[Shape]]
+) -> tuple[StancePlaces, dict[str, Proposal]]:
+    """Return the stances there are, and what is proposed for each clip."""
+    places = StancePlaces(project, heard, shapes)
+    out = {each.clip: p for each in heard if (p := _proposal(each, places)) is not None}
+    return places, _somewhere(out, places.by_key)
+
+
+def _going_away(out: Mapping[str, Proposal], traits: Mapping[str, Traits]) -> dict[str, str]:
+    """Return why transitions are skipped that travel and end where no other clip plays: the character would
+    have to slide back.
+    """
+    far = {
+        c: p
+        for c, p in out.items()
+        if p.kind.value == "transition" and c in traits and traits[c].travel > FAR
+    }
+    played = {p.stance.value for c, p in out.items() if p.stance is not None and c not in far}
+    return {
+        c: phrase(
+            "travels {length:.1f} m and ends where no other clip begins",
+            length=traits[c].height * traits[c].travel,
+        )
+        for c, p in far.items()
+        if p.end_stance is None or p.end_stance.value not in played
+    }
 
 
 def _leading(said: NameGuess, motion: MotionGuess | None) -> NameGuess:

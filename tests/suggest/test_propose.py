@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from metagraph.formats.imports import import_files
@@ -280,3 +281,26 @@ def test_a_robot_nobody_made_here_sits_where_its_clip_of_sitting_ends(shared_dat
         name: found.places[p.end_stance.value].name for name, p in names.items() if p.end_stance is not None
     }
     assert ends["Sitting"] == "sitting" and ends["Standing"] == "standing"
+
+
+def test_a_transition_that_travels_to_where_no_other_clip_plays_is_skipped_not_slid_back(toy: Any) -> None:
+    def away(name: str, metres: float, end: float) -> Any:
+        clip = toy.clip(name, 2.0, 0.0, end, swing=0.0)
+        places = clip.translations.copy()
+        places[:, 0, 2] += metres * np.linspace(0, 1, clip.frames)
+        return replace(clip, translations=places)
+
+    clips = [toy.clip("rest idle", 3.0, swing=0.05), toy.clip("up idle", 3.0, 1.2, swing=0.05)]
+    clips += [toy.clip(f"rest {name}", 1.0) for name in ("wave", "beat", "point")]
+    clips += [
+        away("rest to leave", 2.6, 2.4),
+        away("rest to up", 0.0, 1.2),
+        toy.clip("up to rest", 1.0, 1.2, 0.0),
+    ]
+    project = edits.add_clips(Project(), [(f"{c.name}.glb", 0, "", c) for c in clips])
+    ids = {entry.name: clip for clip, entry in project.clips.items()}
+    found = propose(project)
+    assert list(found.aside) == [ids["rest to leave"]] == list(found.spare)
+    assert "travels 2.6 m" in found.aside[ids["rest to leave"]]
+    assert found.proposals[ids["rest to up"]].kind.value == "transition"
+    assert not any("leave" in place.name for place in found.places.values())

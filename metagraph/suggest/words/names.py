@@ -47,6 +47,13 @@ __all__ = [
 ]
 
 T = TypeVar("T")
+# Words for what somebody who talks never does, who would stand otherwise: each is "other" in `english.json`.
+NEVER: Final = frozenset(
+    ("walk", "walking", "run", "running", "jog", "jogging", "sprint", "sprinting", "strafe", "jump", "climb")
+    + ("climbing", "swim", "swimming", "crawl", "crawling", "fly", "flying", "fall", "falling", "float")
+    + ("floating", "hang", "hanging", "death", "die", "dying", "dead", "t pose", "a pose", "tpose", "apose")
+    + ("bind pose", "locomotion", "side step", "sidestep")
+)
 EXPLICIT: Final = 0.98  # how often a word for what is done, after its stance, says the kind rightly
 _UP: Final = frozenset(("up", "stand", "rise", "get"))
 
@@ -321,6 +328,8 @@ class _Reader:
         learned = self._recalled(parse, "kind")
         if learned is not None:
             return cast("Belief[Kind]", learned)
+        if self._nobody_goes_there(parse):
+            return None  # "idle to walk", "falling idle": none of the four
         if parse.joined:
             return Belief("transition", parse.sure, _says(parse.joined))
         stance = parse.stance
@@ -350,6 +359,14 @@ class _Reader:
             )
             return Belief("fidget" if idle else "gesture", 0.55, reason)
         return None
+
+    def _nobody_goes_there(self, parse: _Parse) -> bool:
+        """Whether a name's stance, or the one its transition ends in, is none that a talker is ever in. A
+        stance of fighting may be one: "sword idle".
+        """
+        own = parse.stance.words if parse.stance is not None and parse.own else ()
+        end = (*parse.end_words, *(parse.end.words if parse.end is not None else ())) if parse.joined else ()
+        return any(p.text in NEVER for words in (own, end) for p in phrases(words, self._kinds))
 
     def _before(self, parse: _Parse) -> str:
         """Return the word before what is done: acts of an "idle" are fidgets."""

@@ -333,6 +333,7 @@ class Stances:
         where clips go on from one or pass into it, whether or not they have clips of their own.
         """
         marks: dict[Words, dict[str, bool]] = {}  # core -> designator -> whether anything goes on from it
+        ends: set[Words] = set()  # of which one, with its designator, a transition ends in
         for taken in distinct:
             words = taken.words
             for start in (0, *(i + 1 for i, w in enumerate(words) if i and self._joins.get(w) == "to")):
@@ -343,9 +344,12 @@ class Stances:
                         goes_on = start > 0 or variant(rest) < len(rest)
                         mine = marks.setdefault(core, {})
                         mine[words[at]] = mine.get(words[at], False) or goes_on
+                        if start > 0:
+                            ends.add(core)
                         break
+        plain = {taken.words for taken in distinct}
         for core, mine in marks.items():
-            if len(mine) < 2 or not any(mine.values()):
+            if not any(mine.values()) or (len(mine) < 2 and not (core in ends and core in plain)):
                 continue
             held = self.found.get(core)
             confidence, why = (held.confidence, held.why) if held else (0.75, " ".join(as_written(core)))

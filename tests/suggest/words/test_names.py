@@ -215,6 +215,35 @@ def test_stances_that_differ_by_number_only_stay_apart() -> None:
     )  # variants of one, with nothing of their own
 
 
+def test_a_number_that_a_transition_ends_in_is_a_stance_beside_the_plain_one() -> None:
+    names = ["idle", "idle02", "settle_to_idle02", "wave"]
+    assert told(names, "settle_to_idle02")["end_stance"] == "idle 2"
+    assert [told(names, n)["stance"] for n in ("idle", "idle02", "wave")] == ["idle", "idle 2", "idle"]
+    assert told(["idle", "idle02", "wave"], "idle02")["stance"] == "idle"
+
+
+@pytest.mark.parametrize(
+    ("name", "word"),
+    [
+        ("idle_to_walk", "walk"),
+        ("idle_toRun_fast", "Run"),
+        ("Falling_Idle", "Falling"),
+        ("Hanging Idle", "Hanging"),
+        ("emote_float", "float"),
+        ("Swimming", "Swimming"),
+        ("side_step_left", "side_step"),
+    ],
+)
+def test_stances_that_no_talker_is_ever_in_are_none_and_the_word_is_named(name: str, word: str) -> None:
+    guess = read_names(["idle", "idle_wave", name])[name]
+    assert guess.kind is None and guess.other is not None and f"'{word}'" in guess.other.reason
+
+
+@pytest.mark.parametrize("name", ["arms_hanging", "ArmsHanging_Idle", "sword_idle", "stand_to_sit"])
+def test_stances_that_only_sound_like_it_stay(name: str) -> None:
+    assert read_names(["stand_idle", "sit_idle", name])[name].other is None
+
+
 def test_one_stance_spelled_in_several_ways_is_one() -> None:
     names = ["Seated Idle", "Sitting Clap", "Sitting Talking", "Sit To Stand"]
     assert {told(names, n)["stance"] for n in names} == {"seated"}
