@@ -59,7 +59,7 @@ def test_a_project_in_a_folder_of_any_name_is_opened_and_takes_clips(toy: Any, t
     write_bvh(toy.clip("bad", 0.5), folder / os.fsdecode(b"bad\xff.bvh"))
     read = import_files(Project(), folder, [folder])
     assert [name for name, *_ in read.loaded] == ["wave.bvh"]
-    assert len(read.failures) == 1 and "no text" in read.failures[0] and read.failures[0].isprintable()
+    assert len(read.failures) == 1 and "not text" in read.failures[0] and read.failures[0].isprintable()
     save_project(read.into(Project()), path)
     opened = open_whole(path)
     assert not opened.notes and len(opened.project.clips) == 1

@@ -65,16 +65,27 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="leave stances that no clip leads to or from as they are, instead of blending to them",
     )
+    parser.add_argument(
+        "--play",
+        type=float,
+        default=60.0,
+        metavar="SECONDS",
+        help="play the result for so many seconds, and each action once, and report what a viewer would "
+        "see go wrong; 0 to leave that out (default: 60)",
+    )
     parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out of the report")
 
 
 def run(options: Namespace) -> int:
     """Label a folder or project; write the project and an HTML report beside it."""
+    from app.cli.command_output import LONGEST
     from app.cli.outputs import ProjectOutput, with_project_ending
     from metagraph.errors import FileError
     from metagraph.formats.outputs import claim, wrote
     from metagraph.formats.store import SUFFIX
 
+    if not 0 <= options.play <= LONGEST:
+        raise ValueError(f"--play takes 0 to {LONGEST} seconds")
     source: Path = options.folder
     if not source.exists():
         raise FileError(
@@ -103,6 +114,7 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
     from metagraph.formats.atomic import write_atomically
     from metagraph.formats.import_words import count_alike
     from metagraph.graph.check import check_project, grave
+    from metagraph.playback.rehearsal import rehearse
     from metagraph.suggest.flags import needs_look
     from metagraph.suggest.jumps.bridges import bridge_all, describe_bridges
     from metagraph.suggest.left_aside import reasons
@@ -138,6 +150,8 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
     write_atomically(place, format_label_report(taken.project, found, taken, drawn, notes, path).encode())
     look = [p for p in found.doubtful if needs_look(p, taken.left)]
     errors = [p.message for p in grave(check_project(taken.project))]
+    seen = rehearse(taken.project, options.play) if options.play > 0 else []
+    faults = [p.message for p in seen if p.severity == "error"]
     seconds = time.perf_counter() - began
     for note in count_alike(notes):
         print(f"note: {note}", file=sys.stderr)
@@ -152,6 +166,8 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
         print(f"left: {project.clips[clip].name}: {why}", file=sys.stderr)
     for message in errors:
         print(f"problem: {message}", file=sys.stderr)
+    for problem in seen:
+        print(f"seen: {problem.message}", file=sys.stderr)
     words = (
         f"{path}: {len(taken.placed)} of {len(found.proposals)} clips labelled in {seconds:.1f} s, "
         f"{len(look)} need a look\n{place}"
@@ -169,13 +185,14 @@ def _labelled(options: Namespace, output: ProjectOutput) -> int:
         "aside": {project.clips[c].name: why for c, why in found.aside.items()},
         "look": [names[p.clip] for p in look],
         "errors": errors,
+        "seen": [p.message for p in seen],
         "seconds": round(seconds, 2),
     }
     if begun.merged:
         told_of, data_of = _told_of_merging(begun, path)
         words, data = f"{words}\n{told_of}", data | data_of
     say(options, words, data)
-    return 3 if taken.left or errors else 0
+    return 3 if taken.left or errors or faults else 0
 
 
 def _told_of_merging(begun: Begun, path: Path) -> tuple[str, dict[str, int]]:

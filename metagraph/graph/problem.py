@@ -13,7 +13,7 @@ Severity = Literal["error", "warning", "hint"]
 @dataclass(frozen=True)
 class Problem:
     """code: stable word for programs. message: what is wrong; remedy: what to do. The ids say where to jump
-    to.
+    to. moment: when it is seen, seconds of the performance that plays by itself (see `playback.rehearsal`).
     """
 
     severity: Severity
@@ -26,3 +26,4 @@ class Problem:
     clip: str | None = None
     state: str | None = None
     link: str | None = None
+    moment: float | None = None

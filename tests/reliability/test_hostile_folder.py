@@ -146,7 +146,7 @@ def test_the_fakes_are_run_by_what_looks_for_them(hostile: tuple[Path, Path, dic
     "words",
     [
         ("import", "new.metagraph.yaml", "project/clips"),
-        ("label", "project/few", "--no-pictures"),
+        ("label", "project/few", "--no-pictures", "--play", "0"),
         ("check", "project/few/{few}"),
         ("info", "project/few/{few}"),
         ("export", "project/few/{few}", "-o", "project/out/plain"),

@@ -66,6 +66,8 @@ def test_what_is_not_sure_enough_is_left_with_its_reason(
                 "--from",
                 "motion",
                 "--no-pictures",
+                "--play",
+                "0",
                 "--json",
             ]
         )
@@ -93,11 +95,13 @@ def test_a_project_is_labelled_on_from_where_it_is(
             "--from",
             "motion",
             "--no-pictures",
+            "--play",
+            "0",
             "--json",
         ]
     )
     first = json.loads(capsys.readouterr().out)["labelled"]
-    main(["label", str(out), "--no-pictures", "--json"])
+    main(["label", str(out), "--no-pictures", "--play", "0", "--json"])
     second = json.loads(capsys.readouterr().out)
     assert first + second["labelled"] == len(list(folder.glob("*.glb")))
 
@@ -107,7 +111,7 @@ def test_a_stance_that_nothing_leads_to_is_told_as_check_tells_it(
 ) -> None:
     for path in folder.glob("*__to_*.glb"):
         path.unlink()
-    assert main(["label", str(folder), "--no-pictures", "--no-bridges", "--json"]) == 3
+    assert main(["label", str(folder), "--no-pictures", "--play", "0", "--no-bridges", "--json"]) == 3
     shown = capsys.readouterr()
     data = json.loads(shown.out)
     assert not data["left"]
@@ -122,7 +126,7 @@ def test_such_a_stance_is_reached_by_blending_and_that_is_told(
 ) -> None:
     for path in folder.glob("*__to_*.glb"):
         path.unlink()
-    assert main(["label", str(folder), "--no-pictures", "--json"]) == 0
+    assert main(["label", str(folder), "--no-pictures", "--play", "0", "--json"]) == 0
     shown = capsys.readouterr()
     data = json.loads(shown.out)
     assert data["bridged"] and not data["errors"]
@@ -143,7 +147,7 @@ def test_names_are_escaped_in_the_report(tmp_path: Path, capsys: pytest.CaptureF
     place = tmp_path / "odd"
     place.mkdir()
     shutil.copy(next(CLIPS.glob("hands_at_sides__stance.glb")), place / "a & b 'x' idle.glb")
-    main(["label", str(place), "--no-pictures", "--json"])
+    main(["label", str(place), "--no-pictures", "--play", "0", "--json"])
     page = Path(json.loads(capsys.readouterr().out)["report"]).read_text()
     assert "a & b" not in page
 
@@ -158,7 +162,21 @@ def test_patterns_of_a_file_are_read_with_and_a_broken_one_is_told(
 ) -> None:
     out, team = tmp_path / "team.metagraph.yaml", tmp_path / "team.json"
     team.write_text('{"patterns": 1, "kinds": {"shrug": "fidget"}}')
-    main(["label", str(folder), "-o", str(out), "--from", "name", "--patterns", str(team), "--no-pictures"])
+    main(
+        [
+            "label",
+            str(folder),
+            "-o",
+            str(out),
+            "--from",
+            "name",
+            "--patterns",
+            str(team),
+            "--no-pictures",
+            "--play",
+            "0",
+        ]
+    )
     assert {kind for name, kind in kinds(out).items() if "shrug" in name} == {"fidget"}
     team.write_text('{"patterns": 1,\n "kinds": }')
     capsys.readouterr()
@@ -179,7 +197,19 @@ def test_what_was_taught_is_used_only_when_asked_for(
     out = tmp_path / "taught.metagraph.yaml"
     for options, kind in (([], "gesture"), (["--learned"], "fidget")):
         main(
-            ["label", str(folder), "-o", str(out), "--from", "name", "--no-pictures", "--overwrite", *options]
+            [
+                "label",
+                str(folder),
+                "-o",
+                str(out),
+                "--from",
+                "name",
+                "--no-pictures",
+                "--play",
+                "0",
+                "--overwrite",
+                *options,
+            ]
         )
         assert {k for name, k in kinds(out).items() if "shrug" in name} == {kind}
 
@@ -190,7 +220,7 @@ def test_a_stance_that_no_clip_rests_in_is_held_and_told(
     for path in folder.glob("on_hips__stance*"):
         path.unlink()
     out = tmp_path / "held.metagraph.yaml"
-    main(["label", str(folder), "-o", str(out), "--no-pictures", "--json"])
+    main(["label", str(folder), "-o", str(out), "--no-pictures", "--play", "0", "--json"])
     shown = capsys.readouterr()
     assert "still for its" in json.loads(shown.out)["held"]["on hips"] and "held: on hips: " in shown.err
     page = out.with_name("held.labels.html").read_text()
@@ -210,15 +240,25 @@ def test_clips_of_another_skeleton_are_left_out_or_retargeted_as_asked(
     shutil.copy(zoo_files["mixamo"], folder / "other.glb")
     shutil.copy(zoo_files["mixamo"], folder / "another.glb")
     out = folder.parent / "p"
-    main(["label", str(folder), "-o", str(out), "--no-pictures"])
+    main(["label", str(folder), "-o", str(out), "--no-pictures", "--play", "0"])
     told = [line for line in capsys.readouterr().err.splitlines() if "another character" in line]
     assert len(told) == 1 and "another.glb and 1 more" in told[0] and "3 clips" in told[0]
-    main(["label", str(folder), "-o", str(out), "--no-pictures", "--retarget"])
+    main(["label", str(folder), "-o", str(out), "--no-pictures", "--play", "0", "--retarget"])
     assert "another character" not in capsys.readouterr().err
     project = open_project(out.with_name("p.metagraph.yaml")).project
     assert sum(bool(e.brought_from) for e in project.clips.values()) == 6
     assert [x.contacts for x in project.joint_maps.values()] == [True]
-    again = ["label", str(folder), "-o", str(out), "--no-pictures", "--retarget", "--no-contacts"]
+    again = [
+        "label",
+        str(folder),
+        "-o",
+        str(out),
+        "--no-pictures",
+        "--play",
+        "0",
+        "--retarget",
+        "--no-contacts",
+    ]
     main([*again, "--overwrite"])
     project = open_project(out.with_name("p.metagraph.yaml")).project
     assert [x.contacts for x in project.joint_maps.values()] == [False]

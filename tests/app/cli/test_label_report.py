@@ -56,7 +56,7 @@ def labelled(tmp_path_factory: pytest.TempPathFactory) -> Path:
             other in path.name for other in ("crossed", "chin", "clasped")
         ):
             shutil.copy(path, folder)
-    assert main(["label", str(folder), "--no-pictures", "--json"]) == 0
+    assert main(["label", str(folder), "--no-pictures", "--play", "0", "--json"]) == 0
     return folder.with_name("talk.metagraph.yaml")
 
 

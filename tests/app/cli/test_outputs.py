@@ -255,7 +255,7 @@ def test_a_second_label_adds_what_is_new_and_leaves_what_a_person_set(
     ours = sorted((ROOT / "sample_clips" / "clips").glob("on_hips__*.glb"))
     for path in ours[:6]:
         shutil.copy(path, folder)
-    line = ["label", str(folder), "--no-pictures", "--json"]
+    line = ["label", str(folder), "--no-pictures", "--play", "0", "--json"]
     assert main(line) in (0, 3)
     path = tmp_path / f"talk{SUFFIX}"
     capsys.readouterr()
@@ -296,8 +296,8 @@ def test_a_report_that_was_changed_is_kept_beside_the_new_one(
     folder.mkdir()
     for path in sorted((ROOT / "sample_clips" / "clips").glob("on_hips__*.glb"))[:3]:
         shutil.copy(path, folder)
-    assert main(["label", str(folder), "--no-pictures"]) in (0, 3)
+    assert main(["label", str(folder), "--no-pictures", "--play", "0"]) in (0, 3)
     (tmp_path / "talk.labels.html").write_text("my notes")
-    assert main(["label", str(folder), "--no-pictures"]) in (0, 3)
+    assert main(["label", str(folder), "--no-pictures", "--play", "0"]) in (0, 3)
     assert (tmp_path / "talk.labels.html").read_text() == "my notes"
     assert "talk.labels 2.html" in capsys.readouterr().out

@@ -1,0 +1,438 @@
+"""Play a project and report what a viewer would see: joints that jump, blends that slide the body over the
+floor, feet under it or in the air, arms inside the body, stances that are never reached.
+
+The character plays some minutes untouched, as the window's performance does, and then each action once. All
+of it is measured on the poses that are drawn, and compared with what the clips themselves do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.common.wording import Phrase, join_phrases, phrase, plural_phrase
+from metagraph.graph import anatomy
+from metagraph.graph.model import LAYERS, Layer, Project
+from metagraph.graph.problem import Problem, Severity
+from metagraph.graph.requests import Play
+from metagraph.playback.evaluator import Evaluator
+from metagraph.playback.plan import Plan
+from metagraph.playback.planner import make_plan
+from metagraph.playback.planning.running_plan import plan_performance
+from metagraph.playback.posing.composer import playable
+from metagraph.playback.posing.contacts import contact_depths
+from metagraph.playback.posing.rigs import rigs_of
+
+Array = NDArray[Any]
+
+MINUTES = 10.0
+RATE = 60.0  # poses a second that are looked at
+CHUNK = 1200  # poses made at once
+GAP = 0.5  # seconds between the actions that are each played once
+TALL = 1.75  # metres: the lengths and speeds below are of a figure of that height
+USUAL = 1.5  # times the clips' own 99th percentile, up to which nothing is reported
+JUMP = 100.0  # m/s2: 2.8 cm from one sixtieth of a second to the next
+FAST = 3.0  # m/s that a hand may go in a blend
+GLIDE, GLIDES = 0.6, 0.15  # m/s that the hips may go over the floor in a blend; metres that are seen
+UNDER = 0.05  # metres below the floor
+ABOVE = 0.20  # metres of the lowest joint above it
+INSIDE = 0.03  # metres of an arm within the body
+LONG = 0.5  # seconds that a foot is under the floor, or an arm within the body, before it is reported
+LASTING = 0.1  # of the time, from which on a figure off the floor is an error
+PARTS = ("left_hand", "right_hand", "head", "hips", "left_foot", "right_foot")
+_LAYER_OF: dict[str, Layer] = {"left_hand": "arms", "right_hand": "arms", "head": "head"}
+_NAMES = {
+    "left_hand": phrase("the left hand"),
+    "right_hand": phrase("the right hand"),
+    "head": phrase("the head"),
+    "hips": phrase("the hips"),
+    "left_foot": phrase("the left foot"),
+    "right_foot": phrase("the right foot"),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class PlayedPoses:
+    """What was seen of a performance. times `[F]` seconds. places `[F, P, 3]` metres of `parts`. lowest
+    `[F]`: how high the lowest joint is. inside `[F]`: how deep an arm is within the body, metres.
+    """
+
+    times: Array
+    parts: tuple[str, ...]
+    places: Array
+    lowest: Array
+    inside: Array
+
+
+@dataclass(frozen=True)
+class _Cause:
+    """What plays at a time on a layer. key: by which findings are counted together. blending: whether two
+    poses blend then.
+    """
+
+    key: tuple[str, str]
+    words: Phrase
+    layer: Layer
+    blending: bool
+    action: str | None = None
+    stance: str | None = None
+
+
+def rehearse(
+    project: Project,
+    seconds: float = 60 * MINUTES,
+    progress: Callable[[int, int], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> list[Problem]:
+    """Return what a viewer would see go wrong in so many seconds of the performance that plays by itself,
+    and where each action plays once; nothing for a project without a skeleton or a stance that plays.
+
+    `Problem.moment` is the second of the untouched performance, None for what only an action's own turn
+    shows. progress: called with how many parts of the work are done, and of how many. cancelled: asked
+    between them; then what was found by then is returned.
+    """
+    playing = [g for g in project.graphs.values() if any(a.kind == "stance" for a in g.actions.values())]
+    if project.skeleton is None or not playing:
+        return []
+    untouched = make_plan(project, seconds)
+    asked, length = _ask_for_each(project)
+    plans = [(untouched, seconds, True)]
+    if length > 0:
+        plans.append((plan_performance(project, asked, length, idle=False), length, False))
+    total = sum(_chunks(length) for _, length, _ in plans)
+    done = 0
+
+    def step() -> bool:
+        nonlocal done
+        done += 1
+        if progress is not None:
+            progress(done, total)
+        return cancelled is not None and cancelled()
+
+    limits = _own_limits(project)
+    out: list[Problem] = []
+    for plan, length, free in plans:
+        seen = _watch(project, plan, length, step)
+        if seen is None:
+            break
+        found = _Findings(project, plan, seen, limits, free)
+        out += found.problems()
+    return _merged(out)
+
+
+def _ask_for_each(project: Project) -> tuple[list[Play], float]:
+    """Return requests for every gesture, fidget and transition, one after another on each layer, and how
+    long all of it takes.
+    """
+    asks: list[Play] = []
+    longest = 0.0
+    for layer in LAYERS:
+        at = 1.0
+        for action in project.graphs[layer].actions.values():
+            if action.kind == "stance" or playable(project, action) is None:
+                continue
+            asks.append(Play(id=f"rehearse {action.id}", action=action.id, layer=layer, at=at))
+            start, end = project.span(action)
+            at += end - start + GAP
+        longest = max(longest, at)
+    return asks, longest + 2.0 if asks else 0.0
+
+
+def _chunks(seconds: float) -> int:
+    return max(1, -(-round(seconds * RATE) // CHUNK))
+
+
+def _watch(project: Project, plan: Plan, seconds: float, step: Callable[[], bool]) -> PlayedPoses | None:
+    """Return what is seen of a plan; None where it was cancelled."""
+    skeleton = project.skeleton
+    assert skeleton is not None
+    roles = anatomy.project_roles(project)
+    parts = tuple(part for part in PARTS if part in roles)
+    joints = [roles[part] for part in parts]
+    contacts = rigs_of(project).contacts
+    evaluator = Evaluator(plan, project)
+    times = np.arange(round(seconds * RATE)) / RATE
+    places, lowest, inside = [], [], []
+    for some in np.array_split(times, _chunks(seconds)):
+        pose = evaluator.at(some)
+        _, at = skeleton.globals(pose)
+        places.append(at[:, joints].astype(np.float64))
+        lowest.append(at[..., 1].min(1))
+        inside.append(
+            contact_depths(contacts, pose).max(-1, initial=0.0)
+            if contacts is not None
+            else np.zeros(len(some))
+        )
+        if step():
+            return None
+    return PlayedPoses(times, parts, *(np.concatenate(rows) for rows in (places, lowest, inside)))
+
+
+def _own_limits(project: Project) -> tuple[Array, Array]:
+    """Return how fast each part goes in the clips, `[P]` m/s, and how its speed changes, `[P]` m/s2: the 99th
+    percentile over all that plays.
+    """
+    skeleton = project.skeleton
+    assert skeleton is not None
+    roles = anatomy.project_roles(project)
+    joints = [roles[part] for part in PARTS if part in roles]
+    speeds, changes = [], []
+    for action in project.actions():
+        clip = playable(project, action)
+        if clip is None:
+            continue
+        start, end = project.span(action)
+        times = start + np.arange(max(3, round((end - start) * RATE))) / RATE
+        _, at = skeleton.globals(clip.pose_at(np.clip(times, 0.0, clip.duration)))
+        speeds.append(np.linalg.norm(np.diff(at[:, joints], axis=0), axis=-1) * RATE)
+        changes.append(np.linalg.norm(np.diff(at[:, joints], 2, axis=0), axis=-1) * RATE**2)
+    if not speeds:
+        return np.zeros(len(joints)), np.zeros(len(joints))
+    return np.percentile(np.concatenate(speeds), 99, axis=0), np.percentile(
+        np.concatenate(changes), 99, axis=0
+    )
+
+
+class _Findings:
+    """What is wrong with what was seen of one plan."""
+
+    def __init__(
+        self, project: Project, plan: Plan, seen: PlayedPoses, limits: tuple[Array, Array], free: bool
+    ) -> None:
+        """free: whether nobody asked for anything, so that a moment can be opened in the window."""
+        self.project, self.plan, self.seen, self.free = project, plan, seen, free
+        self.size = max(1e-6, project.skeleton.height / TALL) if project.skeleton is not None else 1.0
+        self.speeds, self.changes = limits
+
+    def problems(self) -> list[Problem]:
+        found = [*self._jumps(), *self._fast(), *self._glides(), *self._floor(), *self._arms_inside()]
+        return [*found, *self._never_seen()] if self.free else found
+
+    def _cause(self, layer: Layer, time: float) -> _Cause:
+        """Return what plays on a layer at a time."""
+        of = self.plan.layers[layer]
+        cue = of.cue_at(time)
+        names = self.project.graphs[layer].stances
+        if cue is not None:
+            ident, name = cue.action.id, cue.action.name
+            if time < cue.start + cue.blend_in:
+                return _Cause((ident, "in"), phrase("'{name}' blends in", name=name), layer, True, ident)
+            if time > cue.end - cue.blend_out:
+                return _Cause((ident, "out"), phrase("'{name}' blends out", name=name), layer, True, ident)
+            return _Cause((ident, "plays"), phrase("'{name}' plays", name=name), layer, False, ident)
+        place = int(of.fade_starts.searchsorted(time, "right")) - 1
+        if place < 0 or not of.rests:
+            return _Cause(("", ""), phrase("the layer is at rest"), layer, False)
+        rest = of.rests[place]
+        stance = names[rest.stance].name if rest.stance in names else rest.action.name
+        if place and time < rest.fade_start + rest.fade:
+            words = phrase('the loop of "{stance}" takes over', stance=stance)
+            return _Cause((rest.stance, "fade"), words, layer, True, rest.action.id, rest.stance)
+        words = phrase('the loop of "{stance}" plays', stance=stance)
+        return _Cause((rest.stance, "loop"), words, layer, False, rest.action.id, rest.stance)
+
+    def _likely_cause(self, part: str, time: float) -> _Cause:
+        """Return the cause of what a part does: what blends on its own layer, else on another, else what
+        plays on its own.
+        """
+        own = _LAYER_OF.get(part, "body")
+        causes = [self._cause(layer, time) for layer in (own, *(x for x in LAYERS if x != own))]
+        return next((c for c in causes if c.blending), causes[0])
+
+    def _worst(self, values: Array, limits: Array, part: int) -> Iterator[tuple[int, float, _Cause, int]]:
+        """Yield, for each cause, the frame where values `[F]` are largest of those above a limit, the value,
+        and how often it happens.
+        """
+        over = np.flatnonzero(values > limits[part])
+        events = np.split(over, np.flatnonzero(np.diff(over) > 0.3 * RATE) + 1) if len(over) else []
+        best: dict[tuple[str, str], tuple[int, float, _Cause, int]] = {}
+        for event in events:
+            n = int(event[np.argmax(values[event])])
+            cause = self._likely_cause(self.seen.parts[part], float(self.seen.times[n]))
+            known = best.get(cause.key)
+            count = known[3] + 1 if known else 1
+            if known is None or values[n] > known[1]:
+                best[cause.key] = n, float(values[n]), cause, count
+            else:
+                best[cause.key] = (*known[:3], count)
+        yield from best.values()
+
+    def _problem(
+        self,
+        code: str,
+        words: Phrase,
+        remedy: Phrase,
+        frame: int,
+        cause: _Cause,
+        severity: Severity = "warning",
+    ) -> Problem:
+        time = float(self.seen.times[frame])
+        return Problem(
+            severity,
+            code,
+            phrase("{what} at {moment}, while {cause}", what=words, moment=_clock(time), cause=cause.words)
+            if self.free
+            else phrase("{what}, while {cause}", what=words, cause=cause.words),
+            remedy,
+            cause.layer,
+            cause.stance,
+            cause.action,
+            moment=time if self.free else None,
+        )
+
+    def _jumps(self) -> Iterator[Problem]:
+        places = self.seen.places
+        changes = np.linalg.norm(np.diff(places, 2, axis=0), axis=-1) * RATE**2
+        limits = np.maximum(USUAL * self.changes, JUMP * self.size)
+        for part, name in enumerate(self.seen.parts):
+            for frame, _, cause, count in self._worst(changes[:, part], limits, part):
+                near = places[frame : frame + 3, part]
+                far = 100 * float(np.linalg.norm(np.diff(near, axis=0), axis=-1).max())
+                words = plural_phrase(
+                    "{part} jumps {length:.0f} cm in a sixtieth of a second",
+                    "{part} jumps {length:.0f} cm in a sixtieth of a second, {count:,} times",
+                    count,
+                    part=_NAMES[name],
+                    length=far,
+                )
+                remedy = (
+                    phrase("Lengthen the blend in the timing editor, or start the action nearer its stance.")
+                    if cause.blending
+                    else phrase("Look at the clip there: trim it, or smooth it in the program it is from.")
+                )
+                yield self._problem("play-jump", words, remedy, frame + 1, cause)
+
+    def _fast(self) -> Iterator[Problem]:
+        speeds = np.linalg.norm(np.diff(self.seen.places, axis=0), axis=-1) * RATE
+        limits = np.maximum(USUAL * self.speeds, FAST * self.size)
+        for part, name in enumerate(self.seen.parts):
+            if name == "hips":
+                continue
+            for frame, value, cause, _ in self._worst(speeds[:, part], limits, part):
+                if not cause.blending:
+                    continue
+                words = phrase(
+                    "{part} goes {speed:.1f} m/s, and at most {usual:.1f} m/s in the clips",
+                    part=_NAMES[name],
+                    speed=value,
+                    usual=float(self.speeds[part]),
+                )
+                remedy = phrase("Lengthen the blend in the timing editor, or add a clip that leads there.")
+                yield self._problem("play-fast", words, remedy, frame, cause)
+
+    def _glides(self) -> Iterator[Problem]:
+        if "hips" not in self.seen.parts:
+            return
+        part = self.seen.parts.index("hips")
+        level = self.seen.places[:, part][:, (0, 2)]
+        speeds = np.linalg.norm(np.diff(level, axis=0), axis=-1) * RATE
+        limits = np.maximum(USUAL * self.speeds, GLIDE * self.size)
+        for frame, value, cause, _ in self._worst(speeds, limits, part):
+            some = level[max(0, frame - round(RATE)) : frame + round(RATE)]
+            far = float(np.linalg.norm(np.ptp(some, axis=0)))
+            if not cause.blending or far < GLIDES * self.size:
+                continue
+            words = phrase("the body slides {length:.1f} m at {speed:.1f} m/s", length=far, speed=value)
+            remedy = phrase("Keep the clip in place, or add a clip that walks there.")
+            yield self._problem("play-slide", words, remedy, frame, cause, "error")
+
+    def _floor(self) -> Iterator[Problem]:
+        under, above = self.seen.lowest < -UNDER * self.size, self.seen.lowest > ABOVE * self.size
+        for code, over in (("play-under-floor", under), ("play-in-air", above)):
+            frames = np.flatnonzero(over)
+            if len(frames) < LONG * RATE:
+                continue
+            by: dict[tuple[str, str], list[int]] = {}
+            causes: dict[tuple[str, str], _Cause] = {}
+            for n in frames[:: round(RATE / 4)].tolist():
+                cause = self._cause("body", float(self.seen.times[n]))
+                by.setdefault(cause.key, []).append(n)
+                causes[cause.key] = cause
+            key = max(by, key=lambda k: len(by[k]))
+            worst = max(by[key], key=lambda n: abs(float(self.seen.lowest[n])))
+            far, share = 100 * abs(float(self.seen.lowest[worst])), len(frames) / len(self.seen.times)
+            words = (
+                phrase(
+                    "the character is {length:.0f} cm under the floor for {share:.0%} of the time",
+                    length=far,
+                    share=share,
+                )
+                if code == "play-under-floor"
+                else phrase(
+                    "the character floats {length:.0f} cm above the floor for {share:.0%} of the time",
+                    length=far,
+                    share=share,
+                )
+            )
+            remedy = phrase("Set the height of the clip in the program it is from, or skip the clip.")
+            severity: Severity = "error" if share > LASTING else "warning"
+            yield self._problem(code, words, remedy, worst, causes[key], severity)
+
+    def _arms_inside(self) -> Iterator[Problem]:
+        over = self.seen.inside > INSIDE * self.size
+        if over.sum() < LONG * RATE:
+            return
+        frame = int(np.argmax(self.seen.inside))
+        words = phrase(
+            "an arm is {length:.0f} cm inside the body, and inside it for {share:.0%} of the time",
+            length=100 * float(self.seen.inside[frame]),
+            share=float(over.mean()),
+        )
+        remedy = phrase(
+            "Turn on keeping hands out of the body under Life, or skip the gesture in this stance."
+        )
+        yield self._problem(
+            "play-arm-inside",
+            words,
+            remedy,
+            frame,
+            self._likely_cause("left_hand", float(self.seen.times[frame])),
+        )
+
+    def _never_seen(self) -> Iterator[Problem]:
+        for layer, plan in self.plan.layers.items():
+            graph = self.project.graphs[layer]
+            shown = {rest.stance for rest in plan.rests} | {cue.then for cue in plan.cues}
+            missing = [s for s in graph.stances.values() if s.id not in shown]
+            if not missing or len(graph.stances) < 2 or not plan.rests:
+                continue
+            names = join_phrases([phrase('"{name}"', name=s.name) for s in missing[:3]], ", ")
+            more = len(missing) - 3
+            if more > 0:
+                names = plural_phrase(
+                    "{names} and {count:,} more", "{names} and {count:,} more", more, names=names
+                )
+            words = plural_phrase(
+                "{names}: never reached in {minutes:.0f} minutes",
+                "{names}: never reached in {minutes:.0f} minutes",
+                len(missing),
+                names=names,
+                minutes=float(self.seen.times[-1]) / 60,
+            )
+            yield Problem(
+                "hint",
+                "play-never",
+                words,
+                phrase("Raise the likelihood of a transition that leads there, or request the stance."),
+                layer,
+                missing[0].id,
+            )
+
+
+def _merged(problems: Sequence[Problem]) -> list[Problem]:
+    """Return problems, errors first; of those with one code at one place only the first, which is of the
+    untouched performance where both show it.
+    """
+    first: dict[Any, Problem] = {}
+    for p in problems:
+        first.setdefault((p.code, p.layer, p.action or p.stance), p)
+    order = {"error": 0, "warning": 1, "hint": 2}
+    return sorted(first.values(), key=lambda p: order[p.severity])
+
+
+def _clock(seconds: float) -> str:
+    return f"{int(seconds // 60)}:{seconds % 60:04.1f}"

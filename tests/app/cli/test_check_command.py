@@ -1,0 +1,44 @@
+"""`metagraph check`: what is wrong with a project, also as it plays."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from app.cli.parser import main
+from metagraph.formats.store import SUFFIX, save_project
+from metagraph.graph.model import Project
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    path = tmp_path / f"empty{SUFFIX}"
+    save_project(Project(), path)
+    return path
+
+
+def test_an_empty_project_has_nothing_to_play(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", str(project), "--play", "5", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["problems"] == []
+
+
+@pytest.mark.parametrize("seconds", ["0", "-1", "nan", "1e9"])
+def test_senseless_lengths_are_refused(
+    project: Path, capsys: pytest.CaptureFixture[str], seconds: str
+) -> None:
+    assert main(["check", str(project), "--play", seconds]) == 1
+    assert "--play" in capsys.readouterr().err
+
+
+def test_the_sample_plays_without_an_error(sample_clips: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", str(sample_clips), "--play", "10", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["problems"]
+    assert not [p for p in found if p["severity"] == "error"]
+    assert all("moment" in p for p in found)
+
+
+@pytest.fixture
+def sample_clips() -> Path:
+    return Path(__file__).parents[3] / "sample_clips" / "sample.metagraph.yaml"

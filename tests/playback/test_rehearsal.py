@@ -1,0 +1,106 @@
+"""What a viewer would see go wrong: each kind of fault is planted in a small project, and found."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from metagraph.graph.model import Project
+from metagraph.motion.clip import Clip
+from metagraph.playback.rehearsal import rehearse
+
+SECONDS = 40.0
+
+
+def changed(project: Project, change: Callable[[Clip], Clip], *names: str) -> Project:
+    """Return the project with the motion of some clips changed, of all where none is named."""
+    clips = {
+        ident: replace(entry, motion=change(entry.motion))
+        if entry.motion is not None and (not names or entry.name in names)
+        else entry
+        for ident, entry in project.clips.items()
+    }
+    return replace(project, clips=clips)
+
+
+def lifted(metres: float) -> Callable[[Clip], Clip]:
+    def change(clip: Clip) -> Clip:
+        places = clip.translations.copy()
+        places[:, 0, 1] += metres
+        return replace(clip, translations=places)
+
+    return change
+
+
+def travelling(metres: float) -> Callable[[Clip], Clip]:
+    def change(clip: Clip) -> Clip:
+        places = clip.translations.copy()
+        places[:, 0, 2] += metres * np.linspace(0, 1, clip.frames)
+        return replace(clip, translations=places)
+
+    return change
+
+
+def jumping(clip: Clip) -> Clip:
+    """The clip with its arms at rest for three frames in the middle."""
+    turns, middle = clip.rotations.copy(), clip.frames // 2
+    turns[middle : middle + 3] = clip.skeleton.rest_rotations
+    return replace(clip, rotations=turns)
+
+
+def codes(project: Project) -> set[str]:
+    return {p.code for p in rehearse(project, SECONDS) if p.severity != "hint"}
+
+
+@pytest.fixture(scope="module")
+def sound(toy: Any) -> Project:
+    project: Project = toy.project("body")
+    return project
+
+
+def test_nothing_plays_in_a_project_without_clips() -> None:
+    assert rehearse(Project(), SECONDS) == []
+
+
+def test_of_a_sound_project_nothing_is_reported(sound: Project) -> None:
+    assert codes(sound) == set()
+
+
+def test_a_figure_above_or_under_the_floor_is_an_error_with_its_moment(sound: Project) -> None:
+    for metres, code in ((0.6, "play-in-air"), (-0.6, "play-under-floor")):
+        found = [p for p in rehearse(changed(sound, lifted(metres)), SECONDS) if p.code == code]
+        assert found and found[0].severity == "error" and "100%" in found[0].message
+        assert found[0].moment is not None and 0 <= found[0].moment < SECONDS
+
+
+def test_a_transition_that_travels_slides_back_and_is_named(sound: Project, toy: Any) -> None:
+    project = changed(sound, travelling(2.0), "rest to up")
+    found = [p for p in rehearse(project, SECONDS) if p.code == "play-slide"]
+    assert found and found[0].severity == "error"
+    assert toy.id(project, "rest to up") in {p.action for p in found}
+
+
+def test_a_jump_within_a_clip_is_named_with_the_clip_s_action(toy: Any) -> None:
+    project = changed(toy.project("arms"), jumping, "up point")
+    found = [p for p in rehearse(project, SECONDS) if p.code == "play-jump"]
+    assert {p.action for p in found} == {toy.id(project, "up point")}
+    assert all("up point" in p.message and "trim" in p.remedy for p in found)
+
+
+def test_a_stance_that_is_never_reached_is_a_hint(sound: Project, toy: Any) -> None:
+    graph = sound.graphs["body"]
+    actions = {i: a for i, a in graph.actions.items() if a.name != "up to far"}
+    project = replace(sound, graphs={**sound.graphs, "body": replace(graph, actions=actions)})
+    (hint,) = [p for p in rehearse(project, SECONDS) if p.code == "play-never"]
+    assert hint.stance == toy.id(project, "far") and hint.severity == "hint" and "far" in hint.message
+
+
+def test_progress_is_told_and_a_cancelled_rehearsal_ends(sound: Project) -> None:
+    told: list[tuple[int, int]] = []
+    rehearse(sound, SECONDS, lambda done, of: told.append((done, of)))
+    assert [done for done, _ in told] == list(range(1, told[0][1] + 1)) and told[-1][0] == told[-1][1]
+    assert rehearse(changed(sound, lifted(1.0)), SECONDS, cancelled=lambda: True) == []
