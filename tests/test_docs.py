@@ -264,7 +264,8 @@ def test_every_field_of_a_study_file_and_every_event_of_its_log_is_described() -
     from metagraph.research.study.logs.log import TYPES
     from metagraph.research.study.study_plan import study_schema_text
 
-    text = (ROOT / "docs" / "researchers" / "timing-studies.md").read_text(encoding="utf-8")
+    pages = ("study-file", "study-log")
+    text = "".join((ROOT / "docs" / "researchers" / f"{p}.md").read_text(encoding="utf-8") for p in pages)
     schema = json.loads(study_schema_text())
     fields = {name for part in schema["$defs"].values() for name in part["properties"]}
     assert not {f for f in fields | set(TYPES) if f"`{f}`" not in text}
