@@ -272,7 +272,7 @@ def test_every_field_of_a_study_file_and_every_event_of_its_log_is_described() -
 
 
 def test_every_field_of_a_perceptual_study_is_described() -> None:
-    text = (ROOT / "docs" / "researchers" / "perceptual-studies.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "researchers" / "perceptual-plan.md").read_text(encoding="utf-8")
     parts = msgspec.json.schema(PerceivePlan)["$defs"]
     fields = {
         name for part, said in parts.items() if part not in ("Item", "Scale") for name in said["properties"]
