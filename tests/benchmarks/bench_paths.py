@@ -67,8 +67,7 @@ def path_of(one: LabelSet, sources: tuple[str, ...]) -> dict[str, Any]:
 
 def main() -> None:
     print(
-        "| set | names | clips | proposed | wrong | fields corrected | operators | hands | watching "
-        "| total |"
+        "| set | names | clips | proposed | wrong | fields corrected | operators | hands | watching | total |"
     )
     print("|---" * 10 + "|")
     for one in real_sets():
