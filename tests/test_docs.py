@@ -264,14 +264,15 @@ def test_every_field_of_a_study_file_and_every_event_of_its_log_is_described() -
     from metagraph.research.study.logs.log import TYPES
     from metagraph.research.study.study_plan import study_schema_text
 
-    text = (ROOT / "docs" / "researchers" / "timing-studies.md").read_text(encoding="utf-8")
+    pages = ("study-file", "study-log")
+    text = "".join((ROOT / "docs" / "researchers" / f"{p}.md").read_text(encoding="utf-8") for p in pages)
     schema = json.loads(study_schema_text())
     fields = {name for part in schema["$defs"].values() for name in part["properties"]}
     assert not {f for f in fields | set(TYPES) if f"`{f}`" not in text}
 
 
 def test_every_field_of_a_perceptual_study_is_described() -> None:
-    text = (ROOT / "docs" / "researchers" / "perceptual-studies.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "researchers" / "perceptual-plan.md").read_text(encoding="utf-8")
     parts = msgspec.json.schema(PerceivePlan)["$defs"]
     fields = {
         name for part, said in parts.items() if part not in ("Item", "Scale") for name in said["properties"]

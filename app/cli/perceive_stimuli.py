@@ -119,7 +119,7 @@ class Stimuli:
             self.path,
             cause,
             f"conditions.{name}",
-            remedy or "Correct it; docs/researchers/perceptual-studies.md describes every field.",
+            remedy or "Correct it; docs/researchers/perceptual-plan.md describes every field.",
         )
 
     def _file(self, path: str, item: Stretch) -> Path:

@@ -2,7 +2,8 @@
 
 With 10, 20, 50, 100 and 152 of the sample clips, or with the numbers given, through the real windows with real
 events (needs xdotool; half an hour for all), each in the quickest way known; ways that nobody would go who knows
-the tool are counted with the real edits, without the window. Writes docs/researchers/experts-paths.md and docs/images/participant.svg.
+the tool are counted with the real edits, without the window. Writes the tables of docs/researchers/experts-paths.md,
+experts-paths-tables.md and experts-paths-search.md, and docs/images/participant.svg.
 A run that was interrupted goes on where it was; `--anew` begins again.
 """
 
@@ -204,9 +205,9 @@ def times(rows: Sequence[Mapping[str, Any]], row: Mapping[str, Any], base: str =
 
 
 KINDS = (
-    (True, False, "Names tell what clips are; nothing is looked at"),
-    (True, True, "Names tell what clips are; each is watched once"),
-    (False, True, "Names tell nothing; each is watched once"),
+    (True, False, "Informative names; clips not watched"),
+    (True, True, "Informative names; each clip watched once"),
+    (False, True, "Uninformative names; each clip watched once"),
 )
 
 
@@ -215,7 +216,7 @@ def fair(rows: Sequence[Mapping[str, Any]]) -> str:
     sizes = sorted({r["clips"] for r in rows})
     by = {key(r): r for r in rows}
     out = [
-        "| clips | " + " | ".join(title.lower() for *_, title in KINDS) + " | by name alone, no proposals |"
+        "| clips | " + " | ".join(title.lower() for *_, title in KINDS) + " | names only, without proposals |"
     ]
     out.append("|---|" + "---|" * (len(KINDS) + 1))
     for size in sizes:
@@ -240,7 +241,7 @@ def table(rows: Sequence[Mapping[str, Any]]) -> str:
     for named, look, title in KINDS:
         out += [f"### {title}", ""]
         out.append(
-            f"| clips | way | {' | '.join(OPERATORS)} | waits | hands | in all | times the proposals | connections | mistakes |"
+            f"| clips | way | {' | '.join(OPERATORS)} | waits | hands | total | ratio to proposals | connections | mistakes |"
         )
         out.append("|---" * (len(OPERATORS) + 8) + "|")
         mine = [r for r in rows if (r["named"], r["look"]) == (named, look)]
@@ -263,11 +264,10 @@ def search_table(rows: Sequence[Mapping[str, Any]]) -> str:
     """Return every way that was tried at the largest task, and how few aliases there must be."""
     size = max(r["clips"] for r in rows)
     row = next(r for r in rows if key(r) == (BEST, size, True, False))
+    enough, least = (", ".join(map(str, row[name])) for name in ("rectangles", "least"))
     out = [
-        f"With {size} clips, by layer {', '.join(map(str, row['rectangles']))} aliases do, and fewer than "
-    ]
-    out = [
-        f"{out[0]}{', '.join(map(str, row['least']))} cannot.",
+        f"With {size} clips, {enough} aliases suffice in the layers body, arms and head, and fewer than "
+        f"{least} cannot.",
         "",
         "| way | predicted | links | mistakes |",
         "|---|---|---|---|",
@@ -357,14 +357,18 @@ def main(arguments: Sequence[str]) -> None:
         with kept.open("a") as file:
             file.write(json.dumps(row) + "\n")
     rows = [r for r in rows if r["clips"] in sizes]
-    page = (ROOT / "docs" / "researchers" / "experts-paths.md").read_text(encoding="utf-8")
-    for name, text in (("fair", fair(rows)), ("ways", table(rows)), ("search", search_table(rows))):
-        first, last = f"<!-- {name} -->", f"<!-- end of {name} -->"
-        before, _, rest = page.partition(first)
-        page = f"{before}{first}\n{text}\n{last}{rest.partition(last)[2]}"
-    (ROOT / "docs" / "researchers" / "experts-paths.md").write_text(page, encoding="utf-8")
+    for name, place, text in (
+        ("experts-paths.md", "fair", fair(rows)),
+        ("experts-paths-tables.md", "ways", table(rows)),
+        ("experts-paths-search.md", "search", search_table(rows)),
+    ):
+        path = ROOT / "docs" / "researchers" / name
+        before, _, rest = path.read_text(encoding="utf-8").partition(f"<!-- {place} -->")
+        _, last, after = rest.partition(f"<!-- end of {place} -->")
+        path.write_text(f"{before}<!-- {place} -->\n{text}\n{last}{after}", encoding="utf-8")
+        print(f"docs/researchers/{name}")
     (ROOT / "docs" / "images" / "participant.svg").write_text(plot(rows), encoding="utf-8")
-    print("docs/researchers/experts-paths.md\ndocs/images/participant.svg")
+    print("docs/images/participant.svg")
 
 
 if __name__ == "__main__":

@@ -63,7 +63,7 @@ TASKS = {
 TITLES = {"ten": "Ten clips", "twenty": "Twenty clips"}
 
 HEAD = """\
-# An example study: the meta-graph against a state machine drawn by hand, on 10 and on 20 clips. docs/researchers/timing-studies.md says what each field does.
+# An example study: the meta-graph against a state machine drawn by hand, on 10 and on 20 clips. docs/researchers/study-file.md says what each field does.
 study: 1
 title: Two ways to wire a character
 participants: 12

@@ -67,14 +67,13 @@ def path_of(one: LabelSet, sources: tuple[str, ...]) -> dict[str, Any]:
 
 def main() -> None:
     print(
-        "| set | names | clips | proposed | wrong | fields corrected | operators | hands | watching "
-        "| in all |"
+        "| set | names | clips | proposed | wrong | fields corrected | operators | hands | watching | total |"
     )
     print("|---" * 10 + "|")
     for one in real_sets():
         if one.name not in SETS:
             continue
-        for words, sources in (("tell", ("name", "motion")), ("hidden", ("motion",))):
+        for words, sources in (("informative", ("name", "motion")), ("hidden", ("motion",))):
             row = path_of(one, sources)
             operators = " ".join(f"{n:.0f} {k}" for k, n in row["hands"].items())
             hands = predict_seconds(row["hands"])

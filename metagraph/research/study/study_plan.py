@@ -29,7 +29,7 @@ from metagraph.research.study.plan.study_fields import Plan, Task, Training, lis
 
 VERSION = 1
 FILE = "study.yaml"
-_CORRECT = "Correct it; docs/researchers/timing-studies.md describes every field."
+_CORRECT = "Correct it; docs/researchers/study-file.md describes every field."
 P = TypeVar("P")
 
 CONDITION_TITLES: Mapping[str, str] = {

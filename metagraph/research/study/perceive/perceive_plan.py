@@ -20,7 +20,7 @@ from metagraph.research.study.study_plan import plan_from
 VERSION = 1
 FILE = "perceive.yaml"
 MOST_TRIALS = 500  # of one session: hours
-_CORRECT = "Correct it; docs/researchers/perceptual-studies.md describes every field."
+_CORRECT = "Correct it; docs/researchers/perceptual-plan.md describes every field."
 
 Text = Annotated[str, Meta(max_length=20_000)]
 Where = Annotated[str, Meta(min_length=1, max_length=1000)]
