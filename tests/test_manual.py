@@ -71,6 +71,7 @@ MADE_UP = (
     "greeting",
     "_",
     "metagraph/metagraph.hpp",  # in an export
+    "/fr/LC_MESSAGES/metagraph.po",
 )  # what recipes tell readers to make: app/features/greeting, tests/formats/test_<format>.py
 IN_TESTS = "papers.md"  # whose tests are named from tests/ on; tests/test_papers.py reads them
 
