@@ -1,16 +1,16 @@
-"""The code of the recipes in CONTRIBUTING.md, which tests run."""
+"""The code of the recipes in docs/contributing, which tests run."""
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
 
-PAGE = Path(__file__).resolve().parents[1] / "CONTRIBUTING.md"
+PAGES = Path(__file__).resolve().parents[1] / "docs" / "contributing"
 
 
 def code_of(recipe: str) -> str:
-    """Return the first block of code of a recipe."""
-    text = PAGE.read_text(encoding="utf-8").split(f"### {recipe}\n")[1].split("\n### ")[0]
+    """Return the first block of code of a recipe: "Add a target" is the page add-a-target.md."""
+    text = (PAGES / f"{recipe.lower().replace(' ', '-')}.md").read_text(encoding="utf-8")
     found = re.search(r"```python\n(.*?)```", text, re.S)
-    assert found is not None, recipe
+    assert found is not None and text.startswith(f"# {recipe}\n"), recipe
     return found[1]

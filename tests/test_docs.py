@@ -184,6 +184,45 @@ def test_links_and_pictures_lead_somewhere(page: Path) -> None:
             assert anchor in anchors(place), target
 
 
+# What exports, recipes and folders that strangers prepared have.
+OTHERS_FILES = {
+    "Content/Python/metagraph_study_log.py",
+    "greeting_commands.py",
+    "json.py",
+    "numpy.py",
+    "sample_gestures.py",
+    "sitecustomize.py",
+}
+FOLDERS = ("app", "docs", "metagraph", "preview", "sample_clips", "tests")
+
+
+def test_python_files_that_pages_name_are_there() -> None:
+    """A name in backticks may leave out the folders at its beginning: `live_hours.py`."""
+    there = {f"/{path.relative_to(ROOT).as_posix()}" for f in FOLDERS for path in (ROOT / f).rglob("*.py")}
+    there.add("/run.py")
+    missing = [
+        (page.name, name)
+        for page in PAGES
+        if page.name != "CHANGELOG.md"  # what it says was so when it was written
+        for words in re.findall(r"`([^`\n]+)`", BLOCK.sub("", page.read_text(encoding="utf-8")))
+        for name in re.findall(r"(?<!\S)[\w./-]+\.py(?!\S)", words)
+        if name not in OTHERS_FILES and not any(path.endswith(f"/{name}") for path in there)
+    ]
+    assert not missing
+
+
+def test_the_walk_of_a_clip_goes_through_functions_that_are_there() -> None:
+    """A row names a class, a function or a method, and the file it is defined in."""
+    text = (ROOT / "docs" / "contributing" / "walk-of-a-clip.md").read_text(encoding="utf-8")
+    steps = re.findall(r"`([\w.]+)`(?:, | \()`([\w/]+\.py)`", text)
+    assert len(steps) > 20
+    for name, path in steps:
+        code = (ROOT / path).read_text(encoding="utf-8")
+        *owner, last = name.split(".")
+        assert re.search(rf"^ *(?:def|class) {last}\b|^{last} = ", code, re.M), (name, path)
+        assert not owner or re.search(rf"^class {owner[0]}\b", code, re.M), (name, path)
+
+
 def test_the_page_of_requests_that_exports_carry_is_what_the_docs_say() -> None:
     """Else: `.venv/bin/python docs/requests_page.py`."""
     written = runpy.run_path(str(ROOT / "docs" / "requests_page.py"))

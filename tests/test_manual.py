@@ -71,6 +71,7 @@ MADE_UP = (
     "greeting",
     "_",
     "metagraph/metagraph.hpp",  # in an export
+    "/fr/LC_MESSAGES/metagraph.po",
 )  # what recipes tell readers to make: app/features/greeting, tests/formats/test_<format>.py
 IN_TESTS = "papers-"  # whose tests are named from tests/ on; tests/test_papers.py reads them
 
@@ -99,7 +100,11 @@ def test_the_order_of_imports_is_that_of_the_contracts() -> None:
     (layers,) = (c["layers"] for c in rules["contracts"] if c["name"].startswith("inside metagraph"))
     text = TABLE_OF_THE_TREE.read_text(encoding="utf-8")
     told = [re.findall(r"`(\w+)`", line) for line in re.findall(r"^\d+\. (.+)$", text, re.M)]
-    assert told == [[part.strip().removeprefix("metagraph.") for part in row.split("|")] for row in layers]
+    order = [[part.strip().removeprefix("metagraph.") for part in row.split("|")] for row in layers]
+    assert told == order
+    picture = (DOCS / "images" / "architecture.svg").read_text(encoding="utf-8")
+    boxes = re.findall(r'font-size="15" font-weight="bold"[^>]*>([^<]+)<', picture)
+    assert [box.split(" | ") for box in boxes][-len(order) :] == order
 
 
 def test_systems_that_nobody_ran_it_on_are_offered_as_not_tested() -> None:

@@ -1,8 +1,8 @@
 """A feature's commands as a static table, and what they are enabled by.
 
-A table is a tuple of `Command`s whose functions take the feature and whose texts are marked by `tr_noop`; of
-it `bound` makes the commands of one window. What enables a command is a named condition, and `all_of`,
-`any_met` and `not_met` combine conditions.
+A table is a tuple of `Command`s whose functions take the feature and whose texts are marked by `tr_noop`.
+`bind_commands` makes the commands of one window from it. Named conditions enable commands; `all_met`,
+`any_met` and `not_met` combine them.
 """
 
 from __future__ import annotations

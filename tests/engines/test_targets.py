@@ -132,7 +132,7 @@ def test_a_target_that_does_not_exist_is_told_with_the_nearest(sample: Project, 
 def test_a_target_comes_by_its_module_and_its_line(
     sample: Project, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The target that CONTRIBUTING.md has as its recipe."""
+    """The target that the page "Add a target" has as its recipe."""
     module = ModuleType("metagraph.engines.targets.uses")
     exec(code_of("Add a target"), vars(module))
     monkeypatch.setitem(sys.modules, module.__name__, module)

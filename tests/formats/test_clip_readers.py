@@ -1,4 +1,4 @@
-"""The registry of clip readers: each is one line, as the recipe in CONTRIBUTING.md says."""
+"""The registry of clip readers: each is one line, as the recipe in docs/contributing says."""
 
 from __future__ import annotations
 

@@ -71,7 +71,7 @@ def test_every_folder_of_a_feature_is_named_once():
 
 @pytest.fixture
 def greeting(monkeypatch):
-    """The feature that CONTRIBUTING.md has as its recipe, with its line among the others."""
+    """The feature that the page "Add a feature" has as its recipe, with its line among the others."""
     feature = ModuleType("app.features.greeting")
     exec(compile(code_of("Add a feature"), "greeting", "exec"), vars(feature))
     monkeypatch.setitem(sys.modules, feature.__name__, feature)

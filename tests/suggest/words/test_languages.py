@@ -119,6 +119,7 @@ SETS: dict[str, list[Row]] = {
         ("Zitten_knikken", "gesture", "zitten", None),
         ("Staan_schouders_ophalen", "gesture", "staan", None),
         ("Staan_gewicht_verplaatsen", "fidget", "staan", None),
+        ("Zitten_keel_schrapen", "fidget", "zitten", None),
         ("StaanNaarZitten", "transition", "staan", "zitten"),
     ],
     "polish": [
