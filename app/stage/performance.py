@@ -32,6 +32,7 @@ from metagraph.playback.planning.extend_performance import AskAnswer, answer_ask
 from metagraph.playback.planning.running_plan import list_kept_asks, plan_performance
 
 LENGTH = 60.0  # seconds planned ahead, and how much more whenever the playhead comes near the end
+BEFORE = 1.0  # seconds before a moment that is shown, at which it is stopped
 AHEAD = 15.0  # seconds before the end at which more is planned
 
 
@@ -265,6 +266,20 @@ class StagePerformance(QObject):
                 live.session.project, plan, plan.end, over=over, muted=self.muted
             )
             self.changed.emit()
+
+    def show_moment(self, seconds: float) -> None:
+        """Stop a little before a second of the performance that plays by itself; nothing where another
+        performance, a conversation or a live session is on stage.
+        """
+        if self.live.stage is not None or self.conversation is not None or self.requests.kept is not None:
+            return
+        transport = self.session.transport
+        transport.show_plan()
+        transport.set_playing(False)
+        if seconds + AHEAD > self.length:
+            self.length = LENGTH * (int((seconds + AHEAD) // LENGTH) + 1)
+            self.replan()
+        transport.seek(max(0.0, seconds - BEFORE))
 
     def plan_beyond(self, seconds: float) -> None:
         """Plan further where the playhead comes near the end of what goes on for ever."""

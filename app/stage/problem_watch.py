@@ -4,6 +4,8 @@ statistics of jumps flag, and what mends them with a press.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.project.document import Document
@@ -11,9 +13,11 @@ from app.project.jobs import Jobs
 from app.stage.compatibility_state import Compatibility, merge_problems
 from app.stage.fixes import Fix, fix_clips, fix_unreachable
 from app.stage.session import StageSession
-from app.translation import tr_phrase
+from app.translation import tr, tr_phrase
 from metagraph.graph.check import check_project
+from metagraph.graph.model import Project
 from metagraph.graph.problem import Problem
+from metagraph.playback.rehearsal import rehearse
 
 Checked = tuple[list[Problem], dict[Problem, Fix]]
 
@@ -26,6 +30,7 @@ class ProblemWatch(QObject):
     """
 
     changed = Signal()
+    played = Signal(bool)  # begun, or over
 
     def __init__(
         self,
@@ -43,6 +48,8 @@ class ProblemWatch(QObject):
         self._bridges: dict[Problem, Fix] = {}
         self._found: tuple[Problem, ...] = ()  # by `check`, without what the statistics flag
         self._busy = False
+        self._seen: tuple[tuple[Problem, object], ...] = ()  # as it played, with what was played
+        self.is_playing = False
         self._soon = QTimer(self, singleShot=True, interval=AFTER)
         self._soon.timeout.connect(self._check)
         document.changed.connect(lambda before, after: self._soon.start())
@@ -51,6 +58,30 @@ class ProblemWatch(QObject):
 
     def stop(self) -> None:
         self._soon.stop()
+
+    def play(self) -> None:
+        """Play ten minutes and each action once, and add what a viewer would see go wrong; it takes about a
+        minute. What is found stays until the action it is about is edited.
+        """
+        if self.is_playing:
+            return
+        self.is_playing = True
+        project = self.document.project
+        job = self.jobs.start(
+            tr("Playing the character and checking what is seen"),
+            lambda job: rehearse(project, progress=job.tell, cancelled=lambda: job.cancelled),
+            lambda problems: self._show_seen(project, problems),
+        )
+        job.ended.connect(self._over)
+        self.played.emit(True)
+
+    def _show_seen(self, project: Project, problems: Sequence[Problem]) -> None:
+        self._seen = tuple((p, _subject(project, p)) for p in problems)
+        self._merge()
+
+    def _over(self) -> None:
+        self.is_playing = False
+        self.played.emit(False)
 
     def _check(self) -> None:
         if self._busy:
@@ -76,7 +107,9 @@ class ProblemWatch(QObject):
         meta = self.session.onstage.mode == "meta"
         found = tuple(p for p in self._found if not (p.state or p.link if meta else p.stance or p.action))
         flags = self.compatibility.flags if meta else {}
-        self.problems = merge_problems(found, flags)
+        project = self.document.project
+        seen = tuple(p for p, subject in self._seen if meta and _subject(project, p) is subject)
+        self.problems = merge_problems((*found, *seen), flags)
         self.fixes = {**flags, **self._bridges}
         self.misfits = {
             p.action: f"{tr_phrase(p.message)}. {tr_phrase(p.remedy)}"
@@ -84,3 +117,8 @@ class ProblemWatch(QObject):
             if p.action and p.severity != "hint"
         }
         self.changed.emit()
+
+
+def _subject(project: Project, problem: Problem) -> object:
+    """Return what a problem is about: the action, else the stance, else the project's graphs."""
+    return project.action(problem.action or "") or project.stance(problem.stance) or project.graphs

@@ -31,7 +31,7 @@ Array = NDArray[Any]
 
 MINUTES = 10.0
 RATE = 60.0  # poses a second that are looked at
-CHUNK = 1200  # poses made at once
+CHUNK = 600  # poses made at once
 GAP = 0.5  # seconds between the actions that are each played once
 TALL = 1.75  # metres: the lengths and speeds below are of a figure of that height
 USUAL = 1.5  # times the clips' own 99th percentile, up to which nothing is reported
@@ -406,10 +406,8 @@ class _Findings:
                 names = plural_phrase(
                     "{names} and {count:,} more", "{names} and {count:,} more", more, names=names
                 )
-            words = plural_phrase(
+            words = phrase(
                 "{names}: never reached in {minutes:.0f} minutes",
-                "{names}: never reached in {minutes:.0f} minutes",
-                len(missing),
                 names=names,
                 minutes=float(self.seen.times[-1]) / 60,
             )

@@ -24,6 +24,10 @@ def contribute(shell: Shell) -> Contribution:
         panel.mend_wanted.connect(compatibility.mend)
         panel.show_problems(watch.problems, watch.fixes)
         watch.changed.connect(lambda: panel.show_problems(watch.problems, watch.fixes))
+        panel.play_wanted.connect(watch.play)
+        panel.moment_wanted.connect(shell.stage.performance.show_moment)
+        watch.played.connect(panel.show_playing)
+        panel.show_playing(watch.is_playing)
         return panel
 
     return Contribution(

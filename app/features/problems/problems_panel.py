@@ -136,9 +136,13 @@ class WrappedWords(QStyledItemDelegate):
 
 
 class ProblemsPanel(QWidget):
-    """mend_wanted: some `Fix`es were asked for."""
+    """mend_wanted: some `Fix`es were asked for. play_wanted: the character is to be played and checked.
+    moment_wanted: the performance is to be shown at a second.
+    """
 
     mend_wanted = Signal(object)
+    play_wanted = Signal()
+    moment_wanted = Signal(float)
 
     def __init__(self, session: StageSession, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -172,17 +176,25 @@ class ProblemsPanel(QWidget):
         self.foot = QWidget(self)
         foot = QHBoxLayout(self.foot)
         foot.setContentsMargins(8, 4, 8, 6)
+        self.play = QPushButton(tr("Play and check"), self)
+        self.play.setToolTip(
+            tr(
+                "Plays ten minutes and each action once, and lists what a viewer would see: jumps, a body "
+                "that slides, feet under the floor. It takes about a minute."
+            )
+        )
+        self.play.clicked.connect(self.play_wanted)
+        foot.addWidget(self.play)
         foot.addStretch(1)
         foot.addWidget(self.all)
-        some = QWidget(self)
-        box = QVBoxLayout(some)
+        box = QVBoxLayout(self)
         box.setContentsMargins(0, 0, 0, 0)
         box.setSpacing(0)
-        box.addWidget(self.tree, 1)
-        box.addWidget(self.foot)
-        self.stack = QStackedLayout(self)
+        self.stack = QStackedLayout()
         self.stack.addWidget(self.none)
-        self.stack.addWidget(some)
+        self.stack.addWidget(self.tree)
+        box.addLayout(self.stack, 1)
+        box.addWidget(self.foot)
         session.look.changed.connect(lambda: self.show_problems(self.problems, self.fixes))
 
     def show_problems(
@@ -227,7 +239,7 @@ class ProblemsPanel(QWidget):
         )
         self.stack.setCurrentIndex(1 if self.problems else 0)
         count = len(self.fixable())
-        self.foot.setVisible(count > 1)
+        self.all.setVisible(count > 1)
         self.all.setText(tr_plural("Fix {count:,} problem", "Fix {count:,} problems", count))
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
@@ -244,6 +256,11 @@ class ProblemsPanel(QWidget):
             return
         for column, width in enumerate(widths):
             self.tree.setColumnWidth(column, width)
+
+    def show_playing(self, playing: bool) -> None:
+        """Show whether the character is being played."""
+        self.play.setEnabled(not playing)
+        self.play.setText(tr("Playing…") if playing else tr("Play and check"))
 
     def fixable(self) -> list[Fix]:
         """Return everything that can be mended with a press."""
@@ -287,3 +304,5 @@ class ProblemsPanel(QWidget):
             self.session.jump(
                 problem.layer, problem.stance, problem.action or problem.state or problem.link, problem.clip
             )
+            if problem.moment is not None:
+                self.moment_wanted.emit(problem.moment)

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import replace
+from functools import partial
 
 import pytest
 from PySide6.QtCore import Qt
@@ -286,3 +287,32 @@ def test_a_swapped_clip_is_given_back_or_kept(toy, there):
     if there:
         kept = fix.instead(wrong)
         assert not fix_clips(kept, check_project(kept)) and kept.action(short).clip == action.clip
+
+
+@pytest.mark.window
+def test_play_and_check_lists_what_is_seen_and_a_click_opens_that_moment(toys, toy, monkeypatch):
+    from app.stage import problem_watch
+    from tests.playback.test_rehearsal import changed, lifted
+
+    drive = toys
+    monkeypatch.setattr(problem_watch, "rehearse", partial(problem_watch.rehearse, seconds=20.0))
+    drive.document.load(changed(toy.project("body"), lifted(0.6)), None)
+    drive.files.opened.emit()
+    drive.show("problems")
+    panel = drive.problems_panel
+    drive.wait(panel.play.isVisible)
+    QTest.mouseClick(panel.play, Qt.MouseButton.LeftButton)
+    assert not panel.play.isEnabled() and panel.play.text() == "Playing…"
+    drive.wait(panel.play.isEnabled, 60)
+    (seen,) = [p for p in panel.problems if p.code == "play-in-air"]
+    assert seen.severity == "error" and seen.moment is not None
+    transport = drive.session.transport
+    transport.show_clip(next(iter(drive.document.project.clips)))
+    item = panel.tree.topLevelItem([p.code for p in panel.problems].index("play-in-air"))
+    panel.tree.scrollToItem(item)
+    spot = panel.tree.visualItemRect(item).center()
+    QTest.mouseClick(panel.tree.viewport(), Qt.MouseButton.LeftButton, pos=spot)
+    assert transport.show == "plan" and not transport.playing
+    assert transport.seconds == pytest.approx(max(0.0, seen.moment - 1.0))
+    drive.document.edit("rename", lambda p: edits.update_actions(p, [seen.action], name="another"))
+    drive.wait(lambda: "play-in-air" not in {p.code for p in panel.problems})
