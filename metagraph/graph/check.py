@@ -351,7 +351,9 @@ class _ActionCheck:
             )
 
     def ends(self) -> Iterator[Problem]:
-        """Compare its clip's ends with the stances that it leaves and enters, on the joints its layer moves."""
+        """Compare its clip's ends with the stances that it leaves and enters, on the joints its
+        layer moves.
+        """
         project, graph, action = self.project, self.graph, self.action
         if action.kind == "stance":
             gap = end_gaps.measure_seam(project, graph, action)

@@ -306,7 +306,9 @@ def move_actions(
 
 
 def to_stance(project: Project, actions: Collection[str], stance: str) -> Project:
-    """Move actions to another stance. Each keeps its kind, and transitions keep their ends. Raises EditError."""
+    """Move actions to another stance. Each keeps its kind, and transitions keep their ends. Raises
+    EditError.
+    """
     groups: dict[tuple[Kind, str | None], list[str]] = {}
     for ident in actions:
         action = project.action(ident)
