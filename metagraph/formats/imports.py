@@ -86,11 +86,11 @@ class Imported:
     """The result of an import.
 
     `loaded` is what `add_clips` takes. `failures` say in words why files were left out. `notes` say what
-    readers changed. `character` is the first character among the files, for a project that draws none yet;
-    `stand_ins` are characters without a real mesh, if there is no other. `strangers` are clips of other
-    skeletons that wait to be retargeted. `joint_maps` are those by which clips were retargeted, to be kept in
-    the project, and `retargeted` is the number of these clips. `apart` are clips of other skeletons that were
-    left out, by the user or with a reason among the failures.
+    readers changed. `character` is the first of the files that also holds a character, for a project that
+    draws none yet; if there is none, `stand_ins` are the files whose mesh only stands in for one. `strangers`
+    are clips of other skeletons that wait to be retargeted. `joint_maps` are those by which clips were
+    retargeted, to be kept in the project, and `retargeted` is the number of these clips. `apart` are clips of
+    other skeletons that were left out, by the user or with a reason among the failures.
     """
 
     loaded: tuple[Loaded, ...]
