@@ -257,8 +257,8 @@ Four = Annotated[list[Number], Meta(min_length=4, max_length=4)]
 class RigEye(Struct, forbid_unknown_fields=True):
     """An eye, or its place if there is none, in the head's own space: where it is, and its directions to the
     left, up and ahead. joint: -1 for none. turn_left, turn_up: rotation vectors in the joint's own space that
-    turn it by a radian. down: the dot product of these four with the joint's own rotation is how far down it
-    looks already, radians.
+    turn it by a radian. down: the dot product of these four with the joint's own rotation (w not negative) is
+    how far down it looks already, radians.
     """
 
     at: Vector
@@ -296,7 +296,8 @@ class RigFace(Struct, forbid_unknown_fields=True):
     The channels: upper_lid_left, upper_lid_right, lower_lid_left, lower_lid_right, blink, jaw_open, then the
     visemes without silence. follows: how far each lid shuts for an eye that looks down by a radian.
     lid_joints: the joint of each lid, -1 for none. shut_by: the dot product of these four with a lid's own
-    rotation is how far it is shut already. morphs: channel -> morph target -> its weight at 1.
+    rotation (w not negative) is how far it is shut already. morphs: channel -> morph target -> its weight at
+    1.
     """
 
     joints: list[Count]
