@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
 from pathlib import Path
 from typing import NamedTuple
@@ -27,7 +27,7 @@ PHRASES = {
     r"\ball alike\b": "all of them",
     r"\bas it were\b": "leave it out",
     r"\bwhat is asked for\b": "the requests",
-    r"(?<![{\w])anew\b": "again",
+    r"(?<![{`\w])anew\b": "again",
     r"\b(is|are|was|were) told\b": "is reported, is given",
     r"\b(told|tells?) of\b": "reports",
     r", whichever(?=\s*([.;:|]|$))": "any",
@@ -46,10 +46,73 @@ PHRASES = {
     r"\btimes what is usual\b": "times the usual",
     r"\bfor want of\b": "without",
 }
+# The same for docstrings of front doors only.
+DOCSTRING_PHRASES = {
+    r"\bwholly\b": "entirely",
+    r"\bwhoever\b": "the one who, code that",
+    r"\bdear\b": "expensive",
+    r"\bas good as\b": "almost",
+    r"\bbut for\b": "except for",
+    r"\b(under way|on the way)\b": "in progress, at the same time",
+    r"\bround about\b": "around, about",
+    r"\blikewise\b": "in the same way",
+    r"\bwhere (nothing|that is|there is none)\b": "if nothing, if that is, if there is none",
+    r"\b(is|are) alike\b": "are equal, are similar",
+    r"\breckon(ed|s)?\b": "count",
+    r"\btold apart\b": "distinguished",
+    r"\bthe very same\b": "the same",
+}
 
 
 # Modules that a new maintainer reads first.
-FRONT_DOORS = ("metagraph/graph/timeline_edits.py",)
+FRONT_DOORS = (
+    "app/main.py",
+    "app/project/*.py",
+    "app/shell/*.py",
+    "app/stage/*.py",
+    "app/translation.py",
+    "metagraph/engines/character.py",
+    "metagraph/engines/contract.py",
+    "metagraph/engines/export.py",
+    "metagraph/engines/targets/losses.py",
+    "metagraph/engines/targets/registry.py",
+    "metagraph/engines/targets/target.py",
+    "metagraph/formats/bvh/*.py",
+    "metagraph/formats/clip_readers.py",
+    "metagraph/formats/clips.py",
+    "metagraph/formats/fbx/*.py",
+    "metagraph/formats/gltf/*.py",
+    "metagraph/formats/imports.py",
+    "metagraph/formats/locking.py",
+    "metagraph/formats/outputs.py",
+    "metagraph/formats/recovery.py",
+    "metagraph/formats/store.py",
+    "metagraph/formats/stray_poses.py",
+    "metagraph/formats/takes.py",
+    "metagraph/graph/check.py",
+    "metagraph/graph/checks/*.py",
+    "metagraph/graph/edits.py",
+    "metagraph/graph/model.py",
+    "metagraph/graph/requests.py",
+    "metagraph/graph/timeline_edits.py",
+    "metagraph/live/live_session.py",
+    "metagraph/live/messages.py",
+    "metagraph/live/schemas.py",
+    "metagraph/motion/clip.py",
+    "metagraph/motion/joint_map.py",
+    "metagraph/motion/retarget.py",
+    "metagraph/motion/rotation.py",
+    "metagraph/motion/skeleton.py",
+    "metagraph/playback/evaluator.py",
+    "metagraph/playback/planner.py",
+    "metagraph/playback/player.py",
+    "metagraph/playback/posing/*.py",
+    "metagraph/speech/clauses.py",
+    "metagraph/speech/drive.py",
+    "metagraph/speech/lines.py",
+    "metagraph/suggest/*.py",
+    "preview/*.py",
+)
 
 
 class Found(NamedTuple):
@@ -62,9 +125,9 @@ class Found(NamedTuple):
         return f"{self.file}:{self.line}: '{self.text}': write {self.plain}"
 
 
-def search(file: str, first_line: int, text: str) -> Iterator[Found]:
+def search(file: str, first_line: int, text: str, phrases: Mapping[str, str] = PHRASES) -> Iterator[Found]:
     """Yield the phrases that a text has. The text begins in line `first_line` of the file."""
-    for phrase, plain in PHRASES.items():
+    for phrase, plain in phrases.items():
         pattern = phrase.replace(" ", r"\s+")
         for match in re.finditer(pattern, text, re.IGNORECASE | re.MULTILINE):
             line = first_line + text.count("\n", 0, match.start())
@@ -87,7 +150,8 @@ def search_docstrings(root: Path, modules: Iterable[Path]) -> Iterator[Found]:
                 continue
             text = node.body[0]
             assert isinstance(text, ast.Expr) and isinstance(text.value, ast.Constant)
-            yield from search(path.relative_to(root).as_posix(), text.lineno, str(text.value.value))
+            name = path.relative_to(root).as_posix()
+            yield from search(name, text.lineno, str(text.value.value), PHRASES | DOCSTRING_PHRASES)
 
 
 def list_pages(root: Path = ROOT) -> Iterator[Path]:
@@ -130,8 +194,8 @@ def test_a_planted_phrase_is_found(tmp_path: Path) -> None:
     assert show(search_docstrings(tmp_path, [module])) == "module.py:5: 'anew': write again"
 
 
-def test_private_functions_and_values_in_braces_are_not_searched(tmp_path: Path) -> None:
+def test_private_functions_and_names_in_braces_or_backquotes_are_not_searched(tmp_path: Path) -> None:
     module = tmp_path / "module.py"
     module.write_text('def _draw() -> None:\n    """Draw it anew."""\n', encoding="utf-8")
     assert not show(search_docstrings(tmp_path, [module]))
-    assert not show(search("page.md", 1, "Labelled {anew}."))
+    assert not show(search("page.md", 1, "Labelled {anew}, with `anew`."))

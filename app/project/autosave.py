@@ -62,7 +62,7 @@ class Autosave:
 
     def begin(self, base: Project | None, unsaved: int = 0, done: Sequence[Done] = ()) -> None:
         """Begin again. `base` is what the journal must hold itself because no file does; `unsaved` is the
-        number of its edits that are in no file, and `done` are the edits after it.
+        number of its edits that are not saved to a file, and `done` are the edits after it.
         """
         document = self.document
         old, self.journal = self.journal, None

@@ -399,8 +399,8 @@ class Document(QObject):
             self.autosave.begin(*self.unsaved(self.project))
 
     def unsaved(self, now: Project) -> tuple[Project, int, list[Done]]:
-        """Return what leads to the current project: what it builds on, how many of the edits in that are in
-        no file, and the edits after it.
+        """Return what leads to the current project: what it builds on, how many of the edits in that are
+        unsaved, and the edits after it.
         """
         stack = self.undo_stack
         clean = stack.cleanIndex()
