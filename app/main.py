@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from app.shell.window import Window
 
 RETRY = 300  # milliseconds between two checks whether the language can change
-UNSEEN = 500  # milliseconds after which a project is opened though no picture was painted: it may be hidden
+UNSEEN = 500  # milliseconds; then a project is opened even if nothing was painted: the window may be hidden
 
 
 def prepare_application() -> QApplication:
@@ -135,7 +135,7 @@ def run_window(path: Path | None, sample: bool = False, clip: str | None = None)
     from app import faults
     from app.shell.fault_dialog import fault_folder
 
-    gc.disable()  # what is made until the window is there lives as long as it; else 0.08 s later
+    gc.disable()  # objects made until the window shows live on; collecting costs 0.08 s
     app = prepare_application()
     faults.install(fault_folder())
     keeper = WindowKeeper(open_window(path, sample, clip))

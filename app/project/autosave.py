@@ -39,7 +39,7 @@ class Autosave:
     def __init__(self, document: JournalledDocument) -> None:
         self.document = document
         self.journal: Journal | None = None
-        self._abandoned: list[Journal] = []  # whose place was gone; once all is saved they go, where they can
+        self._abandoned: list[Journal] = []  # their folder is gone; removed once all is saved
 
     @property
     def folder(self) -> Path:
@@ -79,7 +79,7 @@ class Autosave:
                     document.failed.emit(tr("Autosave is off: {error}", error=error))
                     return
         if base is not None or not document.read_only:
-            self.journal = journal  # else it begins with the first edit, and with the project before that
+            self.journal = journal  # else it begins with the first edit
         if old is not None and (base is None or old.path != journal.path):
             old.remove()
         self._forget_abandoned(journal.path if journal.begun else None)

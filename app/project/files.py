@@ -263,7 +263,7 @@ class Files(QObject):
     def show_failure(self, error: Exception) -> None:
         """Report what went wrong with a job."""
         if not (is_foreseen(error) or isinstance(error, WORDS)):
-            return  # told already, with a report
+            return  # reported already
         QMessageBox.warning(self.window, "Metagraph", tr_error(error))
 
     # --- save

@@ -13,7 +13,7 @@ from shiboken6 import isValid
 
 from app import faults
 
-WORDS = (OSError, MemoryError, ValueError, RuntimeError)  # what work says in words, beside errors of ours
+WORDS = (OSError, MemoryError, ValueError, RuntimeError)  # their message is shown, besides our own errors
 
 
 class WindowJob(QObject):

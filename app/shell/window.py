@@ -254,7 +254,7 @@ class Window(QMainWindow):
     # --- the window itself
 
     def event(self, event: QEvent) -> bool:
-        if event.type() == QEvent.Type.WindowActivate:  # whoever comes back may have written the file
+        if event.type() == QEvent.Type.WindowActivate:  # the user may have changed the file meanwhile
             self.shell.files.look_at_file()
         # Checked last, for keys that the focused widget does not use: the space bar presses a focused button.
         if (

@@ -12,10 +12,8 @@ from PySide6.QtGui import QColor, QFont, QFontMetricsF, QImage, QPainter
 
 from metagraph.speech.captions import Caption
 
-SAFE = 0.05  # of width and height at each edge that stays free (EBU R 95: the graphics safe area of 16:9)
-TALL = (
-    0.046  # of the picture's height a line's letters are set in; as broadcasters do, about 20 lines a picture
-)
+SAFE = 0.05  # of width and height, free at each edge (EBU R 95: graphics safe area of 16:9)
+TALL = 0.046  # of the picture's height: the size of letters; about 20 lines a picture, as broadcasters do
 LEAST = 11  # pixels
 GROUND, INK = QColor(0, 0, 0, 175), QColor(255, 255, 255)
 

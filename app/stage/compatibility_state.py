@@ -77,7 +77,7 @@ def describe_jumps(project: Project, judged: JudgedJumps) -> dict[Problem, Fix |
     for jump in judged.jumps:
         action, stance = project.action(jump.action), project.stance(jump.stance)
         if action is None or stance is None:
-            continue  # it went meanwhile
+            continue  # it was removed in the meantime
         if jump.edge == "loops":
             words = tr(
                 "'{name}' has a visible jump at its loop seam: {cost:.1f} times the limit",

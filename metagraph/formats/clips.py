@@ -207,7 +207,7 @@ def _import_clips(
             progress(done, len(files), path)
         try:
             takes = begun[path].result() if path in begun else read_clips(path)
-        except Exception as error:  # no kind is trusted to be the only one
+        except Exception as error:  # readers may raise any kind of error
             failures.append(unforeseen_error(path, error))
             continue
         for number, clip in enumerate(takes):

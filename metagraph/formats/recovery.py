@@ -241,7 +241,7 @@ def _saved_data(saved: Path | None, as_opened: bool) -> Data:
             data = canonical(read_file(saved, TEXT_FILE).decode("utf-8-sig"))
             if data is not None and data["metagraph"] == FORMAT:
                 data = without_clip_identities(data)
-                Replay(data)  # has all that changes are worked into, though a hand may have written it
+                Replay(data)  # has all that edits change, even if written by hand
                 return data
     return to_data(read_project(saved, []))
 

@@ -388,7 +388,7 @@ def open_project(path: str | Path, progress: Callable[[int, int], None] | None =
     path = Path(path)
     notes: list[str] = []
     project, found = read_with_digest(path, notes)
-    opened = load_motions(project, path.resolve().parent, progress)  # a link names files from where it leads
+    opened = load_motions(project, path.resolve().parent, progress)  # relative paths start at a link's target
     if names := list_closed_paths(opened.project):
         notes.append(describe_closed_paths(names))
     return replace(opened, notes=(*notes, *opened.notes), digest=found)
@@ -433,7 +433,7 @@ def load_motions(
     if folder is not None and folder.parent == folder:
         folder = None  # the root folder is never a project's folder; nothing is searched there
     if folder is not None:
-        project = _closed_below(project, folder)  # a journal's, for one, was read without a folder
+        project = _closed_below(project, folder)  # a journal's project was read without one
     return _load(
         project,
         folder,

@@ -52,7 +52,7 @@ class Evaluator:
         self._weight = WeightStage(plan, project, self.rigs.weight)
         self._life = LifeStage(project, plan.life, plan.track, self.rigs.body)
         self._contacts = ContactStage(plan, project, self.rigs.contacts)
-        self._last: tuple[float, Pose] | None = None  # the latest pose at one time that life was added to
+        self._last: tuple[float, Pose] | None = None  # the latest pose at one time with life added
 
     def at(self, seconds: Any, alive: bool = True, overlay: Overlay | None = None) -> Pose:
         """Return the composed pose at `seconds`, a number or an array `[...]`: rotations `[..., J, 4]`,

@@ -37,7 +37,7 @@ from metagraph.speech.gesture_choice import GestureClause, choose_gestures
 from metagraph.speech.group_gaze import looks_of
 from metagraph.speech.peak_blinks import peak_blinks
 
-PARTNER = "partner"  # the named point where the other's head is; of several with the other's number, from 1
+PARTNER = "partner"  # named point of the other's head; if there are several, with a number from 1
 TOLERANCE = 0.1  # seconds by which a stroke may miss its peak (section 7.2)
 ROUNDS = 12  # rounds in which requests that would be late are removed
 CLAUSE, ANSWER, FILL = 3, 2, 1  # priorities: own clauses, then answers, then fillers

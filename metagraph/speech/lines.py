@@ -119,7 +119,7 @@ def load_voices(project: Project, folder: str | Path) -> tuple[Project, tuple[st
         for attempt in tries:
             try:
                 voice = read_line(attempt, folder)
-            except Exception as error:  # one bad sound never spoils a project
+            except Exception as error:  # a bad sound must not stop a project
                 why = unforeseen_error(folder / (line.audio or line.phones or ""), error)
                 note = phrase("line '{ident}': {why}", ident=ident, why=why.words)
                 if note not in notes:

@@ -20,7 +20,7 @@ from metagraph.suggest.proposal import Proposal
 Array = NDArray[Any]
 
 ALIKE = 0.3  # share of a check's gain that each other clip with the same words adds
-LOOK = 0.2  # probability of being wrong from which on a check is worth its time
+LOOK = 0.2  # probability of being wrong; from this on a check is worth its time
 LOST = 0.5  # confidence below which a stance is almost unknown
 WEIGHTS = (-1.969, 1.036, 0.36, 0.527, 1.967, -2.112, 0.158)  # of `measures`, as `fit_flags.py` prints them
 

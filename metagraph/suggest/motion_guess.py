@@ -28,12 +28,8 @@ from metagraph.suggest.traits import LayerTraits, Traits
 # of the way of a clip that ends in no other stance: the share from end to end from which on it is a
 # transition
 STRAIGHT = 0.65
-ELSEWHERE = (
-    0.1  # heights from the body's usual pose, from which on a resting clip is of the body: sitting, lying
-)
-LIFE = (
-    0.11  # of all movement of a resting clip that hips and legs make, from which on the whole body breathes
-)
+ELSEWHERE = 0.1  # heights from the body's usual pose; resting clips beyond it are of the body: sitting, lying
+LIFE = 0.11  # share of hips and legs in the movement of a resting clip; above it the whole body breathes
 SMALL = 0.12  # heights the hands go, below which they say little
 ONLY = 0.85  # the least confidence of the stance if there is only one
 CLEAREST = 0.99  # the confidence of the stance for a pose that is in it

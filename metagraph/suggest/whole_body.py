@@ -108,7 +108,7 @@ def _seen_whole(traits: Mapping[str, Traits]) -> bool:
         if t.face == 0 and not no_measures(t) and all(t.layers[layer].names for layer in ("arms", "body"))
     }
     shapes = discover(moving, CARRIER, together=True)
-    held: list[tuple[Shape, Layer]] = []  # of clips that stay in a stance, it and the layer they move
+    held: list[tuple[Shape, Layer]] = []  # stance and layer of clips that stay in a stance
     settled = 0
     for clip, t in moving.items():
         x = t.layers[CARRIER]

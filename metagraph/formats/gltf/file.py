@@ -122,7 +122,7 @@ class Gltf:
         name = unquote(uri[:PATH_LENGTH])
         if name in self._named:
             return self._named[name]
-        if (why := explain_refusal(name, self.path.parent)) is not None:  # never: its files lie beside it
+        if (why := explain_refusal(name, self.path.parent)) is not None:  # never; its files are beside it
             self.fail(
                 phrase("'{name}' was not opened: {why}", name=name[:80], why=why),
                 where,

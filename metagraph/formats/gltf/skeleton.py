@@ -126,7 +126,7 @@ def _build(
 
     still = (rotations[joints], translations[joints], scales[joints])
     roots = np.flatnonzero(above < 0)
-    base = np.tile(np.eye(4), (len(joints), 1, 1))  # what was folded into each root: its ancestors' transform
+    base = np.tile(np.eye(4), (len(joints), 1, 1))  # folded into each root: its ancestors' transform
     for i in roots:
         if parents[joints[i]] >= 0:
             base[i] = worlds[parents[joints[i]]]
