@@ -406,7 +406,7 @@ def _character_mesh(character: CharacterMesh) -> SkinnedMesh:
 
 
 def _srgb8(linear: tuple[float, ...]) -> list[int]:
-    """Linear 0..1 to sRGB 0..255."""
+    """Convert linear colours 0..1 to sRGB 0..255."""
     c = np.clip(np.asarray(linear, float), 0, 1)
     return [
         int(x) for x in np.round(255 * np.where(c <= 0.0031308, 12.92 * c, 1.055 * c ** (1 / 2.4) - 0.055))

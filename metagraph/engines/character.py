@@ -33,9 +33,7 @@ from metagraph.playback.planning.running_plan import CUT, RunningPlan
 
 LEAP = 3600.0  # seconds by which an update may advance, because everything in between is planned
 SOUNDS = 16  # lines whose sound is kept
-REMEMBERED = (
-    1000  # answers that are kept after what they tell of was forgotten, and happenings nobody asked for
-)
+REMEMBERED = 1000  # final answers that are kept, and events that have not been fetched
 
 
 @dataclass(frozen=True, slots=True)

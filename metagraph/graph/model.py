@@ -280,7 +280,7 @@ class Uses(Mapping[str, tuple[Action, ...]]):
         return found
 
     def __contains__(self, clip: object) -> bool:
-        for uses in self._graphs:  # noqa: SIM110 - `any` takes thrice as long, and clips are asked by the thousand
+        for uses in self._graphs:  # noqa: SIM110 - `any` takes 3 times as long, and is called for each clip
             if clip in uses:
                 return True
         return False

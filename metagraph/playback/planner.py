@@ -1,4 +1,4 @@
-"""Plan: make a plan of specific actions from requests at any level.
+"""Make a plan of specific actions from requests at any level.
 
 Meta actions -> temporal replanning -> sampling, layer by layer (Borer et al., section 6). Planning from
 nothing and extending a running plan are the same function; `make_plan` extends an empty plan at time 0.

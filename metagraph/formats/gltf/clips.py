@@ -174,7 +174,9 @@ def _clip(
     moved: dict[int, Array],
     as_is: Collection[str],
 ) -> Clip:
-    """rotations `[F, J, 4]`; moved: as `_moved` has it."""
+    """Return the clip of a take. `rotations` are `[F, J, 4]`, `moved` is one item of what `moved` of the
+    tracks returns.
+    """
     translated = tuple(sorted({0, *moved}))
     translations = np.empty((len(rotations), len(translated), 3))
     for n, j in enumerate(translated):
